@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""Turns a run directory into a self-contained page of pictures and tables.
+
+data    reads a run directory          curves  draws what depends on stroke, parameter or step
+vtu     reads one VTU file             shapes  draws the billet        page  puts it together
+"""

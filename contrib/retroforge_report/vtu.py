@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""Read VTU files (ASCII, or inline base64 with or without zlib) and extract the boundary of tetrahedra."""
+import base64
+import dataclasses
+import xml.etree.ElementTree as xml
+import zlib
+
+import numpy as np
+
+TYPES = {"Float64": "f8", "Float32": "f4", "Int64": "i8", "UInt64": "u8", "Int32": "i4", "UInt32": "u4",
+         "Int16": "i2", "UInt16": "u2", "Int8": "i1", "UInt8": "u1"}
+TETRAHEDRON = 10
+FACES = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))  # outward for a positive tetrahedron
+
+
+@dataclasses.dataclass
+class Surface:
+    """Triangles of the boundary; `cell` is the tetrahedron behind each, `node` the mesh's node of each point."""
+    points: np.ndarray
+    triangles: np.ndarray
+    cell: np.ndarray
+    node: np.ndarray
+
+    def area_vectors(self):
+        a, b, c = (self.points[self.triangles[:, i]] for i in range(3))
+        return 0.5 * np.cross(b - a, c - a)
+
+    def nodal_area_vectors(self):
+        """One third of the area vectors of the triangles around each point."""
+        areas = np.zeros_like(self.points)
+        for corner in range(3):
+            np.add.at(areas, self.triangles[:, corner], self.area_vectors() / 3)
+        return areas
+
+    def to_triangles(self, nodal):
+        return nodal[self.triangles].mean(axis=1)
+
+
+@dataclasses.dataclass
+class Mesh:
+    points: np.ndarray
+    cells: np.ndarray
+    point_data: dict
+    cell_data: dict
+
+    def surface(self):
+        faces = np.concatenate([self.cells[:, face] for face in FACES])
+        owner = np.tile(np.arange(len(self.cells)), len(FACES))
+        _, index, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+        boundary = index[count == 1]
+        node, triangles = np.unique(faces[boundary], return_inverse=True)
+        surface = Surface(self.points[node], triangles.reshape(-1, 3), owner[boundary], node)
+        return surface
+
+
+def read(path):
+    root = xml.parse(path).getroot()
+    grid = root.find("UnstructuredGrid")
+    pieces = [] if grid is None else grid.findall("Piece")
+    if len(pieces) != 1:
+        raise ValueError(f"{path}: has {len(pieces)} pieces of an unstructured grid, expected one")
+    decode = _Decoder(path, root)
+    points = decode(pieces[0].find("Points/DataArray")).reshape(-1, 3)
+    cells = {array.get("Name"): decode(array) for array in pieces[0].find("Cells")}
+    tetrahedra = cells["types"] == TETRAHEDRON
+    ends = cells["offsets"][tetrahedra].astype(int)
+    connectivity = cells["connectivity"].astype(int)[ends[:, None] - np.arange(4, 0, -1)]
+    point_data = {array.get("Name"): decode(array) for array in pieces[0].findall("PointData/DataArray")}
+    cell_data = {array.get("Name"): decode(array)[tetrahedra]
+                 for array in pieces[0].findall("CellData/DataArray")}
+    return _merge(points, connectivity, point_data, cell_data)
+
+
+def _merge(points, cells, point_data, cell_data):
+    """Make one node of equal points: some writers give each cell its own."""
+    _, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
+    return Mesh(points[first].astype(float), inverse.reshape(-1)[cells],
+                {name: values[first] for name, values in point_data.items()}, cell_data)
+
+
+class _Decoder:
+    def __init__(self, path, root):
+        self.path = path
+        self.order = "<" if root.get("byte_order", "LittleEndian") == "LittleEndian" else ">"
+        self.header = np.dtype(self.order + TYPES[root.get("header_type", "UInt32")])
+        self.compressor = root.get("compressor")
+        if self.compressor not in (None, "vtkZLibDataCompressor"):
+            raise ValueError(f"{path}: compressor {self.compressor} is not known; write it with zlib")
+
+    def __call__(self, array):
+        dtype = np.dtype(self.order + TYPES[array.get("type")])
+        text = (array.text or "").strip()
+        if array.get("format") == "ascii":
+            values = np.array(text.split(), dtype=dtype)
+        elif array.get("format") == "binary":
+            text = "".join(text.split())
+            values = np.frombuffer(self.inflate(text) if self.compressor else self.plain(text), dtype)
+        else:
+            raise ValueError(f"{self.path}: data format {array.get('format')} is not known; "
+                             "write it as ascii or binary")
+        components = int(array.get("NumberOfComponents", 1))
+        return values.reshape(-1, components) if components > 1 else values
+
+    def plain(self, text):
+        return base64.b64decode(text)[self.header.itemsize:]
+
+    def inflate(self, text):
+        """Layout: number of blocks, block size, last block size, compressed sizes; then the blocks."""
+        if not text:
+            return b""
+        n_blocks = int(np.frombuffer(_decode_bytes(text, self.header.itemsize), self.header)[0])
+        n_bytes = (3 + n_blocks) * self.header.itemsize
+        sizes = np.frombuffer(_decode_bytes(text, n_bytes), self.header)[3:].astype(int)
+        data = base64.b64decode(text[_encoded_length(n_bytes):])
+        ends = np.cumsum(sizes)
+        return b"".join(zlib.decompress(data[end - size:end]) for size, end in zip(sizes, ends))
+
+
+def _encoded_length(n_bytes):
+    return 4 * ((n_bytes + 2) // 3)
+
+
+def _decode_bytes(text, n_bytes):
+    return base64.b64decode(text[:_encoded_length(n_bytes)])[:n_bytes]

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/geometry/die.h>
+#include <retroforge/material/norton_hoff.h>
+#include <retroforge/mesh/topology.h>
+
+#include <cstdint>
+
+/// Unilateral contact and Norton friction, lumped at the nodes of the surface.
+///
+/// For node k against a die:  u = V_k - v_die,  h = u·n - delta/tau,  dv = u - (u·n) n,  and the force on the residual is
+///   rho S [h]^+ n  +  S^f alpha K (|dv|^2 + v0^2)^((m-1)/2) dv.       @cite Laroussi2003, Eq. (21), (40)-(49)
+/// S is a third of the areas of the surface faces at k; S^f a third of those whose three nodes touch the die, each face
+/// weighted by the product of its nodes' ramps w(delta).
+///
+/// What belongs to the increment (delta, n, w, tau) is found once at X_i and kept for all its stages: ContactSet.
+/// What belongs to a stage (S, S^f) is computed from the stage's positions: ContactAreas.
+namespace retroforge
+{
+  /// The numbers of the contact and friction laws.
+  template <typename Number>
+  struct ContactLaw
+  {
+    Number rho = 0.; ///< penalty [MPa s/mm]
+    Number v0  = 0.; ///< slip regularisation [mm/s]
+  };
+
+  /// w(delta): 1 where the node touches, 0 where it is out of reach.
+  /// Smooth: 1 - 3t^2 + 2t^3 with t = delta/width on [0, 1], flat at both ends. Sharp: 1 for delta <= width.
+  struct FrictionRamp
+  {
+    double width = 0.; ///< [mm]
+    bool   sharp = false;
+
+    /// @param touching  the recorded decision delta <= width, which alone counts when sharp
+    template <typename Number>
+    Number operator()(const Number &delta, bool touching) const;
+    double derivative(double delta) const;
+  };
+
+  /// A node in reach of a die: a recorded decision.
+  struct ContactPair
+  {
+    NodeIndex    node;
+    unsigned int die;
+    bool         touching; ///< delta <= width of the friction ramp
+  };
+
+  /// Contact as found at the start of an increment.
+  template <typename Number>
+  struct ContactSet
+  {
+    struct Face
+    {
+      unsigned int                face;   ///< index into TetMesh::faces
+      std::array<unsigned int, 3> points; ///< its nodes' entries in `pairs`
+      Number                      weight; ///< product of the three ramps
+    };
+
+    std::vector<ContactPair>        pairs;
+    std::vector<Projection<Number>> projections; ///< of each pair, at X_i
+    std::vector<Number>             ramps;       ///< w(delta) of each pair
+    std::vector<Face>               friction_faces;
+    Number                          tau = 1.; ///< approach time [s]
+  };
+
+  /// S and S^f [mm^2] of each pair.
+  template <typename Number>
+  struct ContactAreas
+  {
+    std::vector<Number> S, Sf;
+  };
+
+  /// Sums of derivatives with respect to everything that a scene's contact depends on besides the mesh.
+  struct ContactSensitivity
+  {
+    double                        K = 0., m = 0., rho = 0., v0 = 0., tau = 0.;
+    std::vector<DieState<double>> dies; ///< velocity, displacement and friction of each
+  };
+
+  /// Derivatives in the increment's data: what ContactSet depends on is filled in later, by reverse_contact_set.
+  struct ContactSetBar
+  {
+    std::vector<double> delta, ramp;
+    std::vector<Vec3>   n;
+
+    explicit ContactSetBar(const std::size_t n_pairs)
+      : delta(n_pairs, 0.)
+      , ramp(n_pairs, 0.)
+      , n(n_pairs)
+    {}
+  };
+
+  /// The nodes within `reach` of a die, at positions X. Deterministic order: by die, then node.
+  std::vector<ContactPair> find_contact_pairs(const Topology                      &topology,
+                                              const std::vector<Die>              &dies,
+                                              const std::vector<DieState<double>> &states,
+                                              const NodalVectors<double>          &X,
+                                              const FrictionRamp                  &ramp,
+                                              double                               reach);
+
+  /// Gaps, normals and ramps of given pairs at X.
+  template <typename Number>
+  ContactSet<Number> make_contact_set(const TetMesh                       &mesh,
+                                      const Topology                      &topology,
+                                      const std::vector<Die>              &dies,
+                                      const std::vector<DieState<Number>> &states,
+                                      const std::vector<ContactPair>      &pairs,
+                                      const FrictionRamp                  &ramp,
+                                      const Number                        &tau,
+                                      const NodalVectors<Number>          &X);
+
+  /// Pull-back of make_contact_set: adds to X_bar and to the dies' displacements.
+  void reverse_contact_set(const std::vector<Die>   &dies,
+                           const ContactSet<double> &contact,
+                           const FrictionRamp       &ramp,
+                           const ContactSetBar      &bar,
+                           NodalVectors<double>     &X_bar,
+                           ContactSensitivity       &sensitivity);
+
+  template <typename Number>
+  ContactAreas<Number> contact_areas(const TetMesh              &mesh,
+                                     const Topology             &topology,
+                                     const ContactSet<Number>   &contact,
+                                     const NodalVectors<Number> &X);
+
+  /// Pull-back of contact_areas: S_bar, Sf_bar -> X_bar and the ramps of the increment.
+  void reverse_contact_areas(const TetMesh              &mesh,
+                             const Topology             &topology,
+                             const ContactSet<double>   &contact,
+                             const NodalVectors<double> &X,
+                             const ContactAreas<double> &areas_bar,
+                             NodalVectors<double>       &X_bar,
+                             ContactSetBar              &bar);
+
+  /// One pair with all that its force depends on.
+  template <typename Number>
+  struct ContactNode
+  {
+    Vector3<Number> u; ///< V - v_die
+    Vector3<Number> n;
+    Number          delta, tau, S, Sf;
+    Number          alpha;
+    bool            active; ///< counts as h > 0
+  };
+
+  template <typename Number>
+  Number approach_excess(const ContactNode<Number> &node)
+  {
+    return node.u * node.n - node.delta / node.tau;
+  }
+
+  template <typename Number>
+  Vector3<Number> contact_force(const ContactNode<Number> &node, const NortonHoff<Number> &law, const ContactLaw<Number> &contact);
+
+  /// tau·dv S^f: power lost in friction [mJ/s], as the residual has it.
+  template <typename Number>
+  Number friction_power(const ContactNode<Number> &node, const NortonHoff<Number> &law, const ContactLaw<Number> &contact);
+
+  /// Value of the potential whose gradient in V is contact_force.
+  double contact_potential(const ContactNode<double> &node, const NortonHoff<double> &law, const ContactLaw<double> &contact);
+
+  /// d contact_force / dV, symmetric.
+  dealii::Tensor<2, 3> contact_tangent(const ContactNode<double> &node,
+                                       const NortonHoff<double>  &law,
+                                       const ContactLaw<double>  &contact);
+
+  /// Derivatives of a scalar of one node.
+  struct ContactNodeBar
+  {
+    Vec3   u, n;
+    double delta = 0., tau = 0., S = 0., Sf = 0., alpha = 0., K = 0., m = 0., rho = 0., v0 = 0.;
+  };
+
+  /// Derivatives of  lambda·contact_force.
+  ContactNodeBar reverse_contact_force(const ContactNode<double> &node,
+                                       const NortonHoff<double>  &law,
+                                       const ContactLaw<double>  &contact,
+                                       const Vec3                &lambda);
+
+  /// Derivatives of  weight * friction_power.
+  ContactNodeBar reverse_friction_power(const ContactNode<double> &node,
+                                        const NortonHoff<double>  &law,
+                                        const ContactLaw<double>  &contact,
+                                        double                     weight);
+} // namespace retroforge

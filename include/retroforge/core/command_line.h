@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace retroforge
+{
+  /// What the user asked for:  `retroforge COMMAND CASE.prm [--set Section/name=value]... [--output DIR]
+  /// [--resume]`.
+  struct CommandLine
+  {
+    std::string command; ///< simulate, gradient or check; empty only with one of the three questions below
+    std::string case_file;
+
+    /// Folder of the results. Without --output: the name of the case followed by `-results`, in the
+    /// current folder (`prm/tutorial/upsetting.prm` -> `upsetting-results`).
+    std::string output_directory;
+
+    /// Full path of a parameter (`Contact/Friction/coefficient`) and its new value, in the order given.
+    std::vector<std::pair<std::string, std::string>> overrides;
+
+    bool resume = false; ///< go on from the record in output_directory
+
+    bool print_parameters = false; ///< write the annotated parameters and stop
+    bool version          = false; ///< write version and commit and stop
+    bool help             = false; ///< write help_text() and stop
+
+    /// @throws Error for unknown or incomplete arguments, naming the nearest known one.
+    static CommandLine parse(int argc, const char *const *argv);
+  };
+
+  /// The commands, in the order of the help text.
+  const std::vector<std::string> &known_commands();
+
+  /// What `--help` prints.
+  std::string help_text();
+} // namespace retroforge

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/core/types.h>
+#include <retroforge/material/norton_hoff.h>
+
+#include <array>
+
+/// The tetrahedron with P1 + hat bubble velocity and P1 pressure, integrated in closed form.
+///
+/// The bubble is 4 lambda_a on the sub-tetrahedron w_a spanned by the barycentre and the face opposite node a, so all
+/// gradients are constant there:  eps_a = sym( sum_c V_c (x) g_c + 4 beta (x) g_a ),  |w_a| = |T|/4,  and
+///   Pi_T(V, beta, P) = |T|/4 sum_a K/(m+1) q_a^((m+1)/2) - |T| pbar tr(L) + |T|/4 beta·grad p,   L = sum_c V_c (x) g_c
+/// is the element's part of the saddle functional, whose gradient is the residual.  @cite Laroussi2003, Eq. (36)-(39)
+namespace retroforge
+{
+  template <typename Number>
+  using Four = std::array<Number, 4>;
+
+  /// Volume [mm^3] and gradients g_a = grad lambda_a [1/mm] of a tetrahedron.
+  template <typename Number>
+  struct CellGeometry
+  {
+    Number                volume;
+    Four<Vector3<Number>> g;
+  };
+
+  /// Unknowns of one cell, or anything dual to them (residual, adjoint).
+  template <typename Number>
+  struct CellValues
+  {
+    Four<Vector3<Number>> V;    ///< nodal velocities [mm/s]
+    Vector3<Number>       beta; ///< bubble velocity [mm/s]
+    Four<Number>          P;    ///< nodal pressures [MPa]
+  };
+
+  /// Derivatives of a scalar of the cell in everything that is not an unknown.
+  struct CellSensitivity
+  {
+    Four<Vec3> X  = {};
+    double     K  = 0.;
+    double     m  = 0.;
+    double     e0 = 0.;
+  };
+
+  template <typename Number>
+  CellGeometry<Number> cell_geometry(const Four<Vector3<Number>> &X);
+
+  /// Adds to X_bar the pull-back of (volume_bar, g_bar) through cell_geometry:  dg_a = -sum_c (g_a·dX_c) g_c.
+  void reverse_cell_geometry(const CellGeometry<double> &geometry,
+                             double                      volume_bar,
+                             const Four<Vec3>           &g_bar,
+                             Four<Vec3>                 &X_bar);
+
+  /// Value of Pi_T [mJ/s].
+  template <typename Number>
+  Number cell_functional(const CellGeometry<Number> &geometry,
+                         const CellValues<Number>   &w,
+                         const NortonHoff<Number>   &law);
+
+  /// Gradient of Pi_T in (V, beta, P).
+  template <typename Number>
+  CellValues<Number> cell_residual(const CellGeometry<Number> &geometry,
+                                   const CellValues<Number>   &w,
+                                   const NortonHoff<Number>   &law);
+
+  /// Dissipated power  int_T s:eps  [mJ/s].
+  template <typename Number>
+  Number cell_dissipation(const CellGeometry<Number> &geometry,
+                          const CellValues<Number>   &w,
+                          const NortonHoff<Number>   &law);
+
+  /// Equivalent strain rates e = sqrt(2/3 eps:eps) [1/s] on the four sub-tetrahedra.
+  Four<double> cell_strain_rates(const CellGeometry<double> &geometry, const CellValues<double> &w);
+
+  /// Derivative of lambda·cell_residual in X, K, m, e0 at fixed unknowns: one closed-form sweep, no matrix.
+  CellSensitivity reverse_cell_residual(const CellGeometry<double> &geometry,
+                                        const CellValues<double>   &w,
+                                        const CellValues<double>   &lambda,
+                                        const NortonHoff<double>   &law);
+
+  /// Adds weight times the derivatives of cell_dissipation in the unknowns to w_bar and returns those in X, K, m, e0.
+  CellSensitivity reverse_cell_dissipation(const CellGeometry<double> &geometry,
+                                           const CellValues<double>   &w,
+                                           const NortonHoff<double>   &law,
+                                           double                      weight,
+                                           CellValues<double>         &w_bar);
+
+  /// Second derivatives of Pi_T with the bubble eliminated: the symmetric 16 x 16 matrix [A B; B^T -C] of one cell.
+  struct CellTangent
+  {
+    double A[4][4][3][3]; ///< velocity-velocity
+    double B[4][4][3];    ///< velocity of the first node, pressure of the second
+    double C[4][4];       ///< pressure-pressure, negative semi-definite (enters as it is)
+    double viscosity;     ///< mean stress factor / 2 [MPa s], for the Schur complement's scale
+    // What the elimination of the bubble needs:
+    double Vb[4][3][3]; ///< velocity-bubble
+    double Pb[4][3];    ///< pressure-bubble
+    double M[3][3];     ///< inverse of bubble-bubble
+
+    /// Bubble part of a solution of the uncondensed system with right-hand side rhs.beta.
+    Vec3 recover_bubble(const Vec3 &rhs_beta, const Four<Vec3> &V, const Four<double> &P) const;
+
+    /// Right-hand side of the condensed system: rhs.V -= Vb M rhs.beta, rhs.P -= Pb M rhs.beta.
+    void condense(CellValues<double> &rhs) const;
+  };
+
+  void compute_cell_tangent(const CellGeometry<double> &geometry,
+                            const CellValues<double>   &w,
+                            const NortonHoff<double>   &law,
+                            CellTangent                &tangent);
+
+  /// The bubble that makes the bubble's residual vanish at given V and P: a convex problem in three unknowns, solved by
+  /// Newton to rounding. Starts from w.beta.
+  Vec3 solve_bubble(const CellGeometry<double> &geometry, const CellValues<double> &w, const NortonHoff<double> &law);
+} // namespace retroforge

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <retroforge/mesh/tet_mesh.h>
+
+#include <string>
+#include <vector>
+
+#include <mpi.h>
+
+namespace retroforge
+{
+  /// The workpiece before forging: its shape, what symmetry leaves of it, where it stands, and how fine its
+  /// mesh is.
+  struct BilletParameters
+  {
+    std::string shape = "box";
+    Vec3        base_centre;
+    Vec3        size         = Vec3({50, 50, 50});
+    double      radius       = 25;
+    double      height       = 50;
+    double      element_size = 5;
+
+    std::vector<Vec3> symmetry_planes;
+    std::string       symmetry_point = "base";
+    double            sector_angle   = 0;
+
+    std::string              file_name;
+    std::vector<std::string> symmetry_patches;
+
+    Vec3   rotation_axis  = Vec3({0, 0, 1});
+    double rotation_angle = 0;
+    Vec3   translation;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+    void check() const;
+  };
+
+  /// Makes or reads the mesh of the billet on rank 0 and gives it to all ranks: checked with check_mesh(),
+  /// numbered with renumber(), nodes on planar patches on their plane to rounding. Collective.
+  ///
+  /// Patches of a box: `bottom`, `top`, `side -x`, `side +x`, `side -y`, `side +y`; of a cylinder: `bottom`,
+  /// `top`, `side`; then `symmetry 1`, ... with their planes: first those of the sector, then those listed.
+  /// Patches of which the cuts leave nothing are absent. The names tell directions before the final rotation.
+  TetMesh make_billet(const BilletParameters &parameters, MPI_Comm communicator);
+} // namespace retroforge

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/mesh/tet_mesh.h>
+
+#include <functional>
+
+#include <mpi.h>
+
+namespace retroforge
+{
+  /// Makes a mesh on rank 0 and gives it to all ranks. When `make` throws there, all ranks throw the same
+  /// Error, so that none waits for the others. Collective.
+  TetMesh make_on_root(const std::function<TetMesh()> &make, MPI_Comm communicator);
+} // namespace retroforge

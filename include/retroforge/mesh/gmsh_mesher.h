@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/mesh/patch_shapes.h>
+
+#include <string>
+#include <vector>
+
+namespace retroforge
+{
+  /// A box or cylinder standing along z on the centre of its base, cut by planes.
+  struct CutSolid
+  {
+    bool   is_cylinder = false;
+    Vec3   base_centre;
+    Vec3   size;       ///< lengths of the box
+    double radius = 0; ///< of the cylinder
+    double height = 0; ///< of either
+    /// What is on the side of a plane its normal points to is cut away.
+    std::vector<Plane> cuts;
+  };
+
+  /// Cells and nodes (no faces, no patches) of an unstructured tetrahedral mesh of the solid, edges of about
+  /// `element_size`. Cells are positively oriented. When the first mesh has a dihedral angle below 15
+  /// degrees, others are tried, with edges up to 6 % shorter or 4 % longer, and the best is returned (a sharp
+  /// edge of the solid limits it). The same input gives the same mesh, bit for bit. Throws Error at `where`
+  /// when the cuts leave nothing or Gmsh fails. To be called on one rank only.
+  TetMesh mesh_with_gmsh(const CutSolid &solid, double element_size, const std::string &where);
+
+  /// Reads linear tetrahedra from a Gmsh file (.msh, versions 2 and 4, ASCII or binary). Physical surfaces
+  /// become patches, named as in the file or, without a name, by their number; outer faces on no physical
+  /// surface become the patch `surface`. Triangles inside the volume are ignored. When all tetrahedra are
+  /// inverted they are turned. Patches whose name or number is in `symmetry_patches` become symmetry planes.
+  /// The mesh is not checked (see check_mesh()). Throws Error for what cannot be read. To be called on one
+  /// rank only.
+  TetMesh read_msh(const std::string &file_name, const std::vector<std::string> &symmetry_patches);
+} // namespace retroforge

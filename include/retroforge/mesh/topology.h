@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <deal.II/base/array_view.h>
+
+#include <retroforge/mesh/tet_mesh.h>
+
+#include <vector>
+
+namespace retroforge
+{
+  /// One list per row, stored end to end (compressed rows).
+  template <typename T>
+  struct Rows
+  {
+    std::vector<unsigned int> begin = {0}; ///< one entry per row, and the end of the last
+    std::vector<T>            entries;
+
+    unsigned int               size() const { return begin.size() - 1; }
+    dealii::ArrayView<const T> operator[](const unsigned int row) const
+    {
+      return {entries.data() + begin[row], begin[row + 1] - begin[row]};
+    }
+  };
+
+  /// Who touches whom: lists that depend on the connectivity and the patches only, not on positions.
+  struct Topology
+  {
+    /// Indices into TetMesh::faces of the surface faces (those not on a symmetry plane) at each node,
+    /// ascending.
+    Rows<unsigned int> surface_faces;
+    /// Cells at each node, ascending.
+    Rows<CellIndex> cells;
+    /// Nodes that share a cell with each node, itself included, ascending.
+    Rows<NodeIndex> neighbours;
+    /// Orthonormal directions in which the symmetry planes hold each node: none, one on a plane, two on the
+    /// edge of two planes, three in a corner. The first is the outward normal of the first plane in the order
+    /// of the patches.
+    Rows<Vec3> fixed_directions;
+
+    explicit Topology(const TetMesh &mesh);
+
+    bool is_on_surface(const NodeIndex node) const { return surface_faces[node].size() > 0; }
+  };
+} // namespace retroforge

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace retroforge
+{
+  /// What is worth knowing of one increment, at its end.
+  struct HistoryRow
+  {
+    unsigned int increment   = 0; ///< counted from 1; 0 is the initial state
+    double       time        = 0; ///< s
+    double       stroke      = 0; ///< mm
+    double       force       = 0; ///< of the moving die, N
+    double       energy      = 0; ///< spent so far, mJ
+    double       volume      = 0; ///< mm^3
+    double       min_quality = 0; ///< of the worst cell, dimensionless
+    unsigned int newton      = 0; ///< Newton iterations of the increment
+    unsigned int krylov      = 0; ///< iterations of its linear solves
+  };
+
+  /// The history of a run as a table (.csv). Each row is on the disk when add() returns; numbers read back to
+  /// the same bits.
+  class History
+  {
+  public:
+    /// Start a new table.  @throws Error if it cannot be written
+    explicit History(const std::string &file);
+
+    /// Go on with an existing table: keep its rows up to and including `last_increment`.
+    static History continue_after(const std::string &file, unsigned int last_increment);
+
+    /// @throws Error if the row cannot be written
+    void add(const HistoryRow &row);
+
+    /// @throws Error, with the line, if the file is not such a table
+    static std::vector<HistoryRow> read(const std::string &file);
+
+  private:
+    struct Close
+    {
+      void operator()(std::FILE *stream) const { std::fclose(stream); }
+    };
+
+    std::string                       file_;
+    std::unique_ptr<std::FILE, Close> stream_;
+
+    History(const std::string &file, const char *mode);
+    void write(const std::string &text);
+  };
+} // namespace retroforge

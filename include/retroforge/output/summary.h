@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace retroforge
+{
+  /// What a run found, for programs to read (.json). The format is described in doc/summary_schema.md;
+  /// whoever changes a key changes `Summary::schema` and that page.
+  ///
+  /// Numbers never set (and those that are not finite) become null; empty lists and maps are left out.
+  struct Summary
+  {
+    static constexpr int    schema  = 1;
+    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+    using Count = std::optional<std::uint64_t>;
+
+    struct Objective
+    {
+      std::string                   name;
+      double                        value = unknown;
+      std::string                   unit;
+      std::map<std::string, double> parts; ///< summands of the value, e.g. deformation and friction
+    };
+
+    struct Parameter
+    {
+      std::string                   name;
+      double                        value = unknown;
+      std::string                   unit;
+      std::map<std::string, double> gradient; ///< by objective
+    };
+
+    /// Finite differences of one step: with the recorded decisions replayed, and free (decided anew).
+    struct CheckStep
+    {
+      double step              = unknown;
+      double replayed_central  = unknown;
+      double replayed_forward  = unknown;
+      double replayed_backward = unknown;
+      double free_central      = unknown;
+    };
+
+    /// One derivative, computed in every way.
+    struct Check
+    {
+      std::string            objective;
+      std::string            parameter;
+      double                 adjoint = unknown;
+      double                 tangent = unknown;
+      std::vector<CheckStep> steps;
+      std::vector<double>    taylor_orders;
+      std::string            verdict; ///< "passed" or "failed"
+    };
+
+    std::string command, version, commit, blas;
+    Count       ranks, n_nodes, n_cells;
+
+    std::vector<Objective> objectives;
+    std::vector<Parameter> parameters;
+
+    Count increments, cuts, newton_iterations, krylov_iterations, linear_solves_forward,
+      linear_solves_adjoint;
+
+    double volume_initial = unknown;
+    double volume_final   = unknown;
+
+    std::map<std::string, double> wall_seconds;
+    Count                         record_bytes;
+
+    std::vector<Check> check;
+
+    /// The text of the file.
+    std::string to_json() const;
+
+    /// Replace `file` in one step.  @throws Error if it cannot be written
+    void write(const std::string &file) const;
+  };
+} // namespace retroforge

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/contact/contact.h>
+#include <retroforge/element/field.h>
+#include <retroforge/mesh/partition.h>
+
+namespace retroforge
+{
+  /// What does not move: the mesh, who works on what of it, and the shapes of the dies.
+  struct Scene
+  {
+    TetMesh          mesh;
+    Topology         topology;
+    Partition        partition;
+    std::vector<Die> dies;
+
+    Scene(TetMesh made_mesh, std::vector<Die> dies, MPI_Comm comm)
+      : mesh(std::move(made_mesh))
+      , topology(mesh)
+      , partition(mesh, comm)
+      , dies(std::move(dies))
+    {}
+  };
+
+  /// The numbers of the laws and the state of the dies during one increment.
+  template <typename Number>
+  struct Physics
+  {
+    NortonHoff<Number>            law;
+    ContactLaw<Number>            contact;
+    std::vector<DieState<Number>> dies;
+  };
+
+  /// Derivatives of a scalar in what Physics holds, and in the increment's times.
+  struct PhysicsBar
+  {
+    double             e0 = 0., dt = 0.;
+    ContactSensitivity contact;
+
+    explicit PhysicsBar(const std::size_t n_dies) { contact.dies.resize(n_dies); }
+  };
+
+  /// Which pairs count as h > 0; empty: decide from the velocity. A replay passes what was recorded.
+  using ActiveSet = std::vector<char>;
+
+  /// Equilibrium at given positions: the sums over cells and contact nodes of value, residual, tangent data, and their
+  /// reverse. Entries of results are right on owned nodes and cells; `gather` completes them.
+  template <typename Number>
+  class Stage
+  {
+  public:
+    Stage(const Scene                &scene,
+          const Physics<Number>      &physics,
+          const ContactSet<Number>   &contact,
+          const NodalVectors<Number> &X);
+
+    /// Pair p as its force sees it. @param active  empty, or the frozen choice
+    ContactNode<Number> contact_node(unsigned int p, const Field<Number> &W, const ActiveSet &active) const;
+
+    Field<Number> residual(const Field<Number> &W, const ActiveSet &active) const;
+
+    /// Deformation and friction power [mJ/s], this rank's part of the sums.
+    std::pair<Number, Number> power(const Field<Number> &W, const ActiveSet &active) const;
+
+    /// h > 0 of every pair.
+    ActiveSet decide_active(const Field<Number> &W) const;
+
+    const Scene                &scene;
+    const Physics<Number>      &physics;
+    const ContactSet<Number>   &contact;
+    const NodalVectors<Number> &X;
+    ContactAreas<Number>        areas;
+  };
+
+  /// Sum over the nodes of the norms of the cells' forces, the scale a residual is measured against, as a root of
+  /// squares over nodes: (momentum [N], continuity [mm^3/s]).
+  std::pair<double, double> residual_scale(const Stage<double> &stage, const Field<double> &W);
+
+  /// Force of each die on the workpiece [N], contact and friction.
+  std::vector<Vec3> die_forces(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
+
+  /// beta of every cell from V and P (Field::beta is overwritten, and gathered).
+  void recover_bubbles(const Stage<double> &stage, Field<double> &W);
+
+  /// Derivatives of  lambda·residual  at fixed W: X_bar += ..., contact data and physics likewise.
+  /// Sums are this rank's part; completed by the caller once per increment.
+  void reverse_residual(const Stage<double> &stage,
+                        const Field<double> &W,
+                        const ActiveSet     &active,
+                        const Field<double> &lambda,
+                        NodalVectors<double> &X_bar,
+                        ContactSetBar        &contact_bar,
+                        PhysicsBar           &physics_bar);
+
+  /// Derivatives of  weight * (deformation power + friction power)  in W, X, contact data and physics, this rank's part.
+  void reverse_power(const Stage<double>  &stage,
+                     const Field<double>  &W,
+                     const ActiveSet      &active,
+                     double                weight,
+                     Field<double>        &W_bar,
+                     NodalVectors<double> &X_bar,
+                     ContactSetBar        &contact_bar,
+                     PhysicsBar           &physics_bar);
+
+  template <typename Number>
+  Stage<Number>::Stage(const Scene                &scene,
+                       const Physics<Number>      &physics,
+                       const ContactSet<Number>   &contact,
+                       const NodalVectors<Number> &X)
+    : scene(scene)
+    , physics(physics)
+    , contact(contact)
+    , X(X)
+    , areas(contact_areas(scene.mesh, scene.topology, contact, X))
+  {}
+} // namespace retroforge

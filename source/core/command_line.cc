@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/command_line.h>
+#include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace retroforge
+{
+  namespace
+  {
+    const std::vector<std::string> known_options =
+      {"--set", "--output", "--resume", "--print-parameters", "--version", "--help"};
+
+    const std::string where = "command line";
+    const std::string usage = "retroforge --help shows the usage";
+
+    std::string did_you_mean(const std::string &wrong, const std::vector<std::string> &known)
+    {
+      const std::string nearest = nearest_name(wrong, known, tolerated_edits(wrong));
+      return nearest.empty() ? usage : "did you mean '" + nearest + "'?";
+    }
+
+    /// The arguments one after another; `--option=value` counts as `--option` with its value attached.
+    class Arguments
+    {
+    public:
+      Arguments(const int argc, const char *const *argv) : words_(argv + std::min(argc, 1), argv + argc) {}
+
+      bool empty() const { return next_ == words_.size(); }
+
+      /// The next word, without an attached value.
+      std::string take()
+      {
+        std::string word = words_[next_++];
+        attached_.clear();
+        const std::size_t equals = word.find('=');
+        has_attached_            = word.rfind("--", 0) == 0 && equals != std::string::npos;
+        if (has_attached_)
+        {
+          attached_ = word.substr(equals + 1);
+          word.erase(equals);
+        }
+        return word;
+      }
+
+      /// The value of the option just taken.
+      std::string value(const std::string &option, const std::string &meaning)
+      {
+        if (std::exchange(has_attached_, false) && !attached_.empty())
+          return attached_;
+        if (empty() || words_[next_].empty() || words_[next_].rfind("--", 0) == 0)
+          throw Error(where, option + " has no value", "it needs " + meaning, usage);
+        return words_[next_++];
+      }
+
+      void expect_no_value(const std::string &option) const
+      {
+        if (has_attached_)
+          throw Error(
+            where, option + " is given the value '" + attached_ + "'", "it takes none", "leave it out");
+      }
+
+    private:
+      std::vector<std::string> words_;
+      std::size_t              next_ = 0;
+      std::string              attached_;
+      bool                     has_attached_ = false;
+    };
+
+    std::pair<std::string, std::string> split_override(const std::string &assignment)
+    {
+      const std::size_t equals = assignment.find('=');
+      if (equals == std::string::npos || equals == 0)
+        throw Error(where,
+                    "--set " + assignment + " is not an assignment",
+                    "it must read Section/name=value",
+                    "put quotes around it where it contains spaces: --set 'Section/some name=value'");
+      return {assignment.substr(0, equals), assignment.substr(equals + 1)};
+    }
+
+    void take_option(CommandLine &line, Arguments &arguments, const std::string &option)
+    {
+      if (option == "--set")
+        line.overrides.push_back(split_override(arguments.value(option, "an assignment Section/name=value")));
+      else if (option == "--output")
+        line.output_directory = arguments.value(option, "the folder of the results");
+      else if (option == "--resume")
+        line.resume = true;
+      else if (option == "--print-parameters")
+        line.print_parameters = true;
+      else if (option == "--version")
+        line.version = true;
+      else if (option == "--help" || option == "-h")
+        line.help = true;
+      else
+        throw Error(where,
+                    "unknown option '" + option + "'",
+                    "the options are " + join(known_options),
+                    did_you_mean(option, known_options));
+      arguments.expect_no_value(option);
+    }
+
+    void take_operand(CommandLine &line, const std::string &word)
+    {
+      if (line.command.empty())
+      {
+        const std::vector<std::string> &commands = known_commands();
+        if (std::find(commands.begin(), commands.end(), word) == commands.end())
+          throw Error(where,
+                      "unknown command '" + word + "'",
+                      "the commands are " + join(commands),
+                      std::filesystem::path(word).extension() == ".prm"
+                        ? "put one before the case: retroforge simulate " + word
+                        : did_you_mean(word, commands));
+        line.command = word;
+      }
+      else if (line.case_file.empty())
+        line.case_file = word;
+      else
+        throw Error(where,
+                    "'" + word + "' follows the case file '" + line.case_file + "'",
+                    "one case is run at a time",
+                    "remove it, or put quotes around names with spaces");
+    }
+
+    void check_complete(const CommandLine &line)
+    {
+      if (line.command.empty())
+        throw Error(where, "there is no command", "the commands are " + join(known_commands()), usage);
+      if (line.case_file.empty())
+        throw Error(where,
+                    "there is no case file",
+                    "'" + line.command + "' needs a parameter file",
+                    "write retroforge " + line.command +
+                      " CASE.prm; retroforge --print-parameters writes a template");
+    }
+  } // namespace
+
+  const std::vector<std::string> &known_commands()
+  {
+    static const std::vector<std::string> commands = {"simulate", "gradient", "check"};
+    return commands;
+  }
+
+  CommandLine CommandLine::parse(const int argc, const char *const *argv)
+  {
+    CommandLine line;
+    Arguments   arguments(argc, argv);
+    while (!arguments.empty())
+    {
+      const std::string word = arguments.take();
+      if (word.size() > 1 && word[0] == '-')
+        take_option(line, arguments, word);
+      else
+        take_operand(line, word);
+    }
+    const bool is_question = line.print_parameters || line.version || line.help;
+    if (!is_question)
+      check_complete(line);
+    if (line.output_directory.empty() && !line.case_file.empty())
+      line.output_directory = std::filesystem::path(line.case_file).stem().string() + "-results";
+    return line;
+  }
+
+  std::string help_text()
+  {
+    return R"(Retroforge simulates hot metal forging in 3D and computes exact gradients of its results.
+
+Usage:
+  retroforge COMMAND CASE.prm [--set Section/name=value]... [--output DIR] [--resume]
+  mpirun -np N retroforge COMMAND CASE.prm ...
+  retroforge --print-parameters | --version | --help
+
+Commands:
+  simulate   run the forging and report its objectives
+  gradient   simulate, then sweep back: gradients of the objectives with respect to the parameters
+  check      compare these gradients with the tangent method and with finite differences
+
+Options:
+  --set Section/name=value   replace a parameter of the case; may be repeated, the last one counts
+  --output DIR               folder of the results (default: CASE-results in the current folder)
+  --resume                   go on with an interrupted run from the record in its folder of results
+  --print-parameters         write all parameters with their meaning; as a case file they are the defaults
+  --version                  write version and commit
+  --help                     write this text
+
+Examples:
+  retroforge simulate upsetting.prm
+  retroforge gradient upsetting.prm --set Contact/Friction/coefficient=0.3 --output rough-dies
+)";
+  }
+} // namespace retroforge

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <deal.II/base/patterns.h>
+#include <deal.II/base/utilities.h>
+
+#include <retroforge/core/error.h>
+#include <retroforge/mesh/billet.h>
+#include <retroforge/mesh/broadcast.h>
+#include <retroforge/mesh/gmsh_mesher.h>
+#include <retroforge/mesh/mesh_checks.h>
+#include <retroforge/mesh/renumber.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace retroforge
+{
+  namespace
+  {
+    std::string in_words(const double value)
+    {
+      std::ostringstream out;
+      out << value;
+      return out.str();
+    }
+
+    void check_positive(const std::string &name, const double value)
+    {
+      if (!(value > 0) || !std::isfinite(value))
+        throw Error("Billet/" + name,
+                    "is " + in_words(value) + " but must be > 0",
+                    "lengths are positive",
+                    "give the length in the unit of the case, mm as a rule");
+    }
+
+    Vec3 centre_of_base_or_body(const BilletParameters &p)
+    {
+      const double height = p.shape == "box" ? p.size[2] : p.height;
+      return p.symmetry_point == "centre" ? p.base_centre + Vec3({0, 0, height / 2}) : p.base_centre;
+    }
+
+    Vec3 parse_symmetry_point(const BilletParameters &p)
+    {
+      if (p.symmetry_point == "base" || p.symmetry_point == "centre")
+        return centre_of_base_or_body(p);
+      try
+      {
+        return dealii::Patterns::Tools::Convert<Vec3>::to_value(p.symmetry_point);
+      }
+      catch (const std::exception &)
+      {
+        throw Error("Billet/symmetry point",
+                    "is `" + p.symmetry_point + "'",
+                    "it must be base, centre or three coordinates",
+                    "write for example `0, 0, 25'");
+      }
+    }
+
+    bool is_sector(const BilletParameters &p)
+    {
+      return p.sector_angle != 0 && p.sector_angle != 360;
+    }
+
+    // Whole turns are exact for quarters and halves, so that planes on the axes have normals without
+    // rounding.
+    Vec3 sector_end_normal(const double degrees)
+    {
+      if (degrees == 90)
+        return Vec3({-1, 0, 0});
+      const double angle = degrees * M_PI / 180;
+      return Vec3({-std::sin(angle), std::cos(angle), 0});
+    }
+
+    std::vector<Plane> symmetry_planes(const BilletParameters &p)
+    {
+      std::vector<Plane> planes;
+      if (is_sector(p))
+        planes.push_back({p.base_centre, Vec3({0, -1, 0})});
+      if (is_sector(p) && p.sector_angle < 180)
+        planes.push_back({p.base_centre, sector_end_normal(p.sector_angle)});
+      const Vec3 point = parse_symmetry_point(p);
+      for (const Vec3 &normal : p.symmetry_planes)
+        planes.push_back({point, normal / normal.norm()});
+      return planes;
+    }
+
+    void check_symmetry(const BilletParameters &p)
+    {
+      if (p.shape == "file" && (!p.symmetry_planes.empty() || is_sector(p)))
+        throw Error("Billet/symmetry planes",
+                    "the shape is `file', and symmetry planes or a sector angle are given",
+                    "a mesh from a file is not cut",
+                    "name its planes in `symmetry patches'");
+      if (p.shape != "cylinder" && is_sector(p))
+        throw Error("Billet/sector angle",
+                    "is " + in_words(p.sector_angle) + ", and the shape is `" + p.shape + "'",
+                    "only a cylinder has sectors",
+                    "set it to 0, or use symmetry planes");
+      if (is_sector(p) && !(p.sector_angle > 0 && p.sector_angle <= 180))
+        throw Error("Billet/sector angle",
+                    "is " + in_words(p.sector_angle),
+                    "it must be in (0, 180], or 0 or 360 for the whole cylinder",
+                    "choose the smallest sector that symmetry allows");
+      for (const Vec3 &normal : p.symmetry_planes)
+        if (!(normal.norm() > 0) || !std::isfinite(normal.norm()))
+          throw Error("Billet/symmetry planes",
+                      "a normal has length " + in_words(normal.norm()),
+                      "outward normals need a direction",
+                      "write for example `-1, 0, 0; 0, -1, 0' to keep x >= 0, y >= 0");
+      const auto planes = symmetry_planes(p);
+      for (std::size_t i = 0; i < planes.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+          if ((planes[i].normal - planes[j].normal).norm() < 1e-6)
+            throw Error("Billet/symmetry planes",
+                        "planes " + std::to_string(j + 1) + " and " + std::to_string(i + 1) + " are parallel",
+                        "each symmetry plane is given once (those of the sector angle come first)",
+                        "remove one of them");
+    }
+
+    // About 8 tetrahedra per cube of the element size; far more than this machine holds is a slip of the pen.
+    void check_fineness(const BilletParameters &p)
+    {
+      const double body =
+        p.shape == "box" ? p.size[0] * p.size[1] * p.size[2] : M_PI * p.radius * p.radius * p.height;
+      const double n_cells = 8 * body / std::pow(p.element_size, 3);
+      if (n_cells > 1e9)
+        throw Error("Billet/element size",
+                    "is " + in_words(p.element_size) + ", which makes about " + in_words(n_cells) +
+                      " tetrahedra",
+                    "a mesh may have 1e9",
+                    "choose a larger element size");
+    }
+
+    CutSolid solid_of(const BilletParameters &p)
+    {
+      CutSolid solid;
+      solid.is_cylinder = p.shape == "cylinder";
+      solid.base_centre = p.base_centre;
+      solid.size        = p.size;
+      solid.radius      = p.radius;
+      solid.height      = solid.is_cylinder ? p.height : p.size[2];
+      solid.cuts        = symmetry_planes(p);
+      return solid;
+    }
+
+    PatchShape planar_shape(const std::string &name, const Vec3 &point, const Vec3 &normal)
+    {
+      return {{name, {}}, Plane{point, normal}, {}};
+    }
+
+    // Symmetry planes first: a face of the solid that lies in one of them is not surface.
+    std::vector<PatchShape> shapes_of(const CutSolid &solid)
+    {
+      std::vector<PatchShape> shapes;
+      for (std::size_t i = 0; i < solid.cuts.size(); ++i)
+        shapes.push_back({{"symmetry " + std::to_string(i + 1), solid.cuts[i]}, solid.cuts[i], {}});
+      const Vec3 &c = solid.base_centre;
+      shapes.push_back(planar_shape("bottom", c, Vec3({0, 0, -1})));
+      shapes.push_back(planar_shape("top", c + Vec3({0, 0, solid.height}), Vec3({0, 0, 1})));
+      if (solid.is_cylinder)
+        shapes.push_back({{"side", {}}, {}, CylinderSurface{c, Vec3({0, 0, 1}), solid.radius}});
+      else
+        for (unsigned int d = 0; d < 2; ++d)
+          for (const int sign : {-1, 1})
+          {
+            Vec3 normal;
+            normal[d] = sign;
+            shapes.push_back(
+              planar_shape(std::string("side ") + (sign < 0 ? "-" : "+") + (d == 0 ? "x" : "y"),
+                           c + solid.size[d] / 2 * normal,
+                           normal));
+          }
+      return shapes;
+    }
+
+    void check_all_planes_cut(const TetMesh &mesh, const CutSolid &solid)
+    {
+      for (std::size_t i = 0; i < solid.cuts.size(); ++i)
+      {
+        const std::string name = "symmetry " + std::to_string(i + 1);
+        if (std::none_of(mesh.patches.begin(), mesh.patches.end(), [&](const Patch &patch) {
+              return patch.name == name;
+            }))
+          throw Error("Billet/symmetry planes",
+                      "plane " + std::to_string(i + 1) + " does not touch the billet",
+                      "each symmetry plane must bound what is left of the billet",
+                      "remove it or move the symmetry point");
+      }
+    }
+
+    // Symmetry patches stand last in the mesh, after the billet's own.
+    void put_symmetry_last(TetMesh &mesh)
+    {
+      std::vector<unsigned int> order(mesh.patches.size()), number(mesh.patches.size());
+      for (unsigned int p = 0; p < order.size(); ++p)
+        order[p] = p;
+      std::stable_partition(
+        order.begin(), order.end(), [&](const unsigned int p) { return !mesh.patches[p].symmetry; });
+      std::vector<Patch> patches;
+      for (unsigned int p = 0; p < order.size(); ++p)
+      {
+        number[order[p]] = p;
+        patches.push_back(mesh.patches[order[p]]);
+      }
+      mesh.patches = patches;
+      for (auto &face : mesh.faces)
+        face.patch = number[face.patch];
+    }
+
+    TetMesh mesh_solid(const BilletParameters &p)
+    {
+      const CutSolid solid = solid_of(p);
+      TetMesh        mesh  = mesh_with_gmsh(solid, p.element_size, "Billet");
+      if (mesh.cells.empty())
+        return mesh;
+      const auto shapes = assign_patches(mesh, shapes_of(solid), 1e-6 * mesh_size(mesh), "Billet");
+      snap_nodes(mesh, shapes);
+      check_all_planes_cut(mesh, solid);
+      put_symmetry_last(mesh);
+      return mesh;
+    }
+
+    // Rodrigues' rotation about a unit vector.
+    Vec3 rotate(const Vec3 &x, const Vec3 &axis, const double angle)
+    {
+      return std::cos(angle) * x + std::sin(angle) * cross_product_3d(axis, x) +
+             (1 - std::cos(angle)) * (axis * x) * axis;
+    }
+
+    void move(TetMesh &mesh, const BilletParameters &p)
+    {
+      if (p.rotation_angle == 0 && p.translation.norm() == 0)
+        return;
+      const Vec3   axis  = p.rotation_axis / p.rotation_axis.norm();
+      const double angle = p.rotation_angle * M_PI / 180;
+      const auto   moved = [&](const Vec3 &x) {
+        return (p.rotation_angle == 0 ? x : rotate(x, axis, angle)) + p.translation;
+      };
+      for (Vec3 &x : mesh.X)
+        x = moved(x);
+      for (auto &patch : mesh.patches)
+        if (patch.symmetry && p.rotation_angle != 0)
+          patch.symmetry = Plane{moved(patch.symmetry->point), rotate(patch.symmetry->normal, axis, angle)};
+        else if (patch.symmetry)
+          patch.symmetry->point = moved(patch.symmetry->point);
+    }
+
+    TetMesh make_on_one_rank(const BilletParameters &p)
+    {
+      TetMesh           mesh  = p.shape == "file" ? read_msh(p.file_name, p.symmetry_patches) : mesh_solid(p);
+      const std::string where = p.shape == "file" ? p.file_name : "Billet";
+      check_mesh(mesh, where);
+      move(mesh, p);
+      renumber(mesh);
+      return mesh;
+    }
+  } // namespace
+
+  void BilletParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    using namespace dealii::Patterns;
+    prm.enter_subsection("Billet");
+    prm.add_parameter(
+      "shape",
+      shape,
+      "What the billet is: a box, a cylinder (both standing along z), or a mesh from a file. Units: none.",
+      Selection("box|cylinder|file"));
+    prm.add_parameter("base centre", base_centre, "Centre of the base of box or cylinder. Units: length.");
+    prm.add_parameter("size", size, "Lengths of the whole box along x, y and z, before cuts. Units: length.");
+    prm.add_parameter("radius", radius, "Radius of the cylinder. Units: length.", Double(0));
+    prm.add_parameter(
+      "height", height, "Height of the whole cylinder, before cuts. Units: length.", Double(0));
+    prm.add_parameter("element size",
+                      element_size,
+                      "Wanted length of the edges of the mesh of box or cylinder. Units: length.",
+                      Double(0));
+    prm.add_parameter(
+      "symmetry planes",
+      symmetry_planes,
+      "Outward normals of the symmetry planes that cut box or cylinder, separated by semicolons: "
+      "`-1, 0, 0; 0, -1, 0' keeps x >= 0, y >= 0. They need not have length one. Units: none.");
+    prm.add_parameter(
+      "symmetry point",
+      symmetry_point,
+      "Point all symmetry planes pass through: `base' for the centre of the base, `centre' for the "
+      "centre of the whole body, or three coordinates. Units: length.");
+    prm.add_parameter("sector angle",
+                      sector_angle,
+                      "Angle of the sector of the cylinder that is kept, from the direction +x of its axis "
+                      "towards +y, in (0, 180]; 0 or 360 for the whole cylinder. The faces of the sector "
+                      "are symmetry planes. Units: degrees.",
+                      Double(0, 360));
+    prm.add_parameter(
+      "file name",
+      file_name,
+      "Gmsh file (.msh, versions 2 and 4) for the shape `file'. Its physical surfaces become the "
+      "patches. Units: none.");
+    prm.add_parameter(
+      "symmetry patches",
+      symmetry_patches,
+      "Names or numbers of the physical surfaces of the file that are symmetry planes. Units: none.");
+    prm.add_parameter("rotation axis",
+                      rotation_axis,
+                      "Axis through the origin about which the finished mesh is rotated. Units: none.");
+    prm.add_parameter("rotation angle",
+                      rotation_angle,
+                      "Angle of this rotation, counter-clockwise seen against the axis. Units: degrees.");
+    prm.add_parameter(
+      "translation", translation, "Displacement of the finished mesh, after the rotation. Units: length.");
+    prm.leave_subsection();
+  }
+
+  void BilletParameters::check() const
+  {
+    if (shape != "box" && shape != "cylinder" && shape != "file")
+      throw Error(
+        "Billet/shape", "is `" + shape + "'", "it must be box, cylinder or file", "choose one of them");
+    if (shape == "box")
+      for (unsigned int d = 0; d < 3; ++d)
+        check_positive("size", size[d]);
+    if (shape == "cylinder")
+    {
+      check_positive("radius", radius);
+      check_positive("height", height);
+    }
+    check_symmetry(*this);
+    if (shape != "file")
+    {
+      check_positive("element size", element_size);
+      check_fineness(*this);
+    }
+    if (shape == "file" && file_name.empty())
+      throw Error("Billet/file name", "is empty", "the shape `file' needs a mesh", "name a .msh file");
+    if (shape != "file" && !symmetry_patches.empty())
+      throw Error("Billet/symmetry patches",
+                  "are given, and the shape is `" + shape + "'",
+                  "symmetry patches are for meshes from a file",
+                  "use symmetry planes");
+    if (rotation_angle != 0 && !(rotation_axis.norm() > 0))
+      throw Error(
+        "Billet/rotation axis", "has no length", "a rotation needs an axis", "write for example `0, 0, 1'");
+  }
+
+  TetMesh make_billet(const BilletParameters &parameters, MPI_Comm communicator)
+  {
+    parameters.check();
+    return make_on_root([&]() { return make_on_one_rank(parameters); }, communicator);
+  }
+} // namespace retroforge

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/output/history.h>
+#include <retroforge/output/safe_file.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <sstream>
+
+namespace retroforge
+{
+  namespace
+  {
+    const std::string header    = "increment,time,stroke,force,energy,volume,min_quality,newton,krylov\n";
+    constexpr int     n_columns = 9;
+
+    std::string to_csv(const HistoryRow &row)
+    {
+      std::ostringstream line;
+      line.precision(17);
+      line << row.increment << ',' << row.time << ',' << row.stroke << ',' << row.force << ',' << row.energy
+           << ',' << row.volume << ',' << row.min_quality << ',' << row.newton << ',' << row.krylov << '\n';
+      return line.str();
+    }
+
+    [[noreturn]] void throw_not_a_history(const std::string &file, const unsigned int line)
+    {
+      throw Error(file + ", line " + std::to_string(line),
+                  "is not a row of a history",
+                  "the columns are " + header.substr(0, header.size() - 1),
+                  "remove the file and start the run anew, without --resume");
+    }
+
+    HistoryRow from_csv(const std::string &line, const std::string &file, const unsigned int line_number)
+    {
+      std::array<double, n_columns> x;
+      const char                   *begin = line.c_str();
+      for (int column = 0; column < n_columns; ++column)
+      {
+        char *end; // strtod, as streams do not read nan
+        x[column] = std::strtod(begin, &end);
+        if (end == begin || *end != (column + 1 < n_columns ? ',' : '\0'))
+          throw_not_a_history(file, line_number);
+        begin = end + 1;
+      }
+      const auto count = [](const double number) { return static_cast<unsigned int>(number); };
+      return {count(x[0]), x[1], x[2], x[3], x[4], x[5], x[6], count(x[7]), count(x[8])};
+    }
+  } // namespace
+
+  History::History(const std::string &file, const char *mode)
+      : file_(file), stream_(std::fopen(file.c_str(), mode))
+  {
+    if (!stream_)
+      throw_write_error(file_, errno);
+  }
+
+  History::History(const std::string &file) : History(file, "w")
+  {
+    write(header);
+  }
+
+  History History::continue_after(const std::string &file, const unsigned int last_increment)
+  {
+    std::string kept = header;
+    for (const HistoryRow &row : read(file))
+      if (row.increment <= last_increment)
+        kept += to_csv(row);
+    write_file(file, kept);
+    return History(file, "a");
+  }
+
+  void History::add(const HistoryRow &row)
+  {
+    write(to_csv(row));
+  }
+
+  std::vector<HistoryRow> History::read(const std::string &file)
+  {
+    const std::string contents = read_file(file);
+    if (contents.compare(0, header.size(), header) != 0)
+      throw_not_a_history(file, 1);
+
+    std::vector<HistoryRow> rows;
+    std::istringstream      in(contents.substr(header.size()));
+    unsigned int            line_number = 1;
+    for (std::string line; std::getline(in, line);)
+    {
+      ++line_number;
+      if (in.eof()) // no newline: the run was killed while it wrote this row
+        break;
+      rows.push_back(from_csv(line, file, line_number));
+    }
+    return rows;
+  }
+
+  void History::write(const std::string &text)
+  {
+    if (std::fwrite(text.data(), 1, text.size(), stream_.get()) != text.size() ||
+        std::fflush(stream_.get()) != 0)
+      throw_write_error(file_, errno);
+  }
+} // namespace retroforge

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/output/safe_file.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace retroforge
+{
+  namespace
+  {
+    std::string remedy_for(const int error_number)
+    {
+      switch (error_number)
+      {
+        case ENOSPC:
+        case EDQUOT:
+        case EFBIG:
+          return "free space there, or choose another folder with --output DIR and go on with --resume";
+        case ENOENT:
+        case ENOTDIR:
+          return "make the folder, or choose another one with --output DIR";
+        case EACCES:
+        case EPERM:
+        case EROFS:
+          return "choose a folder you may write to with --output DIR";
+        default:
+          return "check the disk, or choose another folder with --output DIR";
+      }
+    }
+
+    /// Whole contents or an error number (0: all is well). A full disk may show as late as in fclose.
+    int write_directly(const std::string &file, const std::string &contents)
+    {
+      std::FILE *stream = std::fopen(file.c_str(), "wb");
+      if (stream == nullptr)
+        return errno;
+      int error = 0;
+      if (std::fwrite(contents.data(), 1, contents.size(), stream) != contents.size())
+        error = errno;
+      if (std::fclose(stream) != 0 && error == 0)
+        error = errno;
+      return error;
+    }
+  } // namespace
+
+  void throw_write_error(const std::string &file, const int error_number)
+  {
+    throw Error(file,
+                std::string("cannot be written: ") + std::strerror(error_number),
+                "results need a folder that exists, may be written to and has space",
+                remedy_for(error_number));
+  }
+
+  void write_file(const std::string &file, const std::string &contents)
+  {
+    std::error_code ignored;
+    const bool      is_device =
+      std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored);
+    const std::string written = is_device ? file : file + ".tmp";
+    int               error   = write_directly(written, contents);
+    if (!is_device)
+    {
+      if (error == 0 && std::rename(written.c_str(), file.c_str()) != 0)
+        error = errno;
+      if (error != 0)
+        std::remove(written.c_str());
+    }
+    if (error != 0)
+      throw_write_error(file, error);
+  }
+
+  std::string read_file(const std::string &file)
+  {
+    errno = 0;
+    std::ifstream      in(file, std::ios::binary);
+    std::ostringstream contents;
+    if (!in || !(contents << in.rdbuf()))
+      throw Error(file,
+                  std::string("cannot be read: ") + std::strerror(errno),
+                  "the results of an earlier run are expected there",
+                  "check the folder given with --output DIR");
+    return contents.str();
+  }
+
+  void make_directory(const std::string &directory)
+  {
+    std::error_code error;
+    std::filesystem::create_directories(directory, error);
+    if (error)
+      throw_write_error(directory, error.value());
+  }
+} // namespace retroforge

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/output/safe_file.h>
+#include <retroforge/output/summary.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace retroforge
+{
+  namespace
+  {
+    using Json = nlohmann::ordered_json; // keys stay in the order of the schema
+
+    Json number(const double x)
+    {
+      return std::isfinite(x) ? Json(x) : Json();
+    }
+
+    Json number(const Summary::Count &count)
+    {
+      return count ? Json(*count) : Json();
+    }
+
+    Json number_map(const std::map<std::string, double> &numbers)
+    {
+      Json json = Json::object();
+      for (const auto &[name, x] : numbers)
+        json[name] = number(x);
+      return json;
+    }
+
+    void add_unless_empty(Json &json, const std::string &key, Json value)
+    {
+      if (!value.empty())
+        json[key] = std::move(value);
+    }
+
+    Json as_json(const Summary::Check &check);
+    Json as_json(const Summary::CheckStep &step);
+    Json as_json(const Summary::Objective &objective);
+    Json as_json(const Summary::Parameter &parameter);
+    Json as_json(const double x)
+    {
+      return number(x);
+    }
+
+    template <typename T>
+    Json list(const std::vector<T> &items)
+    {
+      Json json = Json::array();
+      for (const T &item : items)
+        json.push_back(as_json(item));
+      return json;
+    }
+
+    Json as_json(const Summary::Objective &objective)
+    {
+      Json json = {{"name", objective.name}, {"value", number(objective.value)}, {"unit", objective.unit}};
+      add_unless_empty(json, "parts", number_map(objective.parts));
+      return json;
+    }
+
+    Json as_json(const Summary::Parameter &parameter)
+    {
+      Json json = {{"name", parameter.name}, {"value", number(parameter.value)}, {"unit", parameter.unit}};
+      add_unless_empty(json, "gradient", number_map(parameter.gradient));
+      return json;
+    }
+
+    Json as_json(const Summary::CheckStep &step)
+    {
+      return {{"step", number(step.step)},
+              {"replayed_central", number(step.replayed_central)},
+              {"replayed_forward", number(step.replayed_forward)},
+              {"replayed_backward", number(step.replayed_backward)},
+              {"free_central", number(step.free_central)}};
+    }
+
+    Json as_json(const Summary::Check &check)
+    {
+      Json json = {{"objective", check.objective},
+                   {"parameter", check.parameter},
+                   {"adjoint", number(check.adjoint)},
+                   {"tangent", number(check.tangent)}};
+      add_unless_empty(json, "steps", list(check.steps));
+      add_unless_empty(json, "taylor_orders", list(check.taylor_orders));
+      json["verdict"] = check.verdict;
+      return json;
+    }
+  } // namespace
+
+  std::string Summary::to_json() const
+  {
+    Json json = {{"schema", schema},
+                 {"command", command},
+                 {"version", version},
+                 {"commit", commit},
+                 {"ranks", number(ranks)},
+                 {"blas", blas},
+                 {"mesh", {{"nodes", number(n_nodes)}, {"cells", number(n_cells)}}}};
+    add_unless_empty(json, "objectives", list(objectives));
+    add_unless_empty(json, "parameters", list(parameters));
+    json["increments"]            = number(increments);
+    json["cuts"]                  = number(cuts);
+    json["newton_iterations"]     = number(newton_iterations);
+    json["krylov_iterations"]     = number(krylov_iterations);
+    json["linear_solves_forward"] = number(linear_solves_forward);
+    json["linear_solves_adjoint"] = number(linear_solves_adjoint);
+    json["volume_initial"]        = number(volume_initial);
+    json["volume_final"]          = number(volume_final);
+    add_unless_empty(json, "wall_seconds", number_map(wall_seconds));
+    json["record_bytes"] = number(record_bytes);
+    add_unless_empty(json, "check", list(check));
+    // names that are not UTF-8 get a replacement character: no reason to lose the results of a run
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  }
+
+  void Summary::write(const std::string &file) const
+  {
+    write_file(file, to_json());
+  }
+} // namespace retroforge

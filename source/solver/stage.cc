@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/element/mini_element.templates.h>
+#include <retroforge/solver/stage.h>
+
+namespace retroforge
+{
+  template <typename Number>
+  ContactNode<Number> Stage<Number>::contact_node(const unsigned int     p,
+                                                  const Field<Number>   &W,
+                                                  const ActiveSet       &active) const
+  {
+    const ContactPair     &pair = contact.pairs[p];
+    const DieState<Number> &die = physics.dies[pair.die];
+    ContactNode<Number>    node;
+    node.u      = W.V[pair.node] - die.velocity;
+    node.n      = contact.projections[p].n;
+    node.delta  = contact.projections[p].delta;
+    node.tau    = contact.tau;
+    node.S      = areas.S[p];
+    node.Sf     = areas.Sf[p];
+    node.alpha  = die.friction;
+    node.active = active.empty() ? value_of(approach_excess(node)) > 0. : active[p] != 0;
+    return node;
+  }
+
+  template <typename Number>
+  ActiveSet Stage<Number>::decide_active(const Field<Number> &W) const
+  {
+    ActiveSet active(contact.pairs.size());
+    for (unsigned int p = 0; p < active.size(); ++p)
+      active[p] = contact_node(p, W, {}).active;
+    return active;
+  }
+
+  template <typename Number>
+  Field<Number> Stage<Number>::residual(const Field<Number> &W, const ActiveSet &active) const
+  {
+    const Partition &partition = scene.partition;
+    Field<Number>    r(scene.mesh);
+    for (const CellIndex c : partition.visited_cells)
+      {
+        const CellValues<Number> cell =
+          cell_residual(cell_geometry(positions_of_cell(scene.mesh, X, c)), W.on_cell(scene.mesh, c), physics.law);
+        for (unsigned int a = 0; a < 4; ++a)
+          {
+            r.V[scene.mesh.cells[c][a]] += cell.V[a];
+            r.P[scene.mesh.cells[c][a]] += cell.P[a];
+          }
+        r.beta[c] = cell.beta;
+      }
+    for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+      if (partition.owns(contact.pairs[p].node))
+        r.V[contact.pairs[p].node] += contact_force(contact_node(p, W, active), physics.law, physics.contact);
+    return r;
+  }
+
+  template <typename Number>
+  std::pair<Number, Number> Stage<Number>::power(const Field<Number> &W, const ActiveSet &active) const
+  {
+    const Partition          &partition = scene.partition;
+    std::pair<Number, Number> power{Number(0.), Number(0.)};
+    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+      power.first +=
+        cell_dissipation(cell_geometry(positions_of_cell(scene.mesh, X, c)), W.on_cell(scene.mesh, c), physics.law);
+    for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+      if (partition.owns(contact.pairs[p].node))
+        power.second += friction_power(contact_node(p, W, active), physics.law, physics.contact);
+    return power;
+  }
+
+  template class Stage<double>;
+  template class Stage<Dual>;
+
+  std::pair<double, double> residual_scale(const Stage<double> &stage, const Field<double> &W)
+  {
+    const TetMesh      &mesh = stage.scene.mesh;
+    const Partition    &partition = stage.scene.partition;
+    std::vector<double> force(mesh.n_nodes(), 0.), flow(mesh.n_nodes(), 0.);
+    for (const CellIndex c : partition.visited_cells)
+      {
+        const auto geometry = cell_geometry(positions_of_cell(mesh, stage.X, c));
+        const auto w        = W.on_cell(mesh, c);
+        const auto r        = cell_residual(geometry, w, stage.physics.law);
+        const auto rates    = cell_strain_rates(geometry, w);
+        const double flow_c = 0.25 * geometry.volume * 0.25 * (rates[0] + rates[1] + rates[2] + rates[3]);
+        for (unsigned int a = 0; a < 4; ++a)
+          {
+            force[mesh.cells[c][a]] += r.V[a].norm();
+            flow[mesh.cells[c][a]] += flow_c;
+          }
+      }
+    double force2 = 0., flow2 = 0.;
+    for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
+      {
+        force2 += force[k] * force[k];
+        flow2 += flow[k] * flow[k];
+      }
+    return {std::sqrt(partition.sum(force2)), std::sqrt(partition.sum(flow2))};
+  }
+
+  std::vector<Vec3> die_forces(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
+  {
+    std::vector<Vec3> forces(stage.scene.dies.size());
+    for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
+      forces[stage.contact.pairs[p].die] -=
+        contact_force(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact);
+    return forces;
+  }
+
+  void recover_bubbles(const Stage<double> &stage, Field<double> &W)
+  {
+    const TetMesh   &mesh      = stage.scene.mesh;
+    const Partition &partition = stage.scene.partition;
+    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+      {
+        W.beta[c] = Vec3();
+        W.beta[c] =
+          solve_bubble(cell_geometry(positions_of_cell(mesh, stage.X, c)), W.on_cell(mesh, c), stage.physics.law);
+      }
+    if (mesh.n_cells() > 0)
+      partition.gather_cells(W.beta.data()->begin_raw(), 3);
+  }
+
+  namespace
+  {
+    void add_material(const CellSensitivity &s, PhysicsBar &bar)
+    {
+      bar.contact.K += s.K;
+      bar.contact.m += s.m;
+      bar.e0 += s.e0;
+    }
+
+    /// Where the derivatives of one contact node go.
+    void scatter(const Stage<double>  &stage,
+                 const unsigned int    p,
+                 const ContactNodeBar &node_bar,
+                 ContactAreas<double> &areas_bar,
+                 ContactSetBar        &contact_bar,
+                 PhysicsBar           &bar)
+    {
+      areas_bar.S[p] += node_bar.S;
+      areas_bar.Sf[p] += node_bar.Sf;
+      contact_bar.delta[p] += node_bar.delta;
+      contact_bar.n[p] += node_bar.n;
+      bar.contact.tau += node_bar.tau;
+      bar.contact.K += node_bar.K;
+      bar.contact.m += node_bar.m;
+      bar.contact.rho += node_bar.rho;
+      bar.contact.v0 += node_bar.v0;
+      DieState<double> &die = bar.contact.dies[stage.contact.pairs[p].die];
+      die.velocity -= node_bar.u;
+      die.friction += node_bar.alpha;
+    }
+
+    ContactAreas<double> no_areas(const Stage<double> &stage)
+    {
+      const std::size_t n = stage.contact.pairs.size();
+      return {std::vector<double>(n, 0.), std::vector<double>(n, 0.)};
+    }
+  } // namespace
+
+  void reverse_residual(const Stage<double> &stage,
+                        const Field<double> &W,
+                        const ActiveSet     &active,
+                        const Field<double> &lambda,
+                        NodalVectors<double> &X_bar,
+                        ContactSetBar        &contact_bar,
+                        PhysicsBar           &physics_bar)
+  {
+    const TetMesh   &mesh      = stage.scene.mesh;
+    const Partition &partition = stage.scene.partition;
+    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+      {
+        const CellSensitivity s = reverse_cell_residual(cell_geometry(positions_of_cell(mesh, stage.X, c)),
+                                                        W.on_cell(mesh, c),
+                                                        lambda.on_cell(mesh, c),
+                                                        stage.physics.law);
+        for (unsigned int a = 0; a < 4; ++a)
+          X_bar[mesh.cells[c][a]] += s.X[a];
+        add_material(s, physics_bar);
+      }
+    ContactAreas<double> areas_bar = no_areas(stage);
+    for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
+      if (const NodeIndex k = stage.contact.pairs[p].node; partition.owns(k))
+        scatter(stage,
+                p,
+                reverse_contact_force(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, lambda.V[k]),
+                areas_bar,
+                contact_bar,
+                physics_bar);
+    reverse_contact_areas(mesh, stage.scene.topology, stage.contact, stage.X, areas_bar, X_bar, contact_bar);
+  }
+
+  void reverse_power(const Stage<double>  &stage,
+                     const Field<double>  &W,
+                     const ActiveSet      &active,
+                     const double          weight,
+                     Field<double>        &W_bar,
+                     NodalVectors<double> &X_bar,
+                     ContactSetBar        &contact_bar,
+                     PhysicsBar           &physics_bar)
+  {
+    const TetMesh   &mesh      = stage.scene.mesh;
+    const Partition &partition = stage.scene.partition;
+    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+      {
+        CellValues<double>    w_bar = {};
+        const CellSensitivity s     = reverse_cell_dissipation(cell_geometry(positions_of_cell(mesh, stage.X, c)),
+                                                           W.on_cell(mesh, c),
+                                                           stage.physics.law,
+                                                           weight,
+                                                           w_bar);
+        for (unsigned int a = 0; a < 4; ++a)
+          {
+            X_bar[mesh.cells[c][a]] += s.X[a];
+            W_bar.V[mesh.cells[c][a]] += w_bar.V[a];
+          }
+        W_bar.beta[c] += w_bar.beta;
+        add_material(s, physics_bar);
+      }
+    ContactAreas<double> areas_bar = no_areas(stage);
+    for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
+      if (const NodeIndex k = stage.contact.pairs[p].node; partition.owns(k))
+        {
+          const ContactNodeBar node_bar =
+            reverse_friction_power(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, weight);
+          W_bar.V[k] += node_bar.u;
+          scatter(stage, p, node_bar, areas_bar, contact_bar, physics_bar);
+        }
+    reverse_contact_areas(mesh, stage.scene.topology, stage.contact, stage.X, areas_bar, X_bar, contact_bar);
+  }
+} // namespace retroforge

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""A run directory made up by formulas: a cube barrelled to half its height, with every file a run can leave."""
+import base64
+import itertools
+import json
+import pathlib
+import struct
+import sys
+import zlib
+
+import numpy as np
+
+SIDE = 50.0
+BLOCK = 1000  # bytes compressed at a time: small, so that arrays have several
+KUHN = [np.cumsum(np.vstack([np.zeros(3), np.eye(3)[list(order)]]), axis=0).astype(int)
+        for order in itertools.permutations(range(3))]
+
+
+def cube(n):
+    """Positively oriented tetrahedra of n^3 boxes, six in each."""
+    grid = np.arange((n + 1)**3).reshape(n + 1, n + 1, n + 1)
+    points = np.stack(np.meshgrid(*[np.linspace(0, SIDE, n + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    cells = np.array([[grid[tuple(corner + box)] for corner in tet]
+                      for box in itertools.product(range(n), repeat=3) for tet in KUHN])
+    a, b, c, d = (points[cells[:, i]] for i in range(4))
+    turned = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) < 0
+    cells[turned] = cells[turned][:, [0, 2, 1, 3]]
+    return points, cells
+
+
+def barrelled(points, reduction):
+    z = points[:, 2] / SIDE
+    bulge = np.sqrt(1 / (1 - reduction)) * (0.93 + 0.42 * reduction * z * (1 - z))
+    middle = np.array([SIDE / 2, SIDE / 2])
+    return np.column_stack([middle + (points[:, :2] - middle) * bulge[:, None], points[:, 2] * (1 - reduction)])
+
+
+def array(name, values, encoding):
+    values = np.ascontiguousarray(values)
+    kind = {"f8": "Float64", "i8": "Int64", "u1": "UInt8"}[values.dtype.str[1:]]
+    components = values.shape[1] if values.ndim == 2 else 1
+    raw = values.tobytes()
+    if encoding == "ascii":
+        text = " ".join(repr(value) for value in values.reshape(-1).tolist())
+    elif encoding == "zlib":
+        blocks = [zlib.compress(raw[begin:begin + BLOCK]) for begin in range(0, len(raw), BLOCK)]
+        header = struct.pack(f"<{3 + len(blocks)}I", len(blocks), BLOCK, len(raw) % BLOCK, *map(len, blocks))
+        text = base64.b64encode(header).decode() + base64.b64encode(b"".join(blocks)).decode()
+    else:
+        text = base64.b64encode(struct.pack("<I", len(raw)) + raw).decode()
+    return (f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" '
+            f'format="{"ascii" if encoding == "ascii" else "binary"}">{text}</DataArray>\n')
+
+
+def write_vtu(path, points, cells, point_data, cell_data, encoding):
+    def block(tag, arrays):
+        return f"<{tag}>" + "".join(array(name, values, encoding) for name, values in arrays.items()) + f"</{tag}>\n"
+    compressor = ' compressor="vtkZLibDataCompressor"' if encoding == "zlib" else ""
+    n = len(cells)
+    path.write_text(
+        f'<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian"{compressor}>'
+        f'<UnstructuredGrid><Piece NumberOfPoints="{len(points)}" NumberOfCells="{n}">\n'
+        + block("Points", {"points": points})
+        + block("Cells", {"connectivity": cells.astype("i8").reshape(-1), "offsets": 4 * np.arange(1, n + 1),
+                          "types": np.full(n, 10, "u1")})
+        + block("PointData", point_data) + block("CellData", cell_data)
+        + "</Piece></UnstructuredGrid></VTKFile>\n", encoding="utf-8")
+
+
+def write_fields(directory, n):
+    points, cells = cube(n)
+    for index, (reduction, encoding) in enumerate(((0.0, "ascii"), (0.25, "binary"), (0.5, "zlib"))):
+        X = barrelled(points, reduction)
+        on_die = (points[:, 2] == 0) | (points[:, 2] == SIDE)
+        off_axis = np.linalg.norm(points[:, :2] - SIDE / 2, axis=1) / SIDE
+        pressure = np.where(on_die, 90 * (1.2 - off_axis), 0.0)
+        velocity = np.column_stack([X[:, 0] - SIDE / 2, X[:, 1] - SIDE / 2, -X[:, 2]])
+        centre = points[cells].mean(axis=1)
+        rate = 1 + 3 * np.exp(-((centre - SIDE / 2)**2).sum(axis=1) / 300)
+        write_vtu(directory / f"fields_{index:06}.vtu", X, cells,
+                  {"velocity": velocity, "pressure": pressure / 2, "contact_pressure": pressure,
+                   "contact_state": on_die.astype("f8")}, {"strain_rate": rate}, encoding)
+    entries = "".join(f'<DataSet timestep="{t}" file="fields_{i:06}.vtu"/>' for i, t in enumerate((0.0, 0.1, 0.2)))
+    (directory / "fields.pvd").write_text(f'<VTKFile type="Collection"><Collection>{entries}</Collection></VTKFile>')
+    gradient = (points - SIDE / 2) * (1 - 2 * np.abs(points[:, 2:] / SIDE - 0.5)) * 40.0 / n**2
+    gradient[:, 2] = (points[:, 2] / SIDE - 0.5) * 900.0 / n**2
+    write_vtu(directory / "sensitivity.vtu", points, cells, {"denergy_dX0": gradient}, {}, "zlib")
+
+
+def write_history(directory, increments):
+    stroke = SIDE / 2 * np.arange(1, increments + 1) / increments
+    force = 8e4 / (1 - stroke / SIDE) * (1 - np.exp(-stroke))
+    energy = np.cumsum(force) * stroke[0]
+    lines = ["increment,time,stroke,force,energy,volume,min_quality,newton,krylov"]
+    for i, (s, f, e) in enumerate(zip(stroke, force, energy)):
+        lines.append(f"{i},{s / 100},{s},{f},{e},{SIDE**3 * (1 - 3e-5 * s / SIDE)},{0.6 - 0.4 * s / SIDE},"
+                     f"{8 if i == 0 else 3},{90 if i == 0 else 34}")
+    (directory / "history.csv").write_text("\n".join(lines) + "\n")
+    return energy[-1]
+
+
+def check_entry(parameter, adjoint, kink):
+    steps = []
+    for h in 10.0**-np.arange(2, 10):
+        noise = 1e-15 / h * (1 + np.cos(1e3 * np.log(h)))
+        steps.append({"step": h, "replayed_central": adjoint * (1 + h**2 + noise), "replayed_forward":
+                      adjoint * (1 + 0.6 * h + noise), "replayed_backward": adjoint * (1 - 0.6 * h + noise),
+                      "free_central": adjoint * (1 + h**2 + kink + noise)})
+    return {"objective": "energy", "parameter": parameter, "adjoint": adjoint, "tangent": adjoint * (1 + 1e-13),
+            "steps": steps, "taylor_orders": [1.98, 1.99, 2.0], "verdict": "passed"}
+
+
+def write(directory, n=8, increments=20):
+    directory = pathlib.Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    write_fields(directory, n)
+    energy = write_history(directory, increments)
+    parameters = [("material/K", 1.7, "MPa s^m", 1.0), ("material/m", 0.14, "1", 0.31), ("friction/alpha", 0.4, "1", 0.12),
+                  ("press/velocity", 100.0, "mm/s", 0.139), ("billet/stretch", 1.0, "1", -0.4),
+                  ("dies/offset", 0.0, "mm", None)]
+    points, cells = cube(n)
+    summary = {
+        "schema": 1, "command": "check", "version": "0.1.0", "commit": "0000000", "ranks": 1, "blas": "OpenBLAS",
+        "mesh": {"nodes": len(points), "cells": len(cells)},
+        "objectives": [{"name": "energy", "value": energy, "unit": "mJ",
+                        "parts": {"deformation": 0.88 * energy, "friction": 0.12 * energy}}],
+        "parameters": [{"name": name, "value": value, "unit": unit, "gradient":
+                        {"energy": relative * energy / value if relative else 321.0}}
+                       for name, value, unit, relative in parameters],
+        "increments": increments, "cuts": 1, "newton_iterations": 65, "krylov_iterations": 736,
+        "linear_solves_forward": 65, "linear_solves_adjoint": 40, "volume_initial": SIDE**3,
+        "volume_final": SIDE**3 * (1 - 1.5e-5), "record_bytes": 1234567,
+        "wall_seconds": {"assembly": 1.2, "preconditioner": 2.3, "krylov": 3.1, "contact": 0.2, "record": 0.05,
+                         "adjoint": 2.2, "total": 9.4},
+        "check": [check_entry("material/K", 1.0 * energy / 1.7, 0.0), check_entry("friction/alpha", 0.3 * energy, 2e-6),
+                  check_entry("press/velocity", 0.00139 * energy, 1e-4), check_entry("billet/stretch", -0.4 * energy, 3e-3)]}
+    (directory / "summary.json").write_text(json.dumps(summary, indent=1))
+
+
+if __name__ == "__main__":
+    write(sys.argv[1])

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""The include graph: what points backwards passes, what points forwards is named."""
+import unittest
+
+from scripts import ScratchTest, call
+
+
+class CheckIncludes(ScratchTest):
+    def violations(self, path, line):
+        self.write(path, f"#include <vector>\n{line}\n")
+        result = call("check_includes", "--root", self.root)
+        return result.returncode, result.stdout
+
+    def test_allowed(self):
+        self.write("source/main.cc", "#include <retroforge/simulation.h>\n")
+        self.write("include/retroforge/simulation.h", "#include <retroforge/output/vtu.h>\n")
+        status, said = self.violations("source/contact/gap.cc", "#include <retroforge/contact/gap.h>\n"
+                                       "#include <retroforge/geometry/die.h>\n#include <retroforge/core/types.h>")
+        self.assertEqual(status, 0, said)
+
+    def test_forwards(self):
+        status, said = self.violations("include/retroforge/geometry/die.h", "  #  include <retroforge/solver/newton.h>")
+        self.assertEqual(status, 1)
+        self.assertIn("include/retroforge/geometry/die.h:2: <retroforge/solver/newton.h>: geometry may not include solver",
+                      said)
+
+    def test_top_level_is_last(self):
+        status, said = self.violations("source/output/vtu.cc", "#include <retroforge/simulation.h>")
+        self.assertEqual(status, 1)
+        self.assertIn("output may not include the top level", said)
+
+    def test_unknown_module(self):
+        self.assertIn("utilities/ is not a module", self.violations("source/utilities/a.cc", "")[1])
+
+    def test_quotes(self):
+        self.assertIn("write <retroforge/module/file.h>", self.violations("source/core/a.cc", '#include "../a.h"')[1])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+// Proves: each row of the history is in the file when add() returns and reads back to the same bits, numbers
+// that are not finite included; a run that goes on keeps what came before, and a row cut short by a kill is
+// dropped.
+#include <retroforge/core/error.h>
+#include <retroforge/output/history.h>
+#include <retroforge/output/safe_file.h>
+
+#include <cmath>
+#include <iostream>
+#include <limits>
+
+using namespace retroforge;
+
+bool equal(const HistoryRow &a, const HistoryRow &b)
+{
+  return a.increment == b.increment && a.time == b.time && a.stroke == b.stroke && a.force == b.force &&
+         a.energy == b.energy && a.volume == b.volume && a.min_quality == b.min_quality &&
+         a.newton == b.newton && a.krylov == b.krylov;
+}
+
+int main()
+{
+  const HistoryRow first{1, 0.1, 1. / 3., 1e6 / 7., 2.5, 1000., 0.3, 7, 120};
+  const HistoryRow second{
+    2, 0.2, 2. / 3., 1e-300, -0., std::numeric_limits<double>::max(), 0.1 + 0.2, 3, 4000000000u};
+  {
+    History history("history.csv");
+    std::cout << read_file("history.csv");
+    history.add(first);
+    std::cout << "rows before the file is closed: " << History::read("history.csv").size() << '\n';
+    history.add(second);
+    history.add({3, std::nan(""), std::numeric_limits<double>::infinity(), 0, 0, 0, 0, 0, 0});
+  }
+  const auto rows = History::read("history.csv");
+  std::cout << "same bits: " << equal(rows.at(0), first) << equal(rows.at(1), second)
+            << ", not finite: " << std::isnan(rows.at(2).time) << std::isinf(rows.at(2).stroke) << '\n';
+
+  write_file("history.csv", read_file("history.csv") + "4,0.4,1");
+  {
+    History history = History::continue_after("history.csv", 2);
+    history.add({3, 0.3, 1., 5., 4., 999., 0.2, 3, 80});
+  }
+  for (const HistoryRow &row : History::read("history.csv"))
+    std::cout << row.increment << ' ' << row.stroke << ' ' << row.krylov << '\n';
+
+  for (const std::string &contents : {std::string("a,b\n1,2\n"), read_file("history.csv") + "4,x,1\n"})
+    try
+    {
+      write_file("broken.csv", contents);
+      History::read("broken.csv");
+    }
+    catch (const Error &error)
+    {
+      std::cout << error.what() << '\n';
+    }
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+// Proves: the summary has the documented keys in the documented order, null for what is unknown or not
+// finite, and no empty lists; numbers read back to the same bits.
+#include <retroforge/output/safe_file.h>
+#include <retroforge/output/summary.h>
+
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+
+using namespace retroforge;
+
+Summary filled()
+{
+  Summary s;
+  s.command               = "check";
+  s.version               = "0.1.0";
+  s.commit                = "";
+  s.blas                  = "reference";
+  s.ranks                 = 2;
+  s.n_nodes               = 1331;
+  s.n_cells               = 6000;
+  s.objectives            = {{"energy", 1.5, "mJ", {{"deformation", 1.25}, {"friction", 0.25}}},
+                             {"volume", 8., "mm^3", {}}};
+  s.parameters            = {{"material/K", 1., "MPa s^m", {{"energy", 1.5}, {"volume", Summary::unknown}}}};
+  s.increments            = 20;
+  s.cuts                  = 0;
+  s.newton_iterations     = 71;
+  s.krylov_iterations     = 900;
+  s.linear_solves_forward = 71;
+  s.linear_solves_adjoint = 40;
+  s.volume_initial        = 8.;
+  s.volume_final          = 7.5;
+  s.wall_seconds          = {{"assembly", 0.5}, {"total", 2.}};
+  s.record_bytes          = 5000000000;
+  s.check                 = {
+                    {"energy", "material/K", 1.5, 1.5, {{1e-3, 1.5, 1.5, 1.5, Summary::unknown}}, {2., 1. / 0.}, "passed"}};
+  return s;
+}
+
+int main()
+{
+  std::cout << "-- filled\n" << filled().to_json() << "-- empty\n" << Summary().to_json();
+
+  Summary s             = filled();
+  s.volume_final        = 0.1 + 0.2;
+  s.objectives[0].value = 1. / 3.;
+  s.objectives[0].name  = "\xff\"";
+  s.write("summary.json");
+  const auto json = nlohmann::json::parse(read_file("summary.json"));
+  std::cout << "-- read back: same bits " << (json["volume_final"] == 0.1 + 0.2)
+            << (json["objectives"][0]["value"] == 1. / 3.) << '\n';
+}
