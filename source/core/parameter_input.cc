@@ -1,235 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
-#include <retroforge/core/nearest_name.h>
+#include <retroforge/core/known_parameters.h>
 #include <retroforge/core/parameter_input.h>
 
-#include <deal.II/base/patterns.h>
-#include <deal.II/base/utilities.h>
-
-#include <nlohmann/json.hpp>
-
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <ostream>
 #include <set>
 #include <sstream>
-#include <utility>
 
 namespace retroforge
 {
   namespace
   {
     using Names = std::vector<std::string>;
-
-    std::string path_of(const Names &sections, const std::string &name = "")
-    {
-      std::string path;
-      for (const std::string &section : sections)
-        path += section + "/";
-      if (name.empty() && !path.empty())
-        path.pop_back();
-      return path + name;
-    }
-
-    // --- what is declared
-    // -------------------------------------------------------------------------------------
-
-    /// The bounds in a description that reads `... LOWER...UPPER (inclusive)]`; empty where there is none.
-    /// deal.II's patterns keep them to themselves.
-    std::pair<std::string, std::string> bounds(const std::string &description)
-    {
-      static const std::set<std::string> limits = {
-        "-MAX_DOUBLE", "MAX_DOUBLE", "-2147483648", "2147483647", "4294967295"};
-
-      const std::size_t dots = description.rfind("...");
-      if (dots == std::string::npos)
-        return {};
-      const std::size_t begin = description.rfind(' ', dots) + 1, end = description.find(' ', dots);
-      const auto unless_limit = [](const std::string &text) { return limits.count(text) > 0 ? "" : text; };
-      return {unless_limit(description.substr(begin, dots - begin)),
-              unless_limit(description.substr(dots + 3, end - dots - 3))};
-    }
-
-    std::string range_in_plain_words(const std::string &noun, const std::string &description)
-    {
-      const auto [lower, upper] = bounds(description);
-      if (!lower.empty() && !upper.empty())
-        return noun + " from " + lower + " to " + upper;
-      if (!lower.empty())
-        return noun + " >= " + lower;
-      if (!upper.empty())
-        return noun + " <= " + upper;
-      return noun;
-    }
-
-    /// deal.II describes a selection as `[Selection a|b ]`.
-    std::string selection_in_plain_words(const std::string &description)
-    {
-      const std::size_t begin = description.find(' '), end = description.rfind(']');
-      return "one of " +
-             join(dealii::Utilities::split_string_list(description.substr(begin, end - begin), '|'));
-    }
-
-    std::string in_plain_words(const dealii::Patterns::PatternBase &pattern);
-
-    std::string list_in_plain_words(const dealii::Patterns::List &list)
-    {
-      const auto [least, most] = bounds(list.description());
-      const std::string number = least == most ? least + " " : least == "0" ? "" : "at least " + least + " ";
-      return "a list of " + number + "items separated by '" + list.get_separator() + "', each " +
-             in_plain_words(list.get_base_pattern());
-    }
-
-    std::string in_plain_words(const dealii::Patterns::PatternBase &pattern)
-    {
-      namespace Patterns = dealii::Patterns;
-      if (dynamic_cast<const Patterns::Double *>(&pattern) != nullptr)
-        return range_in_plain_words("a number", pattern.description());
-      if (dynamic_cast<const Patterns::Integer *>(&pattern) != nullptr)
-        return range_in_plain_words("an integer", pattern.description());
-      if (dynamic_cast<const Patterns::Bool *>(&pattern) != nullptr)
-        return "true or false";
-      if (dynamic_cast<const Patterns::Selection *>(&pattern) != nullptr)
-        return selection_in_plain_words(pattern.description());
-      if (const auto *list = dynamic_cast<const Patterns::List *>(&pattern))
-        return list_in_plain_words(*list);
-      if (const auto *map = dynamic_cast<const Patterns::Map *>(&pattern))
-        return "a list of key:value pairs separated by '" + map->get_separator() + "', each key " +
-               in_plain_words(map->get_key_pattern()) + ", each value " +
-               in_plain_words(map->get_value_pattern());
-      if (dynamic_cast<const Patterns::Anything *>(&pattern) != nullptr)
-        return "any text";
-      if (dynamic_cast<const Patterns::FileName *>(&pattern) != nullptr)
-        return "the name of a file";
-      if (dynamic_cast<const Patterns::DirectoryName *>(&pattern) != nullptr)
-        return "the name of a folder";
-      return pattern.description(Patterns::PatternBase::Text);
-    }
-
-    ParameterEntry
-    to_entry(const Names &sections, const std::string &name, const nlohmann::ordered_json &node)
-    {
-      ParameterEntry entry{sections, name, "", "", "", "", ""};
-      if (node.contains("alias") && node["alias"].is_string())
-      {
-        entry.alias_of = node["alias"];
-        return entry;
-      }
-      entry.value         = node["value"];
-      entry.default_value = node["default_value"];
-      entry.documentation = node["documentation"];
-      entry.allowed       = in_plain_words(*dealii::Patterns::pattern_factory(node["pattern_description"]));
-      return entry;
-    }
-
-    /// A node with a value or an alias is an entry, every other one a section; these two may themselves be
-    /// names.
-    void collect(const nlohmann::ordered_json &tree, Names &sections, std::vector<ParameterEntry> &entries)
-    {
-      for (const auto &[name, node] : tree.items())
-        if ((node.contains("value") && node["value"].is_string()) ||
-            (node.contains("alias") && node["alias"].is_string()))
-          entries.push_back(to_entry(sections, name, node));
-        else if (node.is_object())
-        {
-          sections.push_back(name);
-          collect(node, sections, entries);
-          sections.pop_back();
-        }
-    }
-
-    /// The declared entries and sections by their full path.
-    class KnownParameters
-    {
-    public:
-      explicit KnownParameters(const dealii::ParameterHandler &prm)
-      {
-        for (ParameterEntry &entry : declared_parameters(prm))
-        {
-          paths_.push_back(entry.path());
-          for (Names sections = entry.sections; !sections.empty(); sections.pop_back())
-            if (const std::string path = path_of(sections);
-                std::find(sections_.begin(), sections_.end(), path) == sections_.end())
-              sections_.push_back(path);
-          entries_.emplace(entry.path(), std::move(entry));
-        }
-      }
-
-      bool has_section(const std::string &path) const
-      {
-        return std::find(sections_.begin(), sections_.end(), path) != sections_.end();
-      }
-
-      /// The entry of this path; an old name leads to the present one.
-      /// @throws Error if there is none
-      const ParameterEntry &entry(const std::string &path, const std::string &where) const
-      {
-        const auto found = entries_.find(path);
-        if (found == entries_.end())
-          throw_unknown("parameter", path, where, paths_);
-        const ParameterEntry &entry = found->second;
-        return entry.alias_of.empty() ? entry : entries_.at(path_of(entry.sections, entry.alias_of));
-      }
-
-      void check_section(const std::string &path, const std::string &where) const
-      {
-        if (!has_section(path))
-          throw_unknown("subsection", path, where, sections_);
-      }
-
-    private:
-      Names                                 paths_, sections_;
-      std::map<std::string, ParameterEntry> entries_;
-
-      static std::string last_part(const std::string &path) { return path.substr(path.rfind('/') + 1); }
-      static std::string all_but_last_part(const std::string &path)
-      {
-        return path.substr(0, path.rfind('/') == std::string::npos ? 0 : path.rfind('/'));
-      }
-
-      /// Names directly inside the section that `path` is said to be in.
-      static std::string siblings(const std::string &path, const Names &known)
-      {
-        Names names;
-        for (const std::string &candidate : known)
-          if (all_but_last_part(candidate) == all_but_last_part(path))
-            names.push_back(last_part(candidate));
-        return join(names);
-      }
-
-      static std::string suggestion(const std::string &path, const Names &known)
-      {
-        const std::string name  = last_part(path);
-        std::string       meant = nearest_name(path, known, tolerated_edits(name));
-        for (const std::string &candidate : known)
-          if (meant.empty() && edit_distance(name, last_part(candidate)) == 0) // right name, wrong section
-            meant = candidate;
-        return meant;
-      }
-
-      [[noreturn]] static void throw_unknown(const std::string &kind,
-                                             const std::string &path,
-                                             const std::string &where,
-                                             const Names       &known)
-      {
-        const std::string section = all_but_last_part(path), names = siblings(path, known),
-                          meant = suggestion(path, known);
-        const std::string place = section.empty() ? "at the top level" : "in '" + section + "'";
-        throw Error(where,
-                    "unknown " + kind + " '" + path + "'",
-                    names.empty() ? "there is no " + kind + " " + place : "known " + place + ": " + names,
-                    meant.empty() ? "retroforge --print-parameters lists all"
-                                  : "did you mean '" + meant + "'?");
-      }
-    };
-
-    // --- what the file says
-    // -----------------------------------------------------------------------------------
 
     struct Assignment
     {
@@ -268,7 +55,7 @@ namespace retroforge
           interpret(file, number, line, outer_depth);
         if (open_sections_.size() > outer_depth)
           throw Error(open_sections_.back().where,
-                      "subsection '" + path_of(sections()) + "' is not closed",
+                      "subsection '" + parameter_path(sections()) + "' is not closed",
                       "each 'subsection' needs its 'end'",
                       "add 'end' after the last parameter of the subsection");
         std::swap(line_of, line_of_);
@@ -367,7 +154,7 @@ namespace retroforge
                       "'set " + text + "' is not an assignment",
                       "it must read 'set NAME = VALUE'",
                       "write name, '=' and value on one line");
-        const std::string path     = known_.entry(path_of(sections(), name), where).path();
+        const std::string path     = known_.entry(parameter_path(sections(), name), where).path();
         const auto [first, is_new] = line_of_.emplace(path, number);
         if (!is_new)
           throw Error(where,
@@ -382,7 +169,7 @@ namespace retroforge
         if (name.empty())
           throw Error(where, "'subsection' has no name", "it must read 'subsection NAME'", "add the name");
         open_sections_.push_back({name, where});
-        known_.check_section(path_of(sections()), where);
+        known_.check_section(parameter_path(sections()), where);
       }
 
       void interpret_end(const std::string &where, const std::size_t outer_depth)
@@ -410,9 +197,6 @@ namespace retroforge
         --include_depth_;
       }
     };
-
-    // --- putting both together
-    // --------------------------------------------------------------------------------
 
     void assign(dealii::ParameterHandler &prm, const KnownParameters &known, const Assignment &assignment)
     {
@@ -467,40 +251,7 @@ namespace retroforge
                   "set it (meaning: " + entry.documentation + ")");
     }
 
-    /// Comment lines of at most 100 characters.
-    void print_comment(std::ostream &out, const std::string &indent, const std::string &text)
-    {
-      for (const std::string &line : dealii::Utilities::break_text_into_lines(text, 98 - indent.size()))
-        out << indent << "# " << line << '\n';
-    }
-
-    void print_entry(std::ostream &out, const std::string &indent, const ParameterEntry &entry)
-    {
-      print_comment(out, indent, entry.documentation);
-      print_comment(out,
-                    indent,
-                    "Allowed: " + entry.allowed +
-                      ". Default: " + (entry.default_value.empty() ? "(empty)" : entry.default_value));
-      out << indent << "set " << entry.name << (entry.value.empty() ? " =" : " = ") << entry.value << '\n';
-    }
   } // namespace
-
-  std::string ParameterEntry::path() const
-  {
-    return path_of(sections, name);
-  }
-
-  std::vector<ParameterEntry> declared_parameters(const dealii::ParameterHandler &prm)
-  {
-    std::ostringstream text;
-    prm.print_parameters(text,
-                         static_cast<dealii::ParameterHandler::OutputStyle>(
-                           dealii::ParameterHandler::JSON | dealii::ParameterHandler::KeepDeclarationOrder));
-    std::vector<ParameterEntry> entries;
-    Names                       sections;
-    collect(nlohmann::ordered_json::parse(text.str()), sections, entries);
-    return entries;
-  }
 
   void read_parameters(dealii::ParameterHandler                               &prm,
                        const std::string                                      &file,
@@ -521,30 +272,4 @@ namespace retroforge
     check_required(prm, known, file);
   }
 
-  void print_parameters(const dealii::ParameterHandler &prm, std::ostream &out)
-  {
-    Names       open;
-    const char *gap = "";
-    for (const ParameterEntry &entry : declared_parameters(prm))
-    {
-      if (!entry.alias_of.empty())
-        continue;
-      const auto common =
-        std::mismatch(open.begin(), open.end(), entry.sections.begin(), entry.sections.end());
-      for (auto depth = open.end() - common.first; depth > 0; --depth)
-      {
-        open.pop_back();
-        out << std::string(2 * open.size(), ' ') << "end\n";
-      }
-      out << '\n';
-      for (auto section = common.second; section != entry.sections.end(); ++section)
-      {
-        out << std::string(2 * open.size(), ' ') << "subsection " << *section << '\n';
-        open.push_back(*section);
-      }
-      print_entry(out, std::string(2 * open.size(), ' '), entry);
-    }
-    for (; !open.empty(); open.pop_back())
-      out << std::string(2 * (open.size() - 1), ' ') << "end\n";
-  }
 } // namespace retroforge

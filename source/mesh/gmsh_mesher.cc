@@ -324,7 +324,8 @@ namespace retroforge
       return patch_of;
     }
 
-    // Whether each patch is a symmetry plane, from the list of names or numbers.
+    // Whether each patch is a symmetry plane, from the list of names or numbers. The patch of the rest
+    // has no number and is none.
     std::vector<bool> find_symmetry(const std::vector<PhysicalSurface> &surfaces,
                                     const std::vector<std::string>     &names,
                                     const std::string                  &where)
@@ -332,11 +333,12 @@ namespace retroforge
       std::vector<bool> is_symmetry(surfaces.size(), false);
       std::string       known;
       for (const auto &surface : surfaces)
-        known += (known.empty() ? "" : ", ") + surface.name;
+        if (!surface.id.empty())
+          known += (known.empty() ? "" : ", ") + surface.name;
       for (const auto &name : names)
       {
         const auto surface = std::find_if(surfaces.begin(), surfaces.end(), [&](const PhysicalSurface &s) {
-          return s.name == name || s.id == name;
+          return !s.id.empty() && (s.name == name || s.id == name);
         });
         if (surface == surfaces.end())
           throw Error("Billet/symmetry patches",

@@ -108,9 +108,9 @@ namespace retroforge
       const auto unused = std::find(used.begin(), used.end(), false);
       if (unused != used.end())
         throw Error(where,
-                    "node " + std::to_string(unused - used.begin()) + " and " +
-                      std::to_string(std::count(used.begin(), used.end(), false) - 1) +
-                      " others belong to no tetrahedron",
+                    std::to_string(std::count(used.begin(), used.end(), false)) +
+                      " nodes belong to no tetrahedron, the first is node " +
+                      std::to_string(unused - used.begin()),
                     "every node must be a corner of a tetrahedron",
                     "remove the nodes that are not used");
     }

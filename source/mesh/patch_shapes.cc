@@ -196,6 +196,11 @@ namespace retroforge
         for (const auto &face : mesh.faces)
           if (face.patch == p)
             nodes.insert(face.nodes.begin(), face.nodes.end());
+        if (nodes.empty())
+          throw Error(where,
+                      "the symmetry patch `" + mesh.patches[p].name + "' has no face on the boundary",
+                      "a symmetry patch must bound the mesh",
+                      "choose a physical surface on the outside");
         const Plane  plane = fit_plane(mesh, p, nodes);
         const double far   = farthest(mesh, nodes, plane);
         if (!(plane.normal.norm() > 0) || far > 1e-6 * size)

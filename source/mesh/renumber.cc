@@ -13,15 +13,61 @@ namespace retroforge
 {
   namespace
   {
+    using Graph = dealii::DynamicSparsityPattern;
+
+    struct Farthest
+    {
+      NodeIndex    node;  // the one with the fewest neighbours among the farthest
+      unsigned int steps; // from the start
+    };
+
+    Farthest farthest_from(const NodeIndex start, const Graph &graph)
+    {
+      std::vector<bool> met(graph.n_rows(), false);
+      met[start]                   = true;
+      Farthest               far   = {start, 0};
+      std::vector<NodeIndex> front = {start}, next;
+      for (unsigned int steps = 0; !front.empty(); ++steps)
+      {
+        const auto fewest = [&](const NodeIndex a, const NodeIndex b) {
+          return graph.row_length(a) < graph.row_length(b);
+        };
+        far = {*std::min_element(front.begin(), front.end(), fewest), steps};
+        next.clear();
+        for (const NodeIndex node : front)
+          for (auto neighbour = graph.begin(node); neighbour != graph.end(node); ++neighbour)
+            if (!met[neighbour->column()])
+            {
+              met[neighbour->column()] = true;
+              next.push_back(neighbour->column());
+            }
+        front.swap(next);
+      }
+      return far;
+    }
+
+    // A node at an end of the workpiece: layers that start there are thinnest (George and Liu 1979).
+    NodeIndex peripheral_node(const Graph &graph)
+    {
+      Farthest end = farthest_from(0, graph);
+      while (true)
+      {
+        const Farthest other = farthest_from(end.node, graph);
+        if (other.steps <= end.steps)
+          return end.node;
+        end = other;
+      }
+    }
+
     // New number of each node.
     std::vector<NodeIndex> reverse_cuthill_mckee(const TetMesh &mesh)
     {
-      dealii::DynamicSparsityPattern graph(mesh.n_nodes());
+      Graph graph(mesh.n_nodes());
       for (const auto &cell : mesh.cells)
         for (const NodeIndex node : cell)
           graph.add_entries(node, cell.begin(), cell.end());
-      std::vector<dealii::DynamicSparsityPattern::size_type> order(mesh.n_nodes());
-      dealii::SparsityTools::reorder_Cuthill_McKee(graph, order);
+      std::vector<Graph::size_type> order(mesh.n_nodes());
+      dealii::SparsityTools::reorder_Cuthill_McKee(graph, order, {peripheral_node(graph)});
       std::vector<NodeIndex> number(mesh.n_nodes());
       for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
         number[node] = mesh.n_nodes() - 1 - order[node];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+
 // check_mesh() refuses each kind of broken mesh, and names the place. The meshes are one or two tetrahedra
 // spoilt in one way; those at the top are sound and pass.
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+
 // Wrong input for a billet is refused with the parameter's path, the value, the rule and a remedy.
 
 #include <deal.II/base/mpi.h>

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-// Boxes cut by symmetry planes. Proved: the mesh has the volume of the solid and each patch the area of
-// its side, to 1e-12; nodes lie on the symmetry planes and their faces point outwards; angles are fit for
-// use. By hand: a cube of 50 mm has 125000 mm3 and sides of 2500 mm2; a quarter 31250, with sides of 1250 or
-// 625; an eighth 15625 and 625. The plane through the centre with normal (1, 1, 1) halves the cube in a
-// regular hexagon with edges 50/sqrt2: 3 sqrt3/2 1250 = 3247.595 mm2, each side of the cube keeping half its
-// area on average.
+
+// Boxes cut by symmetry planes. Proved: the mesh has the volume of the solid and each patch the area of its
+// side, to 1e-12; nodes lie on the symmetry planes and their faces point outwards; angles are fit for use.
+// By hand: a cube of 50 mm has 125000 mm3 and sides of 2500 mm2; a quarter 31250, with sides of 1250 or 625;
+// an eighth 15625 and 625. The plane through the centre with normal (1, 1, 1) halves the cube in a regular
+// hexagon with edges 50/sqrt2, of area 3 sqrt3/2 1250 = 3247.595 mm2, through the midpoints of edges: three
+// sides lose a triangle 25 x 25 / 2 and keep 7/8, the others keep the triangle.
 
 #include <deal.II/base/mpi.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+
 // Cylinders (radius 25, height 50) and their sectors. Proved: nodes of the side lie on the radius; the top
 // has the area of the polygon of its rim, 1/2 r^2 sum sin(angle between neighbours); sectors have rectangles
 // r h = 1250 mm2 as symmetry planes, with the right normals; the volume falls short of  angle/2 r^2 h  by the

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+
 // Rotation and translation of a finished mesh. Proved: connectivity and patches are those of the mesh at
 // rest; distances to the origin before the translation are kept; a quarter turn about z takes (x, y, z) to
 // (-y, x, z); the symmetry planes move along (nodes on them, faces along the normal), volume and quality

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+
 // The billet on several ranks. Proved: two meshings in one process are the same, bit for bit; all ranks hold
 // the same mesh; an error found on rank 0 (a mesh file that is not there) is thrown on all ranks with one
 // message.

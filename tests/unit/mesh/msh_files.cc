@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+
 // Meshes from Gmsh files, written here by hand: the unit cube in five tetrahedra, corners at 0 and 1. Proved:
 // versions 2 and 4 give the same mesh; physical surfaces become patches with the areas of the sides (1 mm2
 // each); planes of symmetry patches are fitted; a mesh that is inverted throughout is turned; each kind of
@@ -135,8 +136,10 @@ void bad_files()
   refuse("no tetrahedra", "", [](Cube &cube) { cube.tets.clear(); });
   refuse("some inverted", "", [](Cube &cube) { std::swap(cube.tets[3][0], cube.tets[3][1]); });
   refuse("flat", "", [](Cube &cube) { cube.nodes[0] = {{0.5, 0.5, 0}}; });
-  refuse(
-    "joined at an edge", "", [](Cube &cube) { cube.tets.erase(cube.tets.begin() + 2, cube.tets.end()); });
+  refuse("joined at an edge", "", [](Cube &cube) {
+    cube.triangles.clear();
+    cube.tets.resize(2);
+  });
   refuse("overlap", "", [](Cube &cube) {
     cube.nodes.push_back({{0.1, 0.1, -0.1}});
     cube.tets.push_back({{9, 2, 4, 5}});
@@ -145,6 +148,7 @@ void bad_files()
   refuse("no physical surfaces", "left", [](Cube &cube) { cube.triangles.clear(); });
   refuse("symmetry patch not planar", "left", [](Cube &cube) { cube.nodes[3][0] = -0.01; });
   refuse("symmetry patch with a corner", "left", [](Cube &cube) { cube.triangles[2][0] = 1; });
+  refuse("symmetry patch inside", "left", [](Cube &cube) { cube.triangles = {{{1, 2, 4, 5}}}; });
   refuse("triangle on two surfaces", "", [](Cube &cube) { cube.triangles.push_back({{2, 1, 4, 5}}); });
   refuse("triangle away from the cells", "", [](Cube &cube) {
     cube.nodes.push_back({{5, 5, 5}});

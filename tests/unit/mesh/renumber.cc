@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+
 // Numbering for locality. Proved: from shuffled nodes it restores a small bandwidth, and it changes names
 // only (volume, quality, areas of patches, validity); cells come sorted by their smallest node, which stands
 // first in each; the order of cells and faces in the input does not matter.

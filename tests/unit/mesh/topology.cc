@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+
 // Lists of neighbours on an eighth of a cube (three symmetry planes) and on sectors. Proved: each surface
 // face appears at its three nodes and no symmetry face does; each cell appears at its four nodes; neighbours
 // are symmetric, sorted and include the node; Euler's formula  nodes - edges + faces - cells = 1  of a ball

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/solver/linear_system.h>
+
+namespace retroforge
+{
+  struct NewtonParameters
+  {
+    double       tolerance      = 1e-8;
+    double       forcing        = 1e-2;
+    unsigned int max_iterations = 60;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+  };
+
+  struct NewtonStatistics
+  {
+    unsigned int iterations = 0;
+    unsigned int krylov     = 0;
+    double       residual   = 0.; ///< relative, at the end
+  };
+
+  /// Solves the equilibrium of a stage for W by Newton's method, with a line search on the power functional: the step
+  /// length is a root of its slope along the step, monotone because the functional is convex in V.
+  class Newton
+  {
+  public:
+    Newton(const Scene &scene, const NewtonParameters &parameters, LinearSystem &system);
+
+    /// @param W       in: initial guess; out: the solution, bubbles recovered from V and P to rounding
+    /// @param frozen  empty, or the recorded active set of a replay
+    NewtonStatistics solve(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen);
+
+    /// The velocity field of a Newtonian metal under the same dies, as a start from nothing.
+    void initial_guess(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen, NewtonStatistics &statistics);
+
+  private:
+    double relative_residual(const Stage<double> &stage, const Field<double> &W, const ActiveSet &frozen, Field<double> &r);
+    void   line_search(const Stage<double> &stage, Field<double> &W, const Field<double> &step, const ActiveSet &frozen);
+    double slope(const Field<double> &r, const Field<double> &step) const;
+
+    const Scene            &scene_;
+    const NewtonParameters &parameters_;
+    LinearSystem           &system_;
+  };
+} // namespace retroforge

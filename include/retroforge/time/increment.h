@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/record/increment_record.h>
+#include <retroforge/solver/newton.h>
+#include <retroforge/time/process.h>
+
+namespace retroforge
+{
+  enum class Scheme
+  {
+    euler,   ///< X_{i+1} = X_i + dt V(X_i)
+    midpoint ///< X_{i+1} = X_i + dt V(X_i + dt/2 V(X_i))
+  };
+
+  /// What of a scene's numerical model is neither mesh nor process.
+  struct StepModel
+  {
+    Scheme       scheme   = Scheme::midpoint;
+    double       approach = 1.; ///< approach time in increments: tau = approach * dt
+    FrictionRamp ramp;
+    double       reach             = 0.;    ///< nodes nearer than this to a die are watched [mm]
+    double       adjoint_tolerance = 1e-11; ///< of the adjoint and tangent linear systems
+  };
+
+  /// Energy spent, deformation and friction [mJ].
+  template <typename Number>
+  struct Energy
+  {
+    Number deformation = 0., friction = 0.;
+
+    Number total() const { return deformation + friction; }
+  };
+
+  /// What an increment tells besides its record.
+  struct IncrementReport
+  {
+    NewtonStatistics  newton;
+    std::vector<Vec3> forces; ///< of each die on the workpiece, last stage [N]
+  };
+
+  /// One increment of time: forward, its tangent, and its reverse.
+  class Increment
+  {
+  public:
+    Increment(const Scene            &scene,
+              const StepModel        &model,
+              const NewtonParameters &newton,
+              LinearSystem           &system,
+              Timings                &timings);
+
+    /// From X_i to X_{i+1}. @param record  in: stroke, step; with `replay`, the recorded decisions are obeyed.
+    ///        Out: pairs, solves, energies.
+    /// @param W  in: initial guess, out: the last stage's solution
+    NodalVectors<double> forward(const Process<double>      &process,
+                                 const NodalVectors<double> &X,
+                                 bool                        replay,
+                                 IncrementRecord            &record,
+                                 Field<double>              &W,
+                                 IncrementReport            &report);
+
+    /// Derivative of X_{i+1} and of the energy along (X, process), at a recorded increment.
+    NodalVectors<Dual> tangent(const Process<Dual>      &process,
+                               const NodalVectors<Dual> &X,
+                               const IncrementRecord    &record,
+                               Energy<Dual>             &energy);
+
+    /// Reverse of forward for  Phi = weights·energy + (what follows):  G is dPhi/dX_{i+1} on entry, dPhi/dX_i on exit.
+    void reverse(const Process<double>      &process,
+                 const NodalVectors<double> &X,
+                 const IncrementRecord      &record,
+                 double                      energy_weight,
+                 NodalVectors<double>       &G,
+                 ProcessBar                 &process_bar);
+
+    /// Positions of the last stage, where objectives are taken.
+    NodalVectors<double> stage_positions(const Process<double>      &process,
+                                         const NodalVectors<double> &X,
+                                         const IncrementRecord      &record) const;
+
+  private:
+    NewtonStatistics solve_stage(const Stage<double> &stage, const ActiveSet &frozen, Field<double> &W);
+    ContactSet<double> contact_set(const Physics<double>      &physics,
+                                   const NodalVectors<double> &X,
+                                   const IncrementRecord      &record,
+                                   double                      dt) const;
+    bool escaped(const Stage<double> &stage, const Field<double> &W) const;
+    Field<double> recorded_field(const Stage<double> &stage, const SolveRecord &solve) const;
+    Field<Dual> tangent_field(const Stage<Dual>          &stage,
+                              const NodalVectors<double> &X,
+                              const ContactSet<double>   &contact,
+                              const Physics<double>      &physics,
+                              const SolveRecord          &solve);
+
+    const Scene     &scene_;
+    const StepModel &model_;
+    LinearSystem    &system_;
+    Newton           newton_;
+    Timings         &timings_;
+  };
+} // namespace retroforge

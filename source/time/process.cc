@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <deal.II/base/mpi.h>
+
+#include <retroforge/time/process.h>
+
+namespace retroforge
+{
+  template <typename Number>
+  Number Process<Number>::speed() const
+  {
+    using std::sqrt;
+    const Vector3<Number> &v = dies[leading_die].velocity;
+    return sqrt(Number(v * v));
+  }
+
+  template <typename Number>
+  Physics<Number> Process<Number>::at_stroke(const double stroke) const
+  {
+    Physics<Number> physics{law, contact, dies};
+    const Number    time = stroke / speed();
+    for (auto &die : physics.dies)
+      die.displacement += die.velocity * time;
+    return physics;
+  }
+
+  template struct Process<double>;
+  template struct Process<Dual>;
+
+  void ProcessBar::add(const PhysicsBar      &bar,
+                       const Process<double> &process,
+                       const StrokeStep      &step,
+                       const double           approach)
+  {
+    K += bar.contact.K;
+    m += bar.contact.m;
+    e0 += bar.e0;
+    rho += bar.contact.rho;
+    v0 += bar.contact.v0;
+    const double speed     = process.speed();
+    double       speed_bar = -(bar.dt + approach * bar.contact.tau) * step.step / (speed * speed);
+    for (unsigned int d = 0; d < dies.size(); ++d)
+      {
+        const DieState<double> &die = bar.contact.dies[d];
+        dies[d].velocity += die.velocity + step.stroke / speed * die.displacement;
+        dies[d].displacement += die.displacement;
+        dies[d].friction += die.friction;
+        speed_bar -= die.displacement * process.dies[d].velocity * step.stroke / (speed * speed);
+      }
+    dies[process.leading_die].velocity += speed_bar / speed * process.dies[process.leading_die].velocity;
+  }
+
+  void ProcessBar::sum(MPI_Comm comm)
+  {
+    std::vector<double> all = {K, m, e0, rho, v0};
+    for (const auto &die : dies)
+      {
+        for (unsigned int i = 0; i < 3; ++i)
+          all.insert(all.end(), {die.velocity[i], die.displacement[i]});
+        all.push_back(die.friction);
+      }
+    dealii::Utilities::MPI::sum(all, comm, all);
+    auto next = all.begin();
+    for (double *x : {&K, &m, &e0, &rho, &v0})
+      *x = *next++;
+    for (auto &die : dies)
+      {
+        for (unsigned int i = 0; i < 3; ++i)
+          {
+            die.velocity[i]     = *next++;
+            die.displacement[i] = *next++;
+          }
+        die.friction = *next++;
+      }
+  }
+} // namespace retroforge
