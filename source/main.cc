@@ -1,1 +1,48 @@
-int main(){return 0;}
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/core/parameter_list.h>
+#include <retroforge/core/version.h>
+#include <retroforge/simulation.h>
+
+#include <iostream>
+
+namespace
+{
+  int answer(const retroforge::CommandLine &command)
+  {
+    if (command.help)
+      std::cout << retroforge::help_text();
+    else if (command.version)
+      std::cout << "Retroforge " << retroforge::version << ' ' << retroforge::commit << '\n';
+    else
+      {
+        dealii::ParameterHandler prm;
+        retroforge::Parameters   parameters;
+        parameters.add_parameters(prm, {"lower", "upper"});
+        retroforge::print_parameters(prm, std::cout);
+      }
+    return 0;
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  try
+    {
+      const auto command = retroforge::CommandLine::parse(argc, argv);
+      if (command.help || command.version || command.print_parameters)
+        return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0 ? answer(command) : 0;
+      return retroforge::Simulation(command, MPI_COMM_WORLD).run();
+    }
+  catch (const std::exception &problem)
+    {
+      // An error of all ranks is told once; an error of one must not leave the others waiting.
+      if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+        std::cerr << "retroforge: " << problem.what() << std::endl;
+      if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+        MPI_Abort(MPI_COMM_WORLD, 1);
+      return 1;
+    }
+}

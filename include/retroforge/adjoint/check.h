@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/adjoint/sweep.h>
+#include <retroforge/design/design.h>
+
+namespace retroforge
+{
+  struct CheckParameters
+  {
+    std::vector<double> steps        = {1e-3, 1e-4, 1e-5, 1e-6};
+    bool                free         = true;
+    double              taylor_start = 1e-2;
+    unsigned int        taylor_halvings = 4;
+    double              replayed_bar = 1e-6;
+    double              tangent_bar  = 1e-10;
+    double              taylor_bar   = 1.95;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+  };
+
+  /// The objective at parameters mu and initial positions X_0(mu) + shift.
+  struct ObjectiveOracle
+  {
+    /// Decides everything anew.
+    std::function<double(const std::vector<double> &mu, const NodalVectors<double> &shift)> free;
+    /// Obeys the recorded decisions.
+    std::function<double(const std::vector<double> &mu, const NodalVectors<double> &shift)> replayed;
+    /// The direct method, along (mu_dot, shift_dot).
+    std::function<double(const std::vector<double> &mu_dot, const NodalVectors<double> &shift_dot)> tangent;
+  };
+
+  /// Differences at one step (relative to the parameter's scale).
+  struct DifferenceRow
+  {
+    double step;
+    double replayed_central, replayed_forward, replayed_backward, free_central;
+  };
+
+  /// One derivative seen from all sides.
+  struct CheckRow
+  {
+    std::string                parameter, unit;
+    double                     adjoint, tangent;
+    std::vector<DifferenceRow> steps;
+    std::vector<double>        taylor_orders; ///< of the replayed remainder, one per halving
+    bool                       passed;
+
+    double tangent_error() const;
+    /// Smallest error of the replayed central differences, and the decades of step over which it stays below the bar.
+    double best_replayed_error() const;
+    double best_free_error() const;
+  };
+
+  /// Checks each design parameter, and one random direction of all X_0.
+  std::vector<CheckRow> check_gradient(const CheckParameters      &parameters,
+                                       const Design               &design,
+                                       const std::vector<double>  &mu,
+                                       double                      value,
+                                       const std::vector<double>  &gradient,
+                                       const NodalVectors<double> &X_0_bar,
+                                       double                      length,
+                                       const ObjectiveOracle      &oracle);
+
+  /// The table a user reads.
+  void print(const std::vector<CheckRow> &rows, std::ostream &out);
+} // namespace retroforge

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/mesh/billet.h>
+#include <retroforge/time/process.h>
+
+namespace retroforge
+{
+  /// A number the forger can change, and what it acts on.
+  struct DesignParameter
+  {
+    enum class Kind
+    {
+      consistency,    ///< material/K
+      sensitivity,    ///< material/m
+      strain_rate,    ///< material/e0
+      penalty,        ///< contact/rho
+      slip,           ///< contact/v0
+      friction,       ///< of one die, or of all that have friction
+      speed,          ///< of one die, along its velocity
+      offset,         ///< of one die, along its facing direction
+      stretch,        ///< billet/stretch: mu of x, y -> (1 + 2 mu/a)  (113)
+      radius          ///< billet/radius: x, y -> radius/nominal  (116)-(117)
+    };
+
+    std::string  name;
+    std::string  unit;
+    Kind         kind;
+    unsigned int die     = invalid_index; ///< invalid_index: all
+    double       nominal = 0.;
+    double       scale   = 1.; ///< a length or size that steps are relative to
+  };
+
+  /// The map from parameter values to the initial positions and the process, and its derivative: both are code
+  /// templated on the number type.
+  class Design
+  {
+  public:
+    /// @param names  as in `material/K`, `die upper/friction`, `billet/stretch`; unknown ones throw Error
+    Design(const std::vector<std::string>   &names,
+           const BilletParameters           &billet,
+           const std::vector<DieParameters> &dies,
+           const Process<double>            &nominal_process,
+           const NodalVectors<double>       &nominal_positions);
+
+    const std::vector<DesignParameter> &parameters() const { return parameters_; }
+    std::vector<double>                 nominal() const;
+
+    template <typename Number>
+    NodalVectors<Number> positions(const std::vector<Number> &mu) const;
+
+    template <typename Number>
+    Process<Number> process(const std::vector<Number> &mu) const;
+
+    /// dPhi/dmu from dPhi/dX_0 and the derivatives in the process: one number per parameter.
+    std::vector<double> pull_back(const std::vector<double>  &mu,
+                                  const NodalVectors<double> &X_0_bar,
+                                  const ProcessBar           &process_bar) const;
+
+    /// All names this scene offers.
+    std::vector<std::string> available() const;
+
+  private:
+    DesignParameter make(const std::string &name) const;
+
+    BilletParameters             billet_;
+    std::vector<DieParameters>   dies_;
+    Process<double>              process_;
+    NodalVectors<double>         X_;
+    dealii::Tensor<2, 3>         rotation_; ///< of the billet
+    double                       width_;    ///< a of (113): the billet's extent in x before cuts
+    std::vector<DesignParameter> parameters_;
+  };
+} // namespace retroforge

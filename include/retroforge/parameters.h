@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/adjoint/check.h>
+#include <retroforge/design/design.h>
+#include <retroforge/time/forging.h>
+
+namespace retroforge
+{
+  struct ContactParameters
+  {
+    std::string law                = "smooth";
+    double      approach           = 1.;
+    double      ramp_width         = 1.;
+    double      penetration        = 1e-6;
+    double      penalty            = 0.;
+    double      slip_fraction      = 1e-2;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+  };
+
+  struct OutputParameters
+  {
+    unsigned int every = 1;
+    bool         record = true;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+  };
+
+  struct DesignParameters
+  {
+    std::vector<std::string> names = {"material/K"};
+
+    void add_parameters(dealii::ParameterHandler &prm);
+  };
+
+  /// All that a parameter file says.
+  struct Parameters
+  {
+    BilletParameters           billet;
+    std::vector<DieParameters> dies;
+    MaterialParameters         material;
+    PressParameters            press;
+    ContactParameters          contact;
+    NewtonParameters           newton;
+    LinearSolverParameters     linear_solver;
+    DesignParameters           design;
+    CheckParameters            check;
+    OutputParameters           output;
+    double                     adjoint_tolerance = 1e-11;
+
+    /// Declares everything; the dies are those of the names given.
+    void add_parameters(dealii::ParameterHandler &prm, const std::vector<std::string> &die_names);
+
+    /// Reads a file and overrides, and checks all of it.  @throws Error
+    static Parameters read(const std::string                                      &file,
+                           const std::vector<std::pair<std::string, std::string>> &overrides,
+                           std::string                                            &echo);
+
+    /// The process as the file has it; automatic values are resolved here and fixed from then on.
+    /// @param size  cube root of the mesh's volume [mm], for billets whose height is not a parameter
+    Process<double> process(double size) const;
+    StepModel       step_model() const;
+
+  private:
+    void check_all();
+    unsigned int leading_die() const;
+  };
+} // namespace retroforge

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/core/command_line.h>
+#include <retroforge/output/history.h>
+#include <retroforge/output/pvd_writer.h>
+#include <retroforge/output/summary.h>
+#include <retroforge/parameters.h>
+
+#include <iosfwd>
+
+namespace retroforge
+{
+  class RecordWriter;
+
+  /// The program: a case forged forwards, differentiated backwards, and checked. Members stand in the order in which
+  /// data flows through them.
+  class Simulation
+  {
+  public:
+    Simulation(const CommandLine &command, MPI_Comm comm);
+    ~Simulation();
+
+    /// @return the exit status: 0, or 1 when a check failed
+    int run();
+
+  private:
+    void forge();
+    void differentiate();
+    bool check();
+    void summarise();
+
+    void   watch(const IncrementEvent &event);
+    void   write_fields(const IncrementEvent &event);
+    void   write_sensitivity();
+    void   check_billet_against_dies() const;
+    double mesh_size() const;
+    const IncrementRecord &recorded(unsigned int i) const { return records_[i]; }
+    ObjectiveOracle        oracle();
+
+    const CommandLine command_;
+    MPI_Comm          comm_;
+    const bool        root_; ///< this rank writes
+    Timings           timings_;
+
+    std::string     echo_; ///< the parameters as understood
+    Parameters      parameters_;
+    Scene           scene_;
+    Process<double> nominal_;
+    StepModel       model_;
+    Design          design_;
+
+    LinearSystem system_;
+    Increment    increment_;
+    Forging      forging_;
+
+    std::vector<double>          mu_;
+    Process<double>              process_;
+    NodalVectors<double>         X_0_;
+    std::vector<IncrementRecord> records_;
+    ForgingResult                forged_;
+    std::vector<double>          gradient_;
+    NodalVectors<double>         X_0_bar_;
+    std::vector<CheckRow>        checks_;
+
+    std::unique_ptr<RecordWriter> record_;
+    std::unique_ptr<History>      history_;
+    std::unique_ptr<PvdWriter>    pvd_;
+    Summary                       summary_;
+  };
+} // namespace retroforge

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <deal.II/physics/transformations.h>
+
+#include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
+#include <retroforge/design/design.h>
+
+namespace retroforge
+{
+  namespace
+  {
+    using Kind = DesignParameter::Kind;
+
+    Dual with_direction(const double value, const double direction)
+    {
+      Dual x(value);
+      x.fastAccessDx(0) = direction;
+      return x;
+    }
+
+    std::vector<Dual> along(const std::vector<double> &mu, const unsigned int j)
+    {
+      std::vector<Dual> dual;
+      for (unsigned int i = 0; i < mu.size(); ++i)
+        dual.push_back(with_direction(mu[i], i == j ? 1. : 0.));
+      return dual;
+    }
+  } // namespace
+
+  Design::Design(const std::vector<std::string>   &names,
+                 const BilletParameters           &billet,
+                 const std::vector<DieParameters> &dies,
+                 const Process<double>            &nominal_process,
+                 const NodalVectors<double>       &nominal_positions)
+    : billet_(billet)
+    , dies_(dies)
+    , process_(nominal_process)
+    , X_(nominal_positions)
+    , rotation_(dealii::Physics::Transformations::Rotations::rotation_matrix_3d(
+        billet.rotation_axis / billet.rotation_axis.norm(),
+        billet.rotation_angle * dealii::numbers::PI / 180.))
+    , width_(billet.shape == "cylinder" ? 2. * billet.radius : billet.size[0])
+  {
+    for (const std::string &name : names)
+      parameters_.push_back(make(name));
+  }
+
+  std::vector<std::string> Design::available() const
+  {
+    std::vector<std::string> names = {"material/K", "material/m", "contact/rho"};
+    if (process_.law.m != 1.)
+      names.push_back("material/e0");
+    if (billet_.shape == "box")
+      names.push_back("billet/stretch");
+    if (billet_.shape == "cylinder")
+      names.push_back("billet/radius");
+    bool friction = false;
+    for (const auto &die : dies_)
+      {
+        friction |= die.friction > 0.;
+        if (die.friction > 0.)
+          names.push_back("die " + die.name + "/friction");
+        if (die.velocity.norm() > 0.)
+          names.push_back("die " + die.name + "/speed");
+        names.push_back("die " + die.name + "/offset");
+      }
+    if (friction)
+      names.insert(names.end(), {"dies/friction", "contact/v0"});
+    return names;
+  }
+
+  DesignParameter Design::make(const std::string &name) const
+  {
+    const auto known = available();
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      {
+        const std::string near = nearest_name(name, known, 6);
+        throw Error("Design/parameters",
+                    "'" + name + "' is not a parameter of this scene",
+                    "it offers " + join(known),
+                    near.empty() ? "name some of these" : "did you mean '" + near + "'?");
+      }
+    if (name == "material/K")
+      return {name, "MPa s^m", Kind::consistency, invalid_index, process_.law.K, process_.law.K};
+    if (name == "material/m")
+      return {name, "", Kind::sensitivity, invalid_index, process_.law.m, process_.law.m};
+    if (name == "material/e0")
+      return {name, "1/s", Kind::strain_rate, invalid_index, process_.law.e0, process_.law.e0};
+    if (name == "contact/rho")
+      return {name, "MPa s/mm", Kind::penalty, invalid_index, process_.contact.rho, process_.contact.rho};
+    if (name == "contact/v0")
+      return {name, "mm/s", Kind::slip, invalid_index, process_.contact.v0, process_.contact.v0};
+    if (name == "billet/stretch")
+      return {name, "mm", Kind::stretch, invalid_index, 0., width_};
+    if (name == "billet/radius")
+      return {name, "mm", Kind::radius, invalid_index, billet_.radius, billet_.radius};
+    if (name == "dies/friction")
+      {
+        double alpha = 0.;
+        for (const auto &die : dies_)
+          if (die.friction > 0.)
+            {
+              if (alpha > 0. && alpha != die.friction)
+                throw Error("Design/parameters",
+                            "'dies/friction' stands for all dies with friction, but their coefficients differ",
+                            "one number must describe them all",
+                            "name each die, as in 'die " + die.name + "/friction'");
+              alpha = die.friction;
+            }
+        return {name, "mm^(-m)", Kind::friction, invalid_index, alpha, alpha};
+      }
+    for (unsigned int d = 0; d < dies_.size(); ++d)
+      {
+        const double friction = dies_[d].friction, speed = dies_[d].velocity.norm();
+        if (name == "die " + dies_[d].name + "/friction")
+          return {name, "mm^(-m)", Kind::friction, d, friction, friction};
+        if (name == "die " + dies_[d].name + "/speed")
+          return {name, "mm/s", Kind::speed, d, speed, speed};
+        if (name == "die " + dies_[d].name + "/offset")
+          return {name, "mm", Kind::offset, d, 0., width_};
+      }
+    throw Error("Design/parameters", name, "unknown", "see the list of parameters");
+  }
+
+  std::vector<double> Design::nominal() const
+  {
+    std::vector<double> mu;
+    for (const auto &parameter : parameters_)
+      mu.push_back(parameter.nominal);
+    return mu;
+  }
+
+  template <typename Number>
+  NodalVectors<Number> Design::positions(const std::vector<Number> &mu) const
+  {
+    Number factor(1.);
+    for (unsigned int j = 0; j < parameters_.size(); ++j)
+      if (parameters_[j].kind == Kind::stretch)
+        factor *= 1. + 2. * mu[j] / width_;
+      else if (parameters_[j].kind == Kind::radius)
+        factor *= mu[j] / parameters_[j].nominal;
+    NodalVectors<Number> X(X_.size());
+    for (std::size_t k = 0; k < X.size(); ++k)
+      {
+        // In the billet's own axes, x and y grow from the axis through the centre of the base.
+        Vec3 own = transpose(rotation_) * (X_[k] - billet_.translation) - billet_.base_centre;
+        own[2]   = 0.;
+        const Vec3 across = rotation_ * own;
+        for (unsigned int i = 0; i < 3; ++i)
+          X[k][i] = X_[k][i] + (factor - 1.) * across[i];
+      }
+    return X;
+  }
+
+  template <typename Number>
+  Process<Number> Design::process(const std::vector<Number> &mu) const
+  {
+    Process<Number> process{{process_.law.K, process_.law.m, process_.law.e0},
+                            {process_.contact.rho, process_.contact.v0},
+                            {},
+                            process_.leading_die};
+    for (const auto &die : process_.dies)
+      {
+        DieState<Number> state;
+        for (unsigned int i = 0; i < 3; ++i)
+          {
+            state.velocity[i]     = Number(die.velocity[i]);
+            state.displacement[i] = Number(die.displacement[i]);
+          }
+        state.friction = Number(die.friction);
+        process.dies.push_back(state);
+      }
+    for (unsigned int j = 0; j < parameters_.size(); ++j)
+      {
+        const DesignParameter &parameter = parameters_[j];
+        switch (parameter.kind)
+          {
+            case Kind::consistency:
+              process.law.K = mu[j];
+              break;
+            case Kind::sensitivity:
+              process.law.m = mu[j];
+              break;
+            case Kind::strain_rate:
+              process.law.e0 = mu[j];
+              break;
+            case Kind::penalty:
+              process.contact.rho = mu[j];
+              break;
+            case Kind::slip:
+              process.contact.v0 = mu[j];
+              break;
+            case Kind::friction:
+              for (unsigned int d = 0; d < dies_.size(); ++d)
+                if (d == parameter.die || (parameter.die == invalid_index && dies_[d].friction > 0.))
+                  process.dies[d].friction = mu[j];
+              break;
+            case Kind::speed:
+              for (unsigned int i = 0; i < 3; ++i)
+                process.dies[parameter.die].velocity[i] =
+                  dies_[parameter.die].velocity[i] / parameter.nominal * mu[j];
+              break;
+            case Kind::offset:
+              for (unsigned int i = 0; i < 3; ++i)
+                process.dies[parameter.die].displacement[i] += dies_[parameter.die].facing[i] * mu[j];
+              break;
+            case Kind::stretch:
+            case Kind::radius:
+              break;
+          }
+      }
+    return process;
+  }
+
+  template NodalVectors<double> Design::positions(const std::vector<double> &) const;
+  template NodalVectors<Dual>   Design::positions(const std::vector<Dual> &) const;
+  template Process<double>      Design::process(const std::vector<double> &) const;
+  template Process<Dual>        Design::process(const std::vector<Dual> &) const;
+
+  std::vector<double> Design::pull_back(const std::vector<double>  &mu,
+                                        const NodalVectors<double> &X_0_bar,
+                                        const ProcessBar           &bar) const
+  {
+    std::vector<double> gradient;
+    for (unsigned int j = 0; j < parameters_.size(); ++j)
+      {
+        const auto    direction = along(mu, j);
+        const auto    X         = positions(direction);
+        const auto    p         = process(direction);
+        double        sum = bar.K * p.law.K.dx(0) + bar.m * p.law.m.dx(0) + bar.e0 * p.law.e0.dx(0) +
+                     bar.rho * p.contact.rho.dx(0) + bar.v0 * p.contact.v0.dx(0);
+        for (std::size_t k = 0; k < X.size(); ++k)
+          for (unsigned int i = 0; i < 3; ++i)
+            sum += X_0_bar[k][i] * X[k][i].dx(0);
+        for (unsigned int d = 0; d < p.dies.size(); ++d)
+          {
+            sum += bar.dies[d].friction * p.dies[d].friction.dx(0);
+            for (unsigned int i = 0; i < 3; ++i)
+              sum += bar.dies[d].velocity[i] * p.dies[d].velocity[i].dx(0) +
+                     bar.dies[d].displacement[i] * p.dies[d].displacement[i].dx(0);
+          }
+        gradient.push_back(sum);
+      }
+    return gradient;
+  }
+} // namespace retroforge

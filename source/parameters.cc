@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/core/parameter_input.h>
+#include <retroforge/core/parameter_list.h>
+#include <retroforge/parameters.h>
+
+#include <fstream>
+#include <sstream>
+
+namespace retroforge
+{
+  using namespace dealii::Patterns;
+
+  void ContactParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Contact");
+    prm.add_parameter("law",
+                      law,
+                      "smooth: friction sets in over a ramp of the gap, the objective is differentiable as nodes arrive. "
+                      "sharp: friction acts where the gap is below the ramp's width, decided once per increment. "
+                      "Units: none.",
+                      Selection("smooth|sharp"));
+    prm.add_parameter("approach",
+                      approach,
+                      "Approach time in increments: a gap closes within this many. 1 closes it in one, larger values "
+                      "smooth the objective and bias the energy. Units: none.",
+                      Double(1.));
+    prm.add_parameter("ramp width",
+                      ramp_width,
+                      "Gap over which friction sets in, in units of approach times the increment's stroke. Units: none.",
+                      Double(1e-6));
+    prm.add_parameter("penetration",
+                      penetration,
+                      "Part of the leading die's speed at which a node sinks into a die under the mean pressure: sets the "
+                      "penalty. Units: none.",
+                      Double(1e-14, 1.));
+    prm.add_parameter("penalty", penalty, "rho; 0 takes it from `penetration`. Units: MPa s/mm.", Double(0.));
+    prm.add_parameter("slip regularisation",
+                      slip_fraction,
+                      "v0 in |dv|^2 -> |dv|^2 + v0^2, as a part of the leading die's speed. Part of the model. Units: none.",
+                      Double(0.));
+    prm.leave_subsection();
+  }
+
+  void OutputParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Output");
+    prm.add_parameter("fields every",
+                      every,
+                      "Write the fields for viewing every so many increments; 0 for never. Units: none.");
+    prm.add_parameter("record", record, "Keep the record that a later gradient or replay needs. Units: none.");
+    prm.leave_subsection();
+  }
+
+  void DesignParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Design");
+    prm.add_parameter("parameters",
+                      names,
+                      "Parameters whose gradient is wanted: material/K, material/m, material/e0, contact/rho, contact/v0, "
+                      "dies/friction, `die NAME/friction`, `die NAME/speed`, `die NAME/offset`, billet/stretch, "
+                      "billet/radius. The gradient by every node of the billet always comes along. Units: none.");
+    prm.leave_subsection();
+  }
+
+  void Parameters::add_parameters(dealii::ParameterHandler &prm, const std::vector<std::string> &die_names)
+  {
+    billet.add_parameters(prm);
+    prm.enter_subsection("Dies");
+    prm.declare_entry("names",
+                      "",
+                      Anything(),
+                      "Names of the dies; each has a section `Die NAME`. Units: none.");
+    prm.leave_subsection();
+    dies.clear();
+    for (const std::string &name : die_names)
+      dies.emplace_back(name);
+    for (DieParameters &die : dies)
+      die.add_parameters(prm);
+    material.add_parameters(prm);
+    press.add_parameters(prm);
+    contact.add_parameters(prm);
+    newton.add_parameters(prm);
+    linear_solver.add_parameters(prm);
+    prm.enter_subsection("Adjoint");
+    prm.add_parameter("tolerance",
+                      adjoint_tolerance,
+                      "Relative tolerance of the adjoint and tangent linear systems. Units: none.",
+                      Double(1e-14, 1e-2));
+    prm.leave_subsection();
+    design.add_parameters(prm);
+    check.add_parameters(prm);
+    output.add_parameters(prm);
+  }
+
+  namespace
+  {
+    /// The dies' names must be known before their sections can be: they are looked for ahead of the real reading.
+    std::vector<std::string> die_names(const std::string &file, const std::vector<std::pair<std::string, std::string>> &overrides)
+    {
+      std::string   names;
+      std::ifstream in(file);
+      for (std::string line, section; std::getline(in, line);)
+        {
+          std::istringstream words(line.substr(0, line.find('#')));
+          std::string        first, second, equals;
+          words >> first >> second;
+          if (first == "subsection")
+            section = second;
+          else if (first == "set" && second == "names" && section == "Dies" && words >> equals && equals == "=")
+            std::getline(words, names);
+        }
+      for (const auto &[path, value] : overrides)
+        if (path == "Dies/names")
+          names = value;
+      return dealii::Utilities::split_string_list(names);
+    }
+  } // namespace
+
+  Parameters Parameters::read(const std::string                                      &file,
+                              const std::vector<std::pair<std::string, std::string>> &overrides,
+                              std::string                                            &echo)
+  {
+    Parameters               parameters;
+    dealii::ParameterHandler prm;
+    parameters.add_parameters(prm, die_names(file, overrides));
+    read_parameters(prm, file, overrides);
+    parameters.check_all();
+    std::ostringstream text;
+    print_parameters(prm, text);
+    echo = text.str();
+    return parameters;
+  }
+
+  void Parameters::check_all()
+  {
+    billet.check();
+    material.check();
+    press.check();
+    if (dies.empty())
+      throw Error("Dies/names", "names no die", "a billet is forged by at least one die", "set names = lower, upper");
+    for (unsigned int d = 0; d < dies.size(); ++d)
+      {
+        dies[d].check();
+        for (unsigned int e = 0; e < d; ++e)
+          if (dies[e].name == dies[d].name)
+            throw Error("Dies/names", "'" + dies[d].name + "' stands twice", "names must differ", "rename one");
+        if (dies[d].friction > 0. && material.sensitivity < 1. && contact.slip_fraction == 0.)
+          throw Error("Contact/slip regularisation",
+                      "is 0 with friction and a strain rate sensitivity below 1",
+                      "the friction of a sticking node would be infinitely stiff",
+                      "use 1e-2, or 1e-3 for a sharper law");
+      }
+    leading_die();
+  }
+
+  unsigned int Parameters::leading_die() const
+  {
+    for (unsigned int d = 0; d < dies.size(); ++d)
+      if (press.leading_die.empty() ? dies[d].velocity.norm() > 0. : dies[d].name == press.leading_die)
+        {
+          if (dies[d].velocity.norm() == 0.)
+            throw Error("Press/leading die",
+                        "'" + dies[d].name + "' does not move",
+                        "the stroke is the path of the leading die",
+                        "give it a velocity or name another");
+          return d;
+        }
+    if (press.leading_die.empty())
+      throw Error("Dies", "no die moves", "one at least must", "give a die a velocity");
+    throw Error("Press/leading die",
+                "there is no die '" + press.leading_die + "'",
+                "it must be one of Dies/names",
+                "leave it empty for the first die that moves");
+  }
+
+  Process<double> Parameters::process(const double size) const
+  {
+    Process<double> process;
+    process.law         = material.law();
+    process.leading_die = leading_die();
+    for (const DieParameters &die : dies)
+      process.dies.push_back(die.initial_state());
+    const double speed  = process.speed();
+    const double height = billet.shape == "box" ? billet.size[2] : billet.shape == "cylinder" ? billet.height : size;
+    // Mean pressure of a frictionless upsetting.
+    const double rate     = speed / height;
+    const double pressure = process.law.stress_factor(process.law.q(1.5 * rate * rate)) * 1.5 * rate;
+    process.contact.rho   = contact.penalty > 0. ? contact.penalty : pressure / (contact.penetration * speed);
+    process.contact.v0    = contact.slip_fraction * speed;
+    return process;
+  }
+
+  StepModel Parameters::step_model() const
+  {
+    StepModel    model;
+    const double step       = press.stroke / press.increments;
+    model.scheme            = press.scheme == "euler" ? Scheme::euler : Scheme::midpoint;
+    model.approach          = contact.approach;
+    model.ramp.sharp        = contact.law == "sharp";
+    model.ramp.width        = contact.ramp_width * contact.approach * step;
+    model.reach             = 3. * std::max(1., contact.ramp_width) * contact.approach * step;
+    model.adjoint_tolerance = adjoint_tolerance;
+    return model;
+  }
+} // namespace retroforge
