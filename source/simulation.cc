@@ -32,18 +32,15 @@ namespace retroforge
       return a;
     }
 
-    /// "check" solves equilibria as well as they can be, or differences would measure the solver.
-    NewtonParameters tightened(NewtonParameters newton, const std::string &command)
-    {
-      if (command == "check")
-        newton.tolerance = std::min(newton.tolerance, 1e-12);
-      return newton;
-    }
-
+    /// "check" solves all systems as well as they can be, or differences would measure the solvers.
     Parameters read(const CommandLine &command, std::string &echo)
     {
       Parameters parameters = Parameters::read(command.case_file, command.overrides, echo);
-      parameters.newton     = tightened(parameters.newton, command.command);
+      if (command.command == "check")
+        {
+          parameters.newton.tolerance  = std::min(parameters.newton.tolerance, 1e-12);
+          parameters.adjoint_tolerance = std::min(parameters.adjoint_tolerance, 1e-13);
+        }
       return parameters;
     }
   } // namespace

@@ -48,7 +48,7 @@ namespace retroforge
     DesignParameters           design;
     CheckParameters            check;
     OutputParameters           output;
-    double                     adjoint_tolerance = 1e-11;
+    double                     adjoint_tolerance = 1e-10;
 
     /// Declares everything; the dies are those of the names given.
     void add_parameters(dealii::ParameterHandler &prm, const std::vector<std::string> &die_names);

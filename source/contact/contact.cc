@@ -70,7 +70,7 @@ namespace retroforge
     if (d <= 0. || d >= width)
       return Number(d <= 0. ? 1. : 0.);
     const Number t = delta / width;
-    return 1. - t * t * (3. - 2. * t);
+    return 1. - t * t * t * (10. - t * (15. - 6. * t));
   }
 
   double FrictionRamp::derivative(const double delta) const
@@ -78,7 +78,7 @@ namespace retroforge
     if (sharp || delta <= 0. || delta >= width)
       return 0.;
     const double t = delta / width;
-    return -6. * t * (1. - t) / width;
+    return -30. * t * t * (1. - t) * (1. - t) / width;
   }
 
   std::vector<ContactPair> find_contact_pairs(const Topology                      &topology,

@@ -28,7 +28,8 @@ namespace retroforge
   };
 
   /// w(delta): 1 where the node touches, 0 where it is out of reach.
-  /// Smooth: 1 - 3t^2 + 2t^3 with t = delta/width on [0, 1], flat at both ends. Sharp: 1 for delta <= width.
+  /// Smooth: 1 - 10t^3 + 15t^4 - 6t^5 with t = delta/width on [0, 1], twice differentiable, because nodes in contact
+  /// stand exactly at delta = 0. Sharp: 1 for delta <= width.
   struct FrictionRamp
   {
     double width = 0.; ///< [mm]

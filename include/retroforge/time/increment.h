@@ -21,7 +21,7 @@ namespace retroforge
     double       approach = 1.; ///< approach time in increments: tau = approach * dt
     FrictionRamp ramp;
     double       reach             = 0.;    ///< nodes nearer than this to a die are watched [mm]
-    double       adjoint_tolerance = 1e-11; ///< of the adjoint and tangent linear systems
+    double       adjoint_tolerance = 1e-10; ///< of the adjoint and tangent linear systems
   };
 
   /// Energy spent, deformation and friction [mJ].
