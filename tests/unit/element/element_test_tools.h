@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/element/mini_element.templates.h>
+
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <random>
+#include <string>
+
+namespace retroforge
+{
+  /// Numbers in [-1, 1], the same on every machine.
+  class Random
+  {
+  public:
+    double scalar() { return 2. * (generator_() / 4294967295.) - 1.; }
+    Vec3   vector() { return Vec3({scalar(), scalar(), scalar()}); }
+
+    CellValues<double> cell_values()
+    {
+      CellValues<double> w;
+      for (unsigned int a = 0; a < 4; ++a)
+        {
+          w.V[a] = vector();
+          w.P[a] = scalar();
+        }
+      w.beta = vector();
+      return w;
+    }
+
+    /// A positively oriented tetrahedron of edges near 2 that is no sliver.
+    Four<Vec3> cell()
+    {
+      Four<Vec3> X;
+      do
+        for (Vec3 &x : X)
+          x = vector();
+      while (cell_geometry(X).volume < 0.2);
+      return X;
+    }
+
+  private:
+    std::mt19937 generator_{1};
+  };
+
+  /// Largest relative error of each of several comparisons.
+  class Errors
+  {
+  public:
+    /// Compares vectors relative to the reference's largest entry (absolutely when it is zero).
+    void compare(const std::string &what, const std::vector<double> &value, const std::vector<double> &reference)
+    {
+      double difference = 0., size = 0.;
+      for (std::size_t i = 0; i < value.size(); ++i)
+        {
+          // Written so that a NaN counts as wrong.
+          if (!(std::abs(value[i] - reference[i]) <= difference))
+            difference = std::abs(value[i] - reference[i]);
+          size = std::max(size, std::abs(reference[i]));
+          finite_ = finite_ && std::isfinite(value[i]);
+        }
+      double &error = errors_[what];
+      error         = std::max(error, finite_ ? difference / (size > 0. ? size : 1.) : 1e300);
+    }
+
+    void compare(const std::string &what, const double value, const double reference)
+    {
+      compare(what, std::vector<double>{value}, std::vector<double>{reference});
+    }
+
+    double largest() const
+    {
+      double largest = 0.;
+      for (const auto &[what, error] : errors_)
+        largest = std::max(largest, error);
+      return largest;
+    }
+
+    /// One line per comparison: reached or not; the number itself when not.
+    void print(const double bar) const
+    {
+      for (const auto &[what, error] : errors_)
+        if (error < bar)
+          std::cout << "  " << what << " < " << bar << ": yes" << std::endl;
+        else
+          std::cout << "  " << what << " < " << bar << ": NO, " << error << std::endl;
+    }
+
+  private:
+    std::map<std::string, double> errors_;
+    bool                          finite_ = true;
+  };
+
+  inline std::vector<double> flatten(const Four<Vec3> &v)
+  {
+    std::vector<double> flat;
+    for (const Vec3 &x : v)
+      flat.insert(flat.end(), x.begin_raw(), x.end_raw());
+    return flat;
+  }
+
+  /// The 19 unknowns of a cell in the order V (node, component), beta, P.
+  template <typename Number>
+  std::vector<Number> flatten(const CellValues<Number> &w)
+  {
+    std::vector<Number> flat;
+    for (const auto &v : w.V)
+      flat.insert(flat.end(), v.begin_raw(), v.end_raw());
+    flat.insert(flat.end(), w.beta.begin_raw(), w.beta.end_raw());
+    flat.insert(flat.end(), w.P.begin(), w.P.end());
+    return flat;
+  }
+} // namespace retroforge

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// The closed forms of the mini element against forward automatic differentiation, on random cells. Proved:
+// - the residual is the gradient of the functional;
+// - the condensed tangent, its right-hand side and the recovered bubble solve the uncondensed 19 x 19 system, whose
+//   matrix is the derivative of the residual; both are symmetric, the pressure block is negative semi-definite;
+// - the reverse sweeps give the derivatives of lambda·residual and of the dissipation in X, K, m, e0 and the unknowns;
+// - the bubble found from V and P leaves no residual in its rows;
+// - a Newtonian cell at rest without regularisation (zero to the power zero) gives numbers everywhere.
+
+#include "element_test_tools.h"
+
+using namespace retroforge;
+using Unknowns = Sacado::Fad::SFad<double, 19>;
+using Inputs   = Sacado::Fad::SFad<double, 15>;
+
+/// Unknowns as independent variables.
+CellValues<Unknowns> independent(const CellValues<double> &w)
+{
+  CellValues<Unknowns> x;
+  unsigned int         n = 0;
+  for (unsigned int a = 0; a < 4; ++a)
+    for (unsigned int i = 0; i < 3; ++i)
+      x.V[a][i] = Unknowns(19, n++, w.V[a][i]);
+  for (unsigned int i = 0; i < 3; ++i)
+    x.beta[i] = Unknowns(19, n++, w.beta[i]);
+  for (unsigned int a = 0; a < 4; ++a)
+    x.P[a] = Unknowns(19, n++, w.P[a]);
+  return x;
+}
+
+template <typename Number>
+CellValues<Number> constant(const CellValues<double> &w)
+{
+  CellValues<Number> x;
+  for (unsigned int a = 0; a < 4; ++a)
+    {
+      for (unsigned int i = 0; i < 3; ++i)
+        x.V[a][i] = Number(w.V[a][i]);
+      x.P[a] = Number(w.P[a]);
+    }
+  for (unsigned int i = 0; i < 3; ++i)
+    x.beta[i] = Number(w.beta[i]);
+  return x;
+}
+
+template <typename Number>
+NortonHoff<Number> constant(const NortonHoff<double> &law)
+{
+  return {Number(law.K), Number(law.m), Number(law.e0)};
+}
+
+std::vector<double> gradient(const Unknowns &f)
+{
+  std::vector<double> g(19);
+  for (unsigned int i = 0; i < 19; ++i)
+    g[i] = f.dx(i);
+  return g;
+}
+
+struct Case
+{
+  Four<Vec3>         X;
+  CellValues<double> w, lambda;
+  NortonHoff<double> law;
+
+  CellGeometry<double> geometry() const { return cell_geometry(X); }
+
+  CellGeometry<Unknowns> constant_geometry() const
+  {
+    Four<Vector3<Unknowns>> x;
+    for (unsigned int a = 0; a < 4; ++a)
+      for (unsigned int i = 0; i < 3; ++i)
+        x[a][i] = Unknowns(X[a][i]);
+    return cell_geometry(x);
+  }
+
+  CellGeometry<Inputs> independent_geometry() const
+  {
+    Four<Vector3<Inputs>> x;
+    for (unsigned int a = 0; a < 4; ++a)
+      for (unsigned int i = 0; i < 3; ++i)
+        x[a][i] = Inputs(15, 3 * a + i, X[a][i]);
+    return cell_geometry(x);
+  }
+
+  NortonHoff<Inputs> independent_law() const
+  {
+    return {Inputs(15, 12, law.K), Inputs(15, 13, law.m), Inputs(15, 14, law.e0)};
+  }
+};
+
+void check_residual(const Case &c, Errors &errors)
+{
+  const Unknowns functional =
+    cell_functional(c.constant_geometry(), independent(c.w), constant<Unknowns>(c.law));
+  errors.compare("residual", flatten(cell_residual(c.geometry(), c.w, c.law)), gradient(functional));
+}
+
+/// Entry of the condensed matrix for velocity components 3a + i < 12 and pressures 12 + a.
+double condensed(const CellTangent &t, const unsigned int r, const unsigned int s)
+{
+  if (r < 12 && s < 12)
+    return t.A[r / 3][s / 3][r % 3][s % 3];
+  if (r < 12)
+    return t.B[r / 3][s - 12][r % 3];
+  return s < 12 ? t.B[s / 3][r - 12][s % 3] : t.C[r - 12][s - 12];
+}
+
+void check_tangent(const Case &c, Errors &errors, Random &random)
+{
+  const auto          residual = flatten(cell_residual(c.constant_geometry(), independent(c.w), constant<Unknowns>(c.law)));
+  std::vector<double> H, H_transposed;
+  for (unsigned int r = 0; r < 19; ++r)
+    for (unsigned int s = 0; s < 19; ++s)
+      {
+        H.push_back(residual[r].dx(s));
+        H_transposed.push_back(residual[s].dx(r));
+      }
+  errors.compare("symmetry of the uncondensed tangent", H, H_transposed);
+
+  CellTangent t;
+  compute_cell_tangent(c.geometry(), c.w, c.law, t);
+  // Any solution and its right-hand side H x; the reduced system must hold for its nodal part.
+  const CellValues<double>  x      = random.cell_values();
+  const std::vector<double> x_flat = flatten(x);
+  std::vector<double>       Hx(19, 0.), row_size(3, 0.);
+  for (unsigned int r = 0; r < 19; ++r)
+    for (unsigned int s = 0; s < 19; ++s)
+      Hx[r] += H[19 * r + s] * x_flat[s];
+  CellValues<double> rhs;
+  for (unsigned int a = 0; a < 4; ++a)
+    {
+      rhs.V[a] = Vec3({Hx[3 * a], Hx[3 * a + 1], Hx[3 * a + 2]});
+      rhs.P[a] = Hx[15 + a];
+    }
+  rhs.beta               = Vec3({Hx[12], Hx[13], Hx[14]});
+  const Vec3 bubble      = t.recover_bubble(rhs.beta, x.V, x.P);
+  errors.compare("recovered bubble",
+                 std::vector<double>(bubble.begin_raw(), bubble.end_raw()),
+                 std::vector<double>(x.beta.begin_raw(), x.beta.end_raw()));
+  t.condense(rhs);
+  std::vector<double> nodal(16, 0.), reduced, transposed, nodal_rhs = flatten(rhs.V);
+  nodal_rhs.insert(nodal_rhs.end(), rhs.P.begin(), rhs.P.end());
+  for (unsigned int r = 0; r < 16; ++r)
+    for (unsigned int s = 0; s < 16; ++s)
+      {
+        nodal[r] += condensed(t, r, s) * x_flat[s < 12 ? s : s + 3];
+        reduced.push_back(condensed(t, r, s));
+        transposed.push_back(condensed(t, s, r));
+      }
+  errors.compare("condensed system", nodal, nodal_rhs);
+  errors.compare("symmetry of the condensed tangent", reduced, transposed);
+  double pCp = 0.;
+  for (unsigned int a = 0; a < 4; ++a)
+    for (unsigned int b = 0; b < 4; ++b)
+      pCp += x.P[a] * t.C[a][b] * x.P[b];
+  errors.compare("sign of the pressure block", pCp < 0. ? 1. : -1., 1.);
+}
+
+void compare_inputs(const std::string &what, const CellSensitivity &s, const Inputs &reference, Errors &errors)
+{
+  std::vector<double> X(12);
+  for (unsigned int i = 0; i < 12; ++i)
+    X[i] = reference.dx(i);
+  errors.compare(what + " in X", flatten(s.X), X);
+  errors.compare(what + " in K", s.K, reference.dx(12));
+  errors.compare(what + " in m", s.m, reference.dx(13));
+  errors.compare(what + " in e0", s.e0, reference.dx(14));
+}
+
+void check_reverse_residual(const Case &c, Errors &errors)
+{
+  const auto residual =
+    flatten(cell_residual(c.independent_geometry(), constant<Inputs>(c.w), c.independent_law()));
+  const std::vector<double> lambda = flatten(c.lambda);
+  Inputs                    product(0.);
+  for (unsigned int i = 0; i < 19; ++i)
+    product += lambda[i] * residual[i];
+  compare_inputs("lambda·residual", reverse_cell_residual(c.geometry(), c.w, c.lambda, c.law), product, errors);
+}
+
+void check_reverse_dissipation(const Case &c, Errors &errors)
+{
+  const double          weight = -0.7;
+  CellValues<double>    w_bar  = c.lambda;
+  const CellSensitivity s      = reverse_cell_dissipation(c.geometry(), c.w, c.law, weight, w_bar);
+  const Inputs          inputs =
+    weight * cell_dissipation(c.independent_geometry(), constant<Inputs>(c.w), c.independent_law());
+  compare_inputs("dissipation", s, inputs, errors);
+
+  const Unknowns unknowns =
+    weight * cell_dissipation(c.constant_geometry(), independent(c.w), constant<Unknowns>(c.law));
+  std::vector<double>       expected = gradient(unknowns);
+  const std::vector<double> before   = flatten(c.lambda);
+  for (unsigned int i = 0; i < 19; ++i)
+    expected[i] += before[i];
+  errors.compare("dissipation in the unknowns", flatten(w_bar), expected);
+}
+
+void check_reverse_geometry(const Case &c, Errors &errors)
+{
+  const auto geometry = c.independent_geometry();
+  Inputs     product  = 0.3 * geometry.volume;
+  for (unsigned int a = 0; a < 4; ++a)
+    for (unsigned int i = 0; i < 3; ++i)
+      product += c.lambda.V[a][i] * geometry.g[a][i];
+  Four<Vec3> X_bar = {};
+  reverse_cell_geometry(c.geometry(), 0.3, c.lambda.V, X_bar);
+  std::vector<double> expected(12);
+  for (unsigned int i = 0; i < 12; ++i)
+    expected[i] = product.dx(i);
+  errors.compare("geometry in X", flatten(X_bar), expected);
+}
+
+/// Residual of the bubble rows relative to the pressure's part of them.
+void check_bubble(const Case &c, Errors &errors)
+{
+  CellValues<double> w = c.w;
+  w.beta               = solve_bubble(c.geometry(), w, c.law);
+  const Vec3   r       = cell_residual(c.geometry(), w, c.law).beta;
+  const double scale   = 0.25 * c.geometry().volume * pressure_gradient(c.geometry(), w.P).norm();
+  errors.compare("residual of the solved bubble", 1. + r.norm() / scale, 1.);
+}
+
+void check(const Case &c, Errors &errors, Random &random)
+{
+  check_residual(c, errors);
+  check_tangent(c, errors, random);
+  check_reverse_residual(c, errors);
+  check_reverse_dissipation(c, errors);
+  check_reverse_geometry(c, errors);
+  check_bubble(c, errors);
+}
+
+int main()
+{
+  Random random;
+  double largest = 0.;
+  for (const double m : {1., 0.5, 0.139, 0.05})
+    {
+      Errors errors;
+      for (unsigned int n = 0; n < 20; ++n)
+        check({random.cell(), random.cell_values(), random.cell_values(), {1.693, m, 0.05}}, errors, random);
+      std::cout << "m = " << m << std::endl;
+      errors.print(1e-12);
+      largest = std::max(largest, errors.largest());
+    }
+
+  Errors errors;
+  for (const bool at_rest : {false, true})
+    {
+      Case c{random.cell(), random.cell_values(), random.cell_values(), {1.693, 1., 0.}};
+      if (at_rest)
+        {
+          c.w.V    = {};
+          c.w.beta = Vec3();
+        }
+      check(c, errors, random);
+    }
+  std::cout << "Newtonian without regularisation, moving and at rest" << std::endl;
+  errors.print(1e-12);
+  largest = std::max(largest, errors.largest());
+  std::cout << "FIGURE kernel_derivative_error " << largest << std::endl;
+}
