@@ -8,6 +8,7 @@
 #include <retroforge/output/vtu_writer.h>
 #include <retroforge/record/record_file.h>
 #include <retroforge/simulation.h>
+#include <retroforge/solver/rigid_modes.h>
 
 #include <cstdio>
 #include <iostream>
@@ -95,6 +96,11 @@ namespace retroforge
                   "none comes near the billet: the nearest is " + std::to_string(nearest) + " mm away",
                   "a die must be within the stroke of " + std::to_string(parameters_.press.stroke) + " mm",
                   "move the dies' points or the billet");
+    if (const unsigned int n = n_free_rigid_modes(scene_, process_.at_stroke(0.), X_0_); n > 0)
+      throw Error("Dies",
+                  "the billet can slide or spin freely in " + std::to_string(n) + " rigid motion(s)",
+                  "its velocity must be unique",
+                  "cut it by symmetry planes, or give a die some friction");
   }
 
   int Simulation::run()
@@ -135,6 +141,7 @@ namespace retroforge
         const auto timing = timings_.scope("record");
         record_->finish();
       }
+    MPI_Barrier(comm_); // the record is complete before any rank reads it
     summary_.linear_solves_forward = system_.n_solves;
     summary_.newton_iterations     = forged_.newton;
     summary_.krylov_iterations     = forged_.krylov;
@@ -142,10 +149,10 @@ namespace retroforge
 
   void Simulation::watch(const IncrementEvent &event)
   {
-    if (command_.command != "simulate")
+    // A check reads the increments many times over; a gradient once, from the record.
+    if (command_.command == "check" || (command_.command == "gradient" && !parameters_.output.record))
       records_.push_back(event.record);
     const auto timing = timings_.scope("record");
-    // The sum of forces over ranks is formed by all of them.
     const double quality = minimum_quality(scene_.mesh.cells, event.X);
     const double size    = volume(scene_.mesh.cells, event.X);
     if (!root_)
@@ -153,12 +160,12 @@ namespace retroforge
     if (record_)
       record_->write(event.index - 1, event.record);
     const auto  &leading = nominal_.dies[nominal_.leading_die];
-    const double force   = -(event.report.forces[nominal_.leading_die] * leading.velocity) / leading.velocity.norm();
+    const double force   = event.report.forces[nominal_.leading_die] * leading.velocity / leading.velocity.norm();
     const double stroke  = event.record.stroke + event.record.step;
     history_->add({event.index,
                    event.time,
                    stroke,
-                   -force,
+                   force,
                    event.energy,
                    size,
                    quality,
@@ -168,7 +175,7 @@ namespace retroforge
     std::printf("%5u %8.4f %12.5g %13.7g %13.7g %8.4f %6u %6u %8.0f s\n",
                 event.index,
                 stroke,
-                -force,
+                force,
                 event.energy,
                 size,
                 quality,
@@ -232,9 +239,7 @@ namespace retroforge
   {
     const auto         timing = timings_.scope("adjoint");
     const unsigned int before = system_.n_solves;
-    const auto result = adjoint_sweep(scene_, increment_, process_, forged_.X, records_.size(), [&](const unsigned int i) -> const IncrementRecord & {
-      return recorded(i);
-    });
+    const auto result = adjoint_sweep(scene_, increment_, process_, forged_.X, forged_.increments, source());
     X_0_bar_          = result.X_0;
     gradient_         = design_.pull_back(mu_, X_0_bar_, result.process);
     summary_.linear_solves_adjoint = system_.n_solves - before;
@@ -256,10 +261,26 @@ namespace retroforge
     write_vtu(command_.output_directory + "/sensitivity.vtu", scene_.mesh, X_0_, {}, {{"denergy_dX0", X_0_bar_}}, {});
   }
 
+  Forging::Source Simulation::source()
+  {
+    if (!records_.empty())
+      return [this](const unsigned int i) -> const IncrementRecord & { return records_[i]; };
+    struct Reader
+    {
+      RecordReader    file;
+      IncrementRecord increment;
+    };
+    const auto reader = std::make_shared<Reader>(Reader{RecordReader(command_.output_directory), {}});
+    return [reader](const unsigned int i) -> const IncrementRecord & {
+      reader->increment = reader->file.read(i);
+      return reader->increment;
+    };
+  }
+
   ObjectiveOracle Simulation::oracle()
   {
     ObjectiveOracle oracle;
-    const auto      source = [this](const unsigned int i) -> const IncrementRecord & { return recorded(i); };
+    const auto      source = this->source();
     oracle.free            = [this](const std::vector<double> &mu, const NodalVectors<double> &shift) {
       return forging_.run(design_.process(mu), sum(design_.positions(mu), shift), {}).energy.total();
     };

@@ -36,8 +36,9 @@ namespace retroforge
     void   write_sensitivity();
     void   check_billet_against_dies() const;
     double mesh_size() const;
-    const IncrementRecord &recorded(unsigned int i) const { return records_[i]; }
-    ObjectiveOracle        oracle();
+    /// The recorded increments, from memory or from the record's file.
+    Forging::Source source();
+    ObjectiveOracle oracle();
 
     const CommandLine command_;
     MPI_Comm          comm_;

@@ -116,6 +116,7 @@ namespace retroforge
                                             const IncrementRecord      &record,
                                             const double                dt) const
   {
+    const auto timing = timings_.scope("contact");
     return make_contact_set(
       scene_.mesh, scene_.topology, scene_.dies, physics.dies, record.pairs, model_.ramp, model_.approach * dt, X);
   }

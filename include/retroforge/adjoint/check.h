@@ -9,7 +9,7 @@ namespace retroforge
 {
   struct CheckParameters
   {
-    std::vector<double> steps        = {1e-3, 1e-4, 1e-5, 1e-6};
+    std::vector<double> steps        = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
     bool                free         = true;
     double              taylor_start = 1e-2;
     unsigned int        taylor_halvings = 4;

@@ -244,7 +244,7 @@ int main()
       for (unsigned int n = 0; n < 20; ++n)
         check({random.cell(), random.cell_values(), random.cell_values(), {1.693, m, 0.05}}, errors, random);
       std::cout << "m = " << m << std::endl;
-      errors.print(1e-12);
+      errors.print(1e-13);
       largest = std::max(largest, errors.largest());
     }
 
@@ -260,7 +260,7 @@ int main()
       check(c, errors, random);
     }
   std::cout << "Newtonian without regularisation, moving and at rest" << std::endl;
-  errors.print(1e-12);
+  errors.print(1e-13);
   largest = std::max(largest, errors.largest());
   std::cout << "FIGURE kernel_derivative_error " << largest << std::endl;
 }

@@ -180,7 +180,7 @@ namespace retroforge
       for (unsigned int q = 0; q < rule.size(); ++q)
         {
           const auto        &x  = rule.point(q);
-          const Four<double> mu = {1. - x[0] - x[1] - x[2], x[0], x[1], x[2]};
+          const Four<double> mu = {{1. - x[0] - x[1] - x[2], x[0], x[1], x[2]}};
           SubCellPoint       point{{}, mu[a], a, 1.5 * rule.weight(q)};
           for (unsigned int c = 0; c < 4; ++c)
             point.lambda[c] = (c == a ? 0. : mu[c]) + 0.25 * mu[a];

@@ -4,7 +4,7 @@
 // Convergence to a manufactured flow on unstructured meshes of a cube: velocities given on five faces, the traction on
 // the sixth, a body force inside; Newtonian and power-law metal. Expected of a first-order pair of elements: the errors
 // of the velocity (bubble included) fall as h^2, of its gradient as h, of the pressure as h or faster. Orders are slopes
-// of the line of least squares through the meshes; the first figures of each line show the errors themselves.
+// of the line of least squares through the meshes.
 // The file `output` holds what is compared: whether the orders are reached.
 
 #include <deal.II/base/mpi.h>
@@ -23,20 +23,6 @@ struct FlowErrors
 
 const std::string               free_patch = "side +x";
 const std::vector<SubCellPoint> points     = sub_cell_points();
-
-CellValues<double> body_load(const ManufacturedFlow &flow, const Four<Vec3> &X)
-{
-  CellValues<double> load   = {};
-  const double       volume = cell_geometry(X).volume;
-  for (const SubCellPoint &point : points)
-    {
-      const Vec3 force = flow.body_force(point.position(X)) * (point.weight * volume);
-      for (unsigned int a = 0; a < 4; ++a)
-        load.V[a] += point.lambda[a] * force;
-      load.beta += point.bubble * force;
-    }
-  return load;
-}
 
 /// One Newton step; returns its length relative to the velocity.
 double newton_step(const ManufacturedFlow                &flow,
@@ -127,7 +113,7 @@ FlowErrors solve_on(const ManufacturedFlow &flow, const double element_size, std
   const TetMesh                   mesh = unit_cube(element_size);
   std::vector<CellValues<double>> loads;
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
-    loads.push_back(body_load(flow, positions_of_cell(mesh, mesh.X, c)));
+    loads.push_back(flow.body_load(points, positions_of_cell(mesh, mesh.X, c)));
   const auto    traction = flow.traction_load(mesh, free_patch);
   NodalSystem   system(mesh, held_velocities(mesh, free_patch));
   Field<double> W    = flow.interpolant(mesh);

@@ -91,7 +91,7 @@ namespace retroforge
 
     Vec3 traction(const Vec3 &x, const Vec3 &normal) const
     {
-      const auto sigma = stress(Point<double>{x[0], x[1], x[2]});
+      const auto sigma = stress(Point<double>{{x[0], x[1], x[2]}});
       Vec3       t;
       for (unsigned int i = 0; i < 3; ++i)
         for (unsigned int j = 0; j < 3; ++j)
@@ -101,11 +101,11 @@ namespace retroforge
 
     static Vec3 velocity_at(const Vec3 &x)
     {
-      const auto v = velocity(Point<double>{x[0], x[1], x[2]});
+      const auto v = velocity(Point<double>{{x[0], x[1], x[2]}});
       return Vec3({v[0], v[1], v[2]});
     }
 
-    static double pressure_at(const Vec3 &x) { return pressure(Point<double>{x[0], x[1], x[2]}); }
+    static double pressure_at(const Vec3 &x) { return pressure(Point<double>{{x[0], x[1], x[2]}}); }
 
     Field<double> interpolant(const TetMesh &mesh) const
     {
@@ -116,6 +116,21 @@ namespace retroforge
           W.P[k] = pressure_at(mesh.X[k]);
         }
       return W;
+    }
+
+    /// The body force on the nodes and the bubble of a cell at X.
+    CellValues<double> body_load(const std::vector<SubCellPoint> &points, const Four<Vec3> &X) const
+    {
+      CellValues<double> load   = {};
+      const double       volume = cell_geometry(X).volume;
+      for (const SubCellPoint &point : points)
+        {
+          const Vec3 force = body_force(point.position(X)) * (point.weight * volume);
+          for (unsigned int a = 0; a < 4; ++a)
+            load.V[a] += point.lambda[a] * force;
+          load.beta += point.bubble * force;
+        }
+      return load;
     }
 
     /// Nodal forces of the traction on one patch.

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <hdf5.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+/// HDF5 with every return code checked. (deal.II's wrapper drops errors in Release builds.)
+///
+/// Every byte of these files is under a checksum of HDF5's own: metadata by the file format of HDF5 1.10, data by the
+/// Fletcher-32 filter. So a damaged file is told from a whole one before its contents are used. Times of
+/// creation are left out: the same contents give the same bytes.
+namespace retroforge::hdf5
+{
+  /// Why HDF5 refused. Callers turn it into an Error that names the file.
+  struct Failure : std::runtime_error
+  {
+    /// @param error_number  of the operating system, 0 if it was not asked
+    explicit Failure(const std::string &what, const int error_number = 0)
+      : std::runtime_error(what)
+      , error_number(error_number)
+    {}
+
+    int error_number;
+  };
+
+  /// Keeps HDF5 from printing its errors while it lives.
+  class Quiet
+  {
+  public:
+    Quiet();
+    ~Quiet();
+    Quiet(const Quiet &)            = delete;
+    Quiet &operator=(const Quiet &) = delete;
+
+  private:
+    H5E_auto2_t printer_;
+    void       *data_;
+  };
+
+  /// Owns an identifier of HDF5.
+  class Handle
+  {
+  public:
+    using Close = herr_t (*)(hid_t);
+
+    /// @throws Failure if `id` says that its creation failed, which `what` describes
+    Handle(hid_t id, Close close, const std::string &what);
+    Handle(Handle &&other) noexcept;
+    ~Handle();
+    Handle &operator=(Handle &&) = delete;
+
+    operator hid_t() const { return id_; }
+
+    /// @throws Failure  Destruction closes too, but cannot tell what went wrong.
+    void close();
+
+  private:
+    hid_t id_;
+    Close close_;
+  };
+
+  /// Throws Failure with HDF5's reason if `result` is negative.
+  void check(long long result, const std::string &what);
+
+  Handle create_file(const std::string &file); ///< replaces what is there
+  Handle open_file(const std::string &file);   ///< to read
+  Handle create_group(hid_t parent, const std::string &name);
+  Handle open_group(hid_t parent, const std::string &name);
+  bool   has_attribute(hid_t object, const std::string &name);
+
+  /// Small values. Numbers are double, unsigned int, unsigned long or unsigned char, here and below.
+  template <typename Number>
+  void write_attribute(hid_t object, const std::string &name, const Number *values, hsize_t size = 1);
+  template <typename Number>
+  void read_attribute(hid_t object, const std::string &name, Number *values, hsize_t size = 1);
+  template <typename Number>
+  Number read_attribute(hid_t object, const std::string &name);
+
+  template <typename Number>
+  void write_array(hid_t                       parent,
+                   const std::string          &name,
+                   const std::vector<hsize_t> &shape,
+                   const Number               *values);
+
+  /// As an extent of a shape: whatever the file has.
+  inline constexpr hsize_t any = static_cast<hsize_t>(-1);
+
+  /// Entries in row-major order; Failure unless the array has this kind of number and this shape.
+  template <typename Number>
+  std::vector<Number> read_array(hid_t parent, const std::string &name, const std::vector<hsize_t> &shape);
+
+  /// UTF-8, of any length. May not hold zero bytes.
+  void        write_string(hid_t parent, const std::string &name, const std::string &value);
+  std::string read_string(hid_t parent, const std::string &name);
+} // namespace retroforge::hdf5
