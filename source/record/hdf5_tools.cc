@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <type_traits>
 
 namespace retroforge::hdf5
 {
@@ -61,8 +62,8 @@ namespace retroforge::hdf5
         return H5T_NATIVE_DOUBLE;
       else if constexpr (std::is_same_v<Number, unsigned int>)
         return H5T_NATIVE_UINT;
-      else if constexpr (std::is_same_v<Number, unsigned long>)
-        return H5T_NATIVE_ULONG;
+      else if constexpr (std::is_same_v<Number, std::uint64_t>)
+        return H5T_NATIVE_UINT64;
       else
         return H5T_NATIVE_UCHAR;
     }
@@ -74,7 +75,7 @@ namespace retroforge::hdf5
         return H5T_IEEE_F64LE;
       else if constexpr (std::is_same_v<Number, unsigned int>)
         return H5T_STD_U32LE;
-      else if constexpr (std::is_same_v<Number, unsigned long>)
+      else if constexpr (std::is_same_v<Number, std::uint64_t>)
         return H5T_STD_U64LE;
       else
         return H5T_STD_U8LE;
@@ -106,28 +107,31 @@ namespace retroforge::hdf5
     }
 
     /// The shape found, if it agrees.
-    std::vector<hsize_t> check_shape(const hid_t space, const std::string &name, const std::vector<hsize_t> &expected)
+    std::vector<hsize_t>
+    check_shape(const hid_t space, const std::string &name, const std::vector<hsize_t> &expected)
     {
       const std::vector<hsize_t> found = shape_of(space, name);
-      const auto agree = [](const hsize_t a, const hsize_t b) { return a == b || b == any; };
+      const auto                 agree = [](const hsize_t a, const hsize_t b) { return a == b || b == any; };
       if (!std::equal(found.begin(), found.end(), expected.begin(), expected.end(), agree))
-        throw Failure("the shape of " + name + " is " + shape_string(found) + " instead of " + shape_string(expected));
+        throw Failure("the shape of " + name + " is " + shape_string(found) + " instead of " +
+                      shape_string(expected));
       return found;
     }
 
     /// Entries of an array, as many as the file can hold: nothing is allocated on the word of a damaged file.
-    std::size_t safe_size(const hid_t dataset, const std::vector<hsize_t> &shape, const std::size_t entry_bytes)
+    std::size_t
+    safe_size(const hid_t dataset, const std::vector<hsize_t> &shape, const std::size_t entry_bytes)
     {
       hsize_t      file_bytes = 0;
       const Handle file(H5Iget_file_id(dataset), H5Fclose, "file");
       check(H5Fget_filesize(file, &file_bytes), "size of the file");
       hsize_t size = 1;
       for (const hsize_t extent : shape)
-        {
-          if (extent != 0 && size > file_bytes / entry_bytes / extent)
-            throw Failure("an array is larger than its file");
-          size *= extent;
-        }
+      {
+        if (extent != 0 && size > file_bytes / entry_bytes / extent)
+          throw Failure("an array is larger than its file");
+        size *= extent;
+      }
       return size;
     }
 
@@ -136,10 +140,10 @@ namespace retroforge::hdf5
     {
       Handle properties = untimed(H5P_DATASET_CREATE);
       if (std::find(shape.begin(), shape.end(), 0) == shape.end())
-        {
-          check(H5Pset_chunk(properties, shape.size(), shape.data()), "layout");
-          check(H5Pset_fletcher32(properties), "layout");
-        }
+      {
+        check(H5Pset_chunk(properties, shape.size(), shape.data()), "layout");
+        check(H5Pset_fletcher32(properties), "layout");
+      }
       check(H5Pset_fill_time(properties, H5D_FILL_TIME_NEVER), "layout");
       return properties;
     }
@@ -195,16 +199,12 @@ namespace retroforge::hdf5
     throw Failure(what + ": " + (reason.empty() ? "HDF5 gives no reason" : reason));
   }
 
-  Handle::Handle(const hid_t id, const Close close, const std::string &what)
-    : id_(id)
-    , close_(close)
+  Handle::Handle(const hid_t id, const Close close, const std::string &what) : id_(id), close_(close)
   {
     check(id, what);
   }
 
-  Handle::Handle(Handle &&other) noexcept
-    : id_(other.id_)
-    , close_(other.close_)
+  Handle::Handle(Handle &&other) noexcept : id_(other.id_), close_(other.close_)
   {
     other.id_ = -1;
   }
@@ -255,8 +255,9 @@ namespace retroforge::hdf5
   template <typename Number>
   void write_attribute(const hid_t object, const std::string &name, const Number *values, const hsize_t size)
   {
-    const Handle space(size == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &size, nullptr), H5Sclose, name);
-    Handle       attribute(
+    const Handle space(
+      size == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &size, nullptr), H5Sclose, name);
+    Handle attribute(
       H5Acreate2(object, name.c_str(), file_type<Number>(), space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, name);
     check(H5Awrite(attribute, memory_type<Number>(), values), name);
     attribute.close();
@@ -290,7 +291,8 @@ namespace retroforge::hdf5
   }
 
   template <typename Number>
-  std::vector<Number> read_array(const hid_t parent, const std::string &name, const std::vector<hsize_t> &shape)
+  std::vector<Number>
+  read_array(const hid_t parent, const std::string &name, const std::vector<hsize_t> &shape)
   {
     const Handle dataset = open_dataset(parent, name);
     const Handle type(H5Dget_type(dataset), H5Tclose, name), space(H5Dget_space(dataset), H5Sclose, name);
@@ -320,15 +322,15 @@ namespace retroforge::hdf5
     return value;
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                                                        \
-  template void write_attribute(hid_t, const std::string &, const Number *, hsize_t);                         \
-  template void read_attribute(hid_t, const std::string &, Number *, hsize_t);                                \
-  template Number read_attribute(hid_t, const std::string &);                                                 \
-  template void write_array(hid_t, const std::string &, const std::vector<hsize_t> &, const Number *);        \
+#define RETROFORGE_INSTANTIATE(Number)                                                                   \
+  template void   write_attribute(hid_t, const std::string &, const Number *, hsize_t);                  \
+  template void   read_attribute(hid_t, const std::string &, Number *, hsize_t);                         \
+  template Number read_attribute(hid_t, const std::string &);                                            \
+  template void   write_array(hid_t, const std::string &, const std::vector<hsize_t> &, const Number *); \
   template std::vector<Number> read_array(hid_t, const std::string &, const std::vector<hsize_t> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(unsigned int)
-  RETROFORGE_INSTANTIATE(unsigned long)
+  RETROFORGE_INSTANTIATE(std::uint64_t)
   RETROFORGE_INSTANTIATE(unsigned char)
 #undef RETROFORGE_INSTANTIATE
 } // namespace retroforge::hdf5

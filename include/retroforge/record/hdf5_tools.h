@@ -4,15 +4,16 @@
 
 #include <hdf5.h>
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 /// HDF5 with every return code checked. (deal.II's wrapper drops errors in Release builds.)
 ///
-/// Every byte of these files is under a checksum of HDF5's own: metadata by the file format of HDF5 1.10, data by the
-/// Fletcher-32 filter. So a damaged file is told from a whole one before its contents are used. Times of
-/// creation are left out: the same contents give the same bytes.
+/// Every byte of these files is under a checksum of HDF5's own: metadata by the file format of HDF5 1.10,
+/// data by the Fletcher-32 filter. So a damaged file is told from a whole one before its contents are used.
+/// Times of creation are left out: the same contents give the same bytes.
 namespace retroforge::hdf5
 {
   /// Why HDF5 refused. Callers turn it into an Error that names the file.
@@ -20,9 +21,9 @@ namespace retroforge::hdf5
   {
     /// @param error_number  of the operating system, 0 if it was not asked
     explicit Failure(const std::string &what, const int error_number = 0)
-      : std::runtime_error(what)
-      , error_number(error_number)
-    {}
+        : std::runtime_error(what), error_number(error_number)
+    {
+    }
 
     int error_number;
   };
@@ -72,7 +73,7 @@ namespace retroforge::hdf5
   Handle open_group(hid_t parent, const std::string &name);
   bool   has_attribute(hid_t object, const std::string &name);
 
-  /// Small values. Numbers are double, unsigned int, unsigned long or unsigned char, here and below.
+  /// Small values. Numbers are double, unsigned int, std::uint64_t or unsigned char, here and below.
   template <typename Number>
   void write_attribute(hid_t object, const std::string &name, const Number *values, hsize_t size = 1);
   template <typename Number>
@@ -81,10 +82,8 @@ namespace retroforge::hdf5
   Number read_attribute(hid_t object, const std::string &name);
 
   template <typename Number>
-  void write_array(hid_t                       parent,
-                   const std::string          &name,
-                   const std::vector<hsize_t> &shape,
-                   const Number               *values);
+  void
+  write_array(hid_t parent, const std::string &name, const std::vector<hsize_t> &shape, const Number *values);
 
   /// As an extent of a shape: whatever the file has.
   inline constexpr hsize_t any = static_cast<hsize_t>(-1);

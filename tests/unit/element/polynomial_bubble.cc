@@ -324,7 +324,4 @@ int main(int argc, char **argv)
   std::cout << "solutions approach each other" << std::endl
             << "  velocity, order of h at least 1.8: " << (v >= 1.8 ? "yes" : "NO, " + std::to_string(v)) << std::endl
             << "  pressure, order of h at least 1.2: " << (p >= 1.2 ? "yes" : "NO, " + std::to_string(p)) << std::endl;
-  if (argc > 1)
-    std::cout << "v: " << coarse.v << " " << fine.v << " order " << v << ", p: " << coarse.p << " " << fine.p << " order " << p
-              << std::endl;
 }

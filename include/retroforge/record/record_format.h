@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/record/hdf5_tools.h>
+#include <retroforge/record/increment_record.h>
+
+#include <cstdint>
+#include <string>
+
+/// What is in a record, object by object. Little endian; arrays in C order; n_* are counts.
+///
+///     /header                 attributes: format, n_dies, n_patches
+///       program commit parameters               text
+///       X X_0                 [n_nodes][3]      double [mm]   mesh when made, and at the start of the run
+///       cells                 [n_cells][4]      uint32
+///       faces                 [n_faces][4]      uint32        three nodes, patch
+///       patch_0 ...           name; of a symmetry plane also the attributes point, normal  [3] double
+///     /increment_000000 ...   attributes: run, stroke, step, cuts, deformation_energy, friction_energy
+///       V                     [n_solves][n_nodes][3]  double [mm/s]
+///       P                     [n_solves][n_nodes]     double [MPa]
+///       pairs                 [n_pairs][2]            uint32  node, die
+///       touching              [n_pairs]               uint8
+///       active                [n_solves][n_pairs]     uint8
+/// A finished file has at its root the attribute n_increments.
+namespace retroforge
+{
+  /// What holds for a whole run.
+  struct RecordHeader
+  {
+    std::string          program;    ///< version
+    std::string          commit;     ///< of the program
+    std::string          parameters; ///< the complete input
+    unsigned int         n_dies = 0;
+    TetMesh              mesh;
+    NodalVectors<double> X_0; ///< positions at the start of the run [mm]
+  };
+
+  /// What the increments of a run have in common.
+  struct RecordShape
+  {
+    unsigned int  n_nodes = 0, n_dies = 0;
+    std::uint64_t run = 0; ///< fingerprint of the header: increments of different runs do not mix
+
+    RecordShape() = default;
+    explicit RecordShape(const RecordHeader &header);
+  };
+
+  std::string increment_name(unsigned int i); ///< increment_000000
+
+  /// Into and out of an open file.  @throws hdf5::Failure; read_header also Error, which names `file_name`
+  void         write_header(hid_t file, const RecordHeader &header);
+  RecordHeader read_header(hid_t file, const std::string &file_name);
+
+  void            write_increment(hid_t file, unsigned int i, const IncrementRecord &, const RecordShape &);
+  IncrementRecord read_increment(hid_t file, unsigned int i, const RecordShape &);
+} // namespace retroforge

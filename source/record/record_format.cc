@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <deal.II/base/exceptions.h>
+
+#include <retroforge/core/error.h>
+#include <retroforge/mesh/mesh_checks.h>
+#include <retroforge/record/record_format.h>
+
+#include <cstdio>
+#include <cstring>
+
+namespace retroforge
+{
+  namespace
+  {
+    constexpr unsigned int format = 1;
+
+    static_assert(sizeof(Vec3) == 3 * sizeof(double),
+                  "nodal vectors are read and written as arrays of numbers");
+
+    /// FNV-1a.
+    void add_to_fingerprint(std::uint64_t &fingerprint, const void *data, const std::size_t size)
+    {
+      const auto *bytes = static_cast<const unsigned char *>(data);
+      for (std::size_t i = 0; i < size; ++i)
+        fingerprint = (fingerprint ^ bytes[i]) * 0x100000001b3u;
+    }
+
+    void write_vectors(const hid_t parent, const std::string &name, const NodalVectors<double> &X)
+    {
+      hdf5::write_array(parent, name, {X.size(), 3}, X.empty() ? nullptr : X[0].begin_raw());
+    }
+
+    NodalVectors<double> to_vectors(const double *values, const std::size_t n)
+    {
+      NodalVectors<double> X(n);
+      if (n > 0)
+        std::memcpy(X[0].begin_raw(), values, n * sizeof(Vec3));
+      return X;
+    }
+
+    NodalVectors<double> read_vectors(const hid_t parent, const std::string &name, const hsize_t n)
+    {
+      const std::vector<double> values = hdf5::read_array<double>(parent, name, {n, 3});
+      return to_vectors(values.data(), values.size() / 3);
+    }
+
+    std::string patch_name(const unsigned int p)
+    {
+      return "patch_" + std::to_string(p);
+    }
+
+    void write_patch(const hid_t parent, const std::string &name, const Patch &patch)
+    {
+      const hdf5::Handle group = hdf5::create_group(parent, name);
+      hdf5::write_string(group, "name", patch.name);
+      if (patch.symmetry)
+      {
+        hdf5::write_attribute(group, "point", patch.symmetry->point.begin_raw(), 3);
+        hdf5::write_attribute(group, "normal", patch.symmetry->normal.begin_raw(), 3);
+      }
+    }
+
+    Patch read_patch(const hid_t parent, const std::string &name)
+    {
+      const hdf5::Handle group = hdf5::open_group(parent, name);
+      Patch              patch{hdf5::read_string(group, "name"), {}};
+      if (hdf5::has_attribute(group, "point"))
+      {
+        Plane plane;
+        hdf5::read_attribute(group, "point", plane.point.begin_raw(), 3);
+        hdf5::read_attribute(group, "normal", plane.normal.begin_raw(), 3);
+        patch.symmetry = plane;
+      }
+      return patch;
+    }
+
+    void write_mesh(const hid_t parent, const TetMesh &mesh)
+    {
+      std::vector<unsigned int> cells, faces;
+      for (const auto &cell : mesh.cells)
+        cells.insert(cells.end(), cell.begin(), cell.end());
+      for (const BoundaryFace &face : mesh.faces)
+      {
+        faces.insert(faces.end(), face.nodes.begin(), face.nodes.end());
+        faces.push_back(face.patch);
+      }
+      write_vectors(parent, "X", mesh.X);
+      hdf5::write_array(parent, "cells", {mesh.cells.size(), 4}, cells.data());
+      hdf5::write_array(parent, "faces", {mesh.faces.size(), 4}, faces.data());
+      for (unsigned int p = 0; p < mesh.patches.size(); ++p)
+        write_patch(parent, patch_name(p), mesh.patches[p]);
+      const unsigned int n_patches = mesh.patches.size();
+      hdf5::write_attribute(parent, "n_patches", &n_patches);
+    }
+
+    TetMesh read_mesh(const hid_t parent)
+    {
+      using Indices = std::vector<unsigned int>;
+      TetMesh mesh;
+      mesh.X              = read_vectors(parent, "X", hdf5::any);
+      const Indices cells = hdf5::read_array<unsigned int>(parent, "cells", {hdf5::any, 4});
+      for (std::size_t i = 0; i < cells.size(); i += 4)
+        mesh.cells.push_back({cells[i], cells[i + 1], cells[i + 2], cells[i + 3]});
+      const Indices faces = hdf5::read_array<unsigned int>(parent, "faces", {hdf5::any, 4});
+      for (std::size_t i = 0; i < faces.size(); i += 4)
+        mesh.faces.push_back({{faces[i], faces[i + 1], faces[i + 2]}, faces[i + 3]});
+      const auto n_patches = hdf5::read_attribute<unsigned int>(parent, "n_patches");
+      for (unsigned int p = 0; p < n_patches; ++p)
+        mesh.patches.push_back(read_patch(parent, patch_name(p)));
+      return mesh;
+    }
+
+    /// A record with sizes that disagree is a mistake of the program, found before it reaches the disk.
+    void check_increment(const IncrementRecord &increment, const RecordShape &shape)
+    {
+      for (const ContactPair &pair : increment.pairs)
+        AssertThrow(pair.node < shape.n_nodes && pair.die < shape.n_dies,
+                    dealii::ExcMessage("a contact pair refers to a node or die that is not there"));
+      for (const SolveRecord &solve : increment.solves)
+      {
+        AssertThrow(solve.V.size() == shape.n_nodes,
+                    dealii::ExcDimensionMismatch(solve.V.size(), shape.n_nodes));
+        AssertThrow(solve.P.size() == shape.n_nodes,
+                    dealii::ExcDimensionMismatch(solve.P.size(), shape.n_nodes));
+        AssertThrow(solve.active.size() == increment.pairs.size(),
+                    dealii::ExcDimensionMismatch(solve.active.size(), increment.pairs.size()));
+      }
+    }
+
+    void write_solves(const hid_t                     group,
+                      const std::vector<SolveRecord> &solves,
+                      const hsize_t                   n_nodes,
+                      const hsize_t                   n_pairs)
+    {
+      std::vector<double>        V, P;
+      std::vector<unsigned char> active;
+      for (const SolveRecord &solve : solves)
+      {
+        if (n_nodes > 0)
+          V.insert(V.end(), solve.V[0].begin_raw(), solve.V[0].begin_raw() + 3 * n_nodes);
+        P.insert(P.end(), solve.P.begin(), solve.P.end());
+        active.insert(active.end(), solve.active.begin(), solve.active.end());
+      }
+      hdf5::write_array(group, "V", {solves.size(), n_nodes, 3}, V.data());
+      hdf5::write_array(group, "P", {solves.size(), n_nodes}, P.data());
+      hdf5::write_array(group, "active", {solves.size(), n_pairs}, active.data());
+    }
+
+    void write_pairs(const hid_t group, const std::vector<ContactPair> &pairs)
+    {
+      std::vector<unsigned int>  indices;
+      std::vector<unsigned char> touching;
+      for (const ContactPair &pair : pairs)
+      {
+        indices.insert(indices.end(), {pair.node, pair.die});
+        touching.push_back(pair.touching);
+      }
+      hdf5::write_array(group, "pairs", {pairs.size(), 2}, indices.data());
+      hdf5::write_array(group, "touching", {pairs.size()}, touching.data());
+    }
+
+    std::vector<unsigned char>
+    read_flags(const hid_t group, const std::string &name, const std::vector<hsize_t> &shape)
+    {
+      const std::vector<unsigned char> flags = hdf5::read_array<unsigned char>(group, name, shape);
+      for (const unsigned char flag : flags)
+        if (flag > 1)
+          throw hdf5::Failure(name + " holds a flag of " + std::to_string(flag) + ", neither 0 nor 1");
+      return flags;
+    }
+
+    std::vector<ContactPair> read_pairs(const hid_t group, const RecordShape &shape)
+    {
+      const auto               indices  = hdf5::read_array<unsigned int>(group, "pairs", {hdf5::any, 2});
+      const auto               touching = read_flags(group, "touching", {indices.size() / 2});
+      std::vector<ContactPair> pairs;
+      for (std::size_t i = 0; i < touching.size(); ++i)
+      {
+        pairs.push_back({indices[2 * i], indices[2 * i + 1], touching[i] != 0});
+        if (pairs[i].node >= shape.n_nodes || pairs[i].die >= shape.n_dies)
+          throw hdf5::Failure("contact pair " + std::to_string(i) + " is of node " +
+                              std::to_string(pairs[i].node) + " and die " + std::to_string(pairs[i].die) +
+                              " where there are " + std::to_string(shape.n_nodes) + " nodes and " +
+                              std::to_string(shape.n_dies) + " dies, counted from 0");
+      }
+      return pairs;
+    }
+
+    std::vector<SolveRecord> read_solves(const hid_t group, const hsize_t n_nodes, const hsize_t n_pairs)
+    {
+      const auto V      = hdf5::read_array<double>(group, "V", {hdf5::any, n_nodes, 3});
+      const auto n      = V.size() / (3 * n_nodes);
+      const auto P      = hdf5::read_array<double>(group, "P", {n, n_nodes});
+      const auto active = read_flags(group, "active", {n, n_pairs});
+
+      std::vector<SolveRecord> solves(n);
+      for (std::size_t s = 0; s < n; ++s)
+      {
+        solves[s].V = to_vectors(V.data() + s * 3 * n_nodes, n_nodes);
+        solves[s].P.assign(P.begin() + s * n_nodes, P.begin() + (s + 1) * n_nodes);
+        solves[s].active.assign(active.begin() + s * n_pairs, active.begin() + (s + 1) * n_pairs);
+      }
+      return solves;
+    }
+  } // namespace
+
+  RecordShape::RecordShape(const RecordHeader &header)
+      : n_nodes(header.mesh.n_nodes()), n_dies(header.n_dies), run(0xcbf29ce484222325u)
+  {
+    const TetMesh &mesh = header.mesh;
+    add_to_fingerprint(run, header.parameters.data(), header.parameters.size());
+    add_to_fingerprint(run, header.X_0.data(), header.X_0.size() * sizeof(Vec3));
+    add_to_fingerprint(run, mesh.cells.data(), mesh.cells.size() * sizeof(mesh.cells[0]));
+  }
+
+  std::string increment_name(const unsigned int i)
+  {
+    char name[32];
+    std::snprintf(name, sizeof(name), "increment_%06u", i);
+    return name;
+  }
+
+  void write_header(const hid_t file, const RecordHeader &header)
+  {
+    const hdf5::Handle group = hdf5::create_group(file, "header");
+    hdf5::write_attribute(group, "format", &format);
+    hdf5::write_attribute(group, "n_dies", &header.n_dies);
+    hdf5::write_string(group, "program", header.program);
+    hdf5::write_string(group, "commit", header.commit);
+    hdf5::write_string(group, "parameters", header.parameters);
+    write_mesh(group, header.mesh);
+    write_vectors(group, "X_0", header.X_0);
+  }
+
+  RecordHeader read_header(const hid_t file, const std::string &file_name)
+  {
+    const hdf5::Handle group        = hdf5::open_group(file, "header");
+    const auto         found_format = hdf5::read_attribute<unsigned int>(group, "format");
+    RecordHeader       header;
+    header.program = hdf5::read_string(group, "program");
+    if (found_format != format)
+      throw Error(file_name,
+                  "has format " + std::to_string(found_format),
+                  "this program reads format " + std::to_string(format),
+                  "use retroforge " + header.program + ", which wrote it, or run the simulation again");
+    header.commit     = hdf5::read_string(group, "commit");
+    header.parameters = hdf5::read_string(group, "parameters");
+    header.n_dies     = hdf5::read_attribute<unsigned int>(group, "n_dies");
+    header.mesh       = read_mesh(group);
+    header.X_0        = read_vectors(group, "X_0", header.mesh.n_nodes());
+    check_mesh(header.mesh, file_name);
+    return header;
+  }
+
+  void write_increment(const hid_t            file,
+                       const unsigned int     i,
+                       const IncrementRecord &increment,
+                       const RecordShape     &shape)
+  {
+    check_increment(increment, shape);
+    const hdf5::Handle group = hdf5::create_group(file, increment_name(i));
+    hdf5::write_attribute(group, "run", &shape.run);
+    hdf5::write_attribute(group, "stroke", &increment.stroke);
+    hdf5::write_attribute(group, "step", &increment.step);
+    hdf5::write_attribute(group, "cuts", &increment.cuts);
+    hdf5::write_attribute(group, "deformation_energy", &increment.deformation_energy);
+    hdf5::write_attribute(group, "friction_energy", &increment.friction_energy);
+    write_pairs(group, increment.pairs);
+    write_solves(group, increment.solves, shape.n_nodes, increment.pairs.size());
+  }
+
+  IncrementRecord read_increment(const hid_t file, const unsigned int i, const RecordShape &shape)
+  {
+    const hdf5::Handle group = hdf5::open_group(file, increment_name(i));
+    if (hdf5::read_attribute<std::uint64_t>(group, "run") != shape.run)
+      throw hdf5::Failure(increment_name(i) + " belongs to another run");
+    IncrementRecord increment;
+    increment.stroke             = hdf5::read_attribute<double>(group, "stroke");
+    increment.step               = hdf5::read_attribute<double>(group, "step");
+    increment.cuts               = hdf5::read_attribute<unsigned int>(group, "cuts");
+    increment.deformation_energy = hdf5::read_attribute<double>(group, "deformation_energy");
+    increment.friction_energy    = hdf5::read_attribute<double>(group, "friction_energy");
+    increment.pairs              = read_pairs(group, shape);
+    increment.solves             = read_solves(group, shape.n_nodes, increment.pairs.size());
+    return increment;
+  }
+} // namespace retroforge
