@@ -132,7 +132,12 @@ namespace retroforge
         pvd_     = std::make_unique<PvdWriter>(command_.output_directory + "/fields.pvd");
         if (parameters_.output.record)
           record_ = std::make_unique<RecordWriter>(command_.output_directory,
-                                                   RecordHeader{version, commit, echo_, scene_.mesh, X_0_});
+                                                   RecordHeader{version,
+                                                                commit,
+                                                                echo_,
+                                                                static_cast<unsigned int>(scene_.dies.size()),
+                                                                scene_.mesh,
+                                                                X_0_});
         std::cout << "  inc   stroke      force        energy        volume   quality newton krylov   time left\n";
       }
     forged_ = forging_.run(process_, X_0_, [&](const IncrementEvent &event) { watch(event); });
@@ -158,7 +163,7 @@ namespace retroforge
     if (!root_)
       return;
     if (record_)
-      record_->write(event.index - 1, event.record);
+      record_->write(event.record);
     const auto  &leading = nominal_.dies[nominal_.leading_die];
     const double force   = event.report.forces[nominal_.leading_die] * leading.velocity / leading.velocity.norm();
     const double stroke  = event.record.stroke + event.record.step;

@@ -174,6 +174,7 @@ namespace retroforge
         const unsigned int local = a - partition.node_begin;
         for (int e = C_->row_begin[local]; e < C_->row_begin[local + 1]; ++e)
           position[C_->node_of(e)] = e - C_->row_begin[local];
+        diagonal_.push_back(position[a]);
         // The same node must stand at the same place in the rows of the other blocks.
         for (int e = A_->row_begin[3 * local]; e < A_->row_begin[3 * local + 1]; ++e)
           AssertThrow(position[A_->node_of(e)] * 3 + A_->component_of(e) ==
@@ -187,8 +188,9 @@ namespace retroforge
       }
   }
 
-  void LinearSystem::add_cell(const CellIndex c, const unsigned int visited, const CellTangent &t)
+  void LinearSystem::add_cell(const CellIndex c, const unsigned int visited, const TangentPack &t, const unsigned int lane)
   {
+    const double       mass      = t.volume[lane] / 20. / t.viscosity[lane];
     const auto        &nodes     = scene_.mesh.cells[c];
     const Partition   &partition = scene_.partition;
     for (unsigned int a = 0; a < 4; ++a)
@@ -203,10 +205,10 @@ namespace retroforge
               double             A[3][3], Vp[3], pV[3];
               for (unsigned int i = 0; i < 3; ++i)
                 {
-                  Vp[i] = t.B[a][b][i];
-                  pV[i] = t.B[b][a][i];
+                  Vp[i] = t.B[a][b][i][lane];
+                  pV[i] = t.B[b][a][i][lane];
                   for (unsigned int j = 0; j < 3; ++j)
-                    A[i][j] = t.A[a][b][i][j];
+                    A[i][j] = t.A[a][b][i][j][lane];
                 }
               if (!frame_a.identity)
                 {
@@ -243,8 +245,8 @@ namespace retroforge
                   *B_->entry(local, i, position) += Vp[i];
                   continuity[i] += pV[i];
                 }
-              *C_->entry(local, 0, position) += t.C[a][b];
-              *S_->entry(local, 0, position) -= t.C[a][b];
+              *C_->entry(local, 0, position) += t.C[a][b][lane];
+              *S_->entry(local, 0, position) += (a == b ? 2. : 1.) * mass - t.C[a][b][lane];
             }
         }
   }
@@ -263,24 +265,36 @@ namespace retroforge
     clear(*C_, n_owned);
     clear(*S_, n_owned);
     frames_ = make_frames(scene_, stage.contact);
-    tangents_.resize(partition.visited_cells.size());
+    eliminations_.resize(partition.visited_cells.size());
 
-    double log_viscosity = 0., volume = 0.;
-    for (unsigned int v = 0; v < partition.visited_cells.size(); ++v)
+    double                                           log_viscosity = 0., volume = 0.;
+    std::array<CellGeometry<double>, n_lanes>        geometry;
+    std::array<CellValues<double>, n_lanes>          w;
+    std::array<BubbleElimination<double> *, n_lanes> elimination;
+    BubbleElimination<double>                        unused;
+    TangentPack                                      tangent;
+    const unsigned int                               n_visited = partition.visited_cells.size();
+    for (unsigned int begin = 0; begin < n_visited; begin += n_lanes)
       {
-        const CellIndex c        = partition.visited_cells[v];
-        const auto      geometry = cell_geometry(positions_of_cell(scene_.mesh, stage.X, c));
-        compute_cell_tangent(geometry, W.on_cell(scene_.mesh, c), stage.physics.law, tangents_[v]);
-        add_cell(c, v, tangents_[v]);
-        const double mass = geometry.volume / 20. / tangents_[v].viscosity;
-        for (unsigned int a = 0; a < 4; ++a)
-          if (const NodeIndex k = scene_.mesh.cells[c][a]; partition.owns(k))
-            for (unsigned int b = 0; b < 4; ++b)
-              *S_->entry(k - partition.node_begin, 0, positions_[v][a][b]) += a == b ? 2. * mass : mass;
-        if (c >= partition.cell_begin && c < partition.cell_end)
+        const unsigned int n = std::min(n_lanes, n_visited - begin);
+        for (unsigned int lane = 0; lane < n_lanes; ++lane)
           {
-            log_viscosity += std::log(tangents_[v].viscosity) * geometry.volume;
-            volume += geometry.volume;
+            // Lanes without a cell repeat the last one.
+            const CellIndex c = partition.visited_cells[begin + std::min(lane, n - 1)];
+            geometry[lane]    = cell_geometry(positions_of_cell(scene_.mesh, stage.X, c));
+            w[lane]           = W.on_cell(scene_.mesh, c);
+            elimination[lane] = lane < n ? &eliminations_[begin + lane] : &unused;
+          }
+        compute_cell_tangents(geometry, w, stage.physics.law, tangent, elimination);
+        for (unsigned int lane = 0; lane < n; ++lane)
+          {
+            const CellIndex c = partition.visited_cells[begin + lane];
+            add_cell(c, begin + lane, tangent, lane);
+            if (c >= partition.cell_begin && c < partition.cell_end)
+              {
+                log_viscosity += std::log(tangent.viscosity[lane]) * tangent.volume[lane];
+                volume += tangent.volume[lane];
+              }
           }
       }
     volume = partition.sum(volume);
@@ -289,15 +303,8 @@ namespace retroforge
     viscous_diagonal_.resize(3 * n_owned);
     for (unsigned int a = 0; a < n_owned; ++a)
       {
-        const unsigned int position = std::find_if(C_->column_indices + C_->row_begin[a],
-                                                   C_->column_indices + C_->row_begin[a + 1],
-                                                   [&](const int j) {
-                                                     return C_->column_map->GID(j) ==
-                                                            static_cast<int>(a + partition.node_begin);
-                                                   }) -
-                                      (C_->column_indices + C_->row_begin[a]);
         for (unsigned int i = 0; i < 3; ++i)
-          viscous_diagonal_[3 * a + i] = A_->entry(a, i, position)[i];
+          viscous_diagonal_[3 * a + i] = A_->entry(a, i, diagonal_[a])[i];
       }
     add_contact(stage, W, active);
     scale_and_fix();
@@ -315,15 +322,11 @@ namespace retroforge
           const Tensor<2, 3>  tangent =
             Q * contact_tangent(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact) * transpose(Q);
           const unsigned int local = k - partition.node_begin;
-          const CellIndex    c     = scene_.topology.cells[k][0];
-          const auto         a     = std::find(scene_.mesh.cells[c].begin(), scene_.mesh.cells[c].end(), k) -
-                         scene_.mesh.cells[c].begin();
-          const unsigned int position = positions_[visited_index_[c]][a][a];
           for (unsigned int i = 0; i < 3; ++i)
             {
               added[3 * local + i] += tangent[i][i];
               for (unsigned int j = 0; j < 3; ++j)
-                A_->entry(local, i, position)[j] += tangent[i][j];
+                A_->entry(local, i, diagonal_[local])[j] += tangent[i][j];
             }
         }
     scale_.assign(3 * scene_.mesh.n_nodes(), 1.);
@@ -343,25 +346,29 @@ namespace retroforge
     for (NodeIndex k = 0; k < frames_.size(); ++k)
       for (unsigned int i = 0; i < frames_[k].n_fixed; ++i)
         factor[3 * k + i] = 0.;
+    const auto of_columns = [&factor](const Block &block) {
+      std::vector<double> values(block.column_map->NumMyElements());
+      for (unsigned int j = 0; j < values.size(); ++j)
+        values[j] = factor[block.column_map->GID(j)];
+      return values;
+    };
+    const std::vector<double> A_factor = of_columns(*A_), Bt_factor = of_columns(*Bt_);
     for (unsigned int a = 0; a < n_owned; ++a)
       {
         const NodeIndex k = a + partition.node_begin;
         for (unsigned int i = 0; i < 3; ++i)
           {
-            const double f   = factor[3 * k + i];
+            const double       f   = factor[3 * k + i];
             const unsigned int row = 3 * a + i;
             for (int e = A_->row_begin[row]; e < A_->row_begin[row + 1]; ++e)
-              {
-                const unsigned int column = A_->column_map->GID(A_->column_indices[e]);
-                A_->values[e] *= f * factor[column];
-                if (f == 0. && column == 3 * k + i)
-                  A_->values[e] = viscous_diagonal_[row];
-              }
+              A_->values[e] *= f * A_factor[A_->column_indices[e]];
+            if (f == 0.)
+              A_->entry(a, i, diagonal_[a])[i] = viscous_diagonal_[row];
             for (int e = B_->row_begin[row]; e < B_->row_begin[row + 1]; ++e)
               B_->values[e] *= f * pressure_scale_;
           }
         for (int e = Bt_->row_begin[a]; e < Bt_->row_begin[a + 1]; ++e)
-          Bt_->values[e] *= pressure_scale_ * factor[Bt_->column_map->GID(Bt_->column_indices[e])];
+          Bt_->values[e] *= pressure_scale_ * Bt_factor[Bt_->column_indices[e]];
         for (int e = C_->row_begin[a]; e < C_->row_begin[a + 1]; ++e)
           C_->values[e] *= pressure_scale_ * pressure_scale_;
         for (int e = S_->row_begin[a]; e < S_->row_begin[a + 1]; ++e)
@@ -397,7 +404,7 @@ namespace retroforge
         const CellIndex    c    = partition.visited_cells[v];
         CellValues<double> cell = {};
         cell.beta               = rhs.beta[c];
-        tangents_[v].condense(cell);
+        eliminations_[v].condense(cell);
         for (unsigned int a = 0; a < 4; ++a)
           {
             condensed.V[scene_.mesh.cells[c][a]] += cell.V[a];
@@ -435,20 +442,70 @@ namespace retroforge
     partition.gather(solution.P);
   }
 
-  unsigned int LinearSystem::solve(const Field<double> &rhs, const double tolerance, Field<double> &solution)
+  void LinearSystem::load_guess(const Field<double> &guess, TrilinosWrappers::MPI::BlockVector &x) const
+  {
+    const Partition &partition = scene_.partition;
+    double          *velocity  = x.block(0).trilinos_vector()[0];
+    double          *pressure  = x.block(1).trilinos_vector()[0];
+    for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
+      {
+        const unsigned int local = k - partition.node_begin;
+        const Vec3         v     = frames_[k].to_frame(guess.V[k]);
+        for (unsigned int i = 0; i < 3; ++i)
+          velocity[3 * local + i] = i < frames_[k].n_fixed ? 0. : v[i] / scale_[3 * k + i];
+        pressure[local] = guess.P[k] / pressure_scale_;
+      }
+  }
+
+  double LinearSystem::start_from(const std::vector<Field<double>> &guesses)
+  {
+    using Vector = TrilinosWrappers::MPI::BlockVector;
+    x_           = 0.;
+    Vector              r = rhs_;
+    std::vector<Vector> images, sources;
+    for (const Field<double> &guess : guesses)
+      {
+        Vector x(x_), y(x_);
+        load_guess(guess, x);
+        matrix_.vmult(y, x);
+        const double whole = y.l2_norm();
+        for (std::size_t j = 0; j < images.size(); ++j)
+          {
+            const double c = y * images[j];
+            y.add(-c, images[j]);
+            x.add(-c, sources[j]);
+          }
+        const double norm = y.l2_norm();
+        if (!(norm > 1e-8 * whole))
+          continue;
+        y *= 1. / norm;
+        x *= 1. / norm;
+        const double c = y * r;
+        r.add(-c, y);
+        x_.add(c, x);
+        images.push_back(y);
+        sources.push_back(x);
+      }
+    return r.l2_norm();
+  }
+
+  unsigned int LinearSystem::solve(const Field<double>              &rhs,
+                                   const double                      tolerance,
+                                   Field<double>                    &solution,
+                                   const std::vector<Field<double>> &guesses)
   {
     load(rhs, rhs_);
     unsigned int iterations = 0;
     if (direct())
       solve_directly();
     else
-      iterations = solve_iteratively(tolerance);
+      iterations = solve_iteratively(tolerance, guesses);
     unload(x_, solution);
     const Partition &partition = scene_.partition;
     for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
       {
         const CellValues<double> w = solution.on_cell(scene_.mesh, c);
-        solution.beta[c] = tangents_[visited_index_[c]].recover_bubble(rhs.beta[c], w.V, w.P);
+        solution.beta[c] = eliminations_[visited_index_[c]].recover_bubble(rhs.beta[c], w.V, w.P);
       }
     partition.gather_cells(solution.beta.data()->begin_raw(), 3);
     ++n_solves;
@@ -486,13 +543,16 @@ namespace retroforge
     first_rate_ = 0.;
   }
 
-  unsigned int LinearSystem::solve_iteratively(const double tolerance)
+  unsigned int LinearSystem::solve_iteratively(const double tolerance, const std::vector<Field<double>> &guesses)
   {
     const double norm = rhs_.l2_norm();
     x_                = 0.;
     if (norm == 0.)
       return 0;
-    const double decades = -std::log10(tolerance);
+    const double start = start_from(guesses);
+    if (start <= tolerance * norm)
+      return 0;
+    const double decades = std::max(0.5, std::log10(start / (tolerance * norm)));
     unsigned int total   = 0;
     for (unsigned int attempt = 0; attempt < 2; ++attempt)
       {

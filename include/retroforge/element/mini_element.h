@@ -87,17 +87,13 @@ namespace retroforge
                                            double                      weight,
                                            CellValues<double>         &w_bar);
 
-  /// Second derivatives of Pi_T with the bubble eliminated: the symmetric 16 x 16 matrix [A B; B^T -C] of one cell.
-  struct CellTangent
+  /// What the elimination of a cell's bubble needs again when systems are solved.
+  template <typename Number>
+  struct BubbleElimination
   {
-    double A[4][4][3][3]; ///< velocity-velocity
-    double B[4][4][3];    ///< velocity of the first node, pressure of the second
-    double C[4][4];       ///< pressure-pressure, negative semi-definite (enters as it is)
-    double viscosity;     ///< mean stress factor / 2 [MPa s], for the Schur complement's scale
-    // What the elimination of the bubble needs:
-    double Vb[4][3][3]; ///< velocity-bubble
-    double Pb[4][3];    ///< pressure-bubble
-    double M[3][3];     ///< inverse of bubble-bubble
+    Number Vb[4][3][3]; ///< velocity-bubble
+    Number Pb[4][3];    ///< pressure-bubble
+    Number M[3][3];     ///< inverse of bubble-bubble
 
     /// Bubble part of a solution of the uncondensed system with right-hand side rhs.beta.
     Vec3 recover_bubble(const Vec3 &rhs_beta, const Four<Vec3> &V, const Four<double> &P) const;
@@ -106,10 +102,36 @@ namespace retroforge
     void condense(CellValues<double> &rhs) const;
   };
 
+  /// Second derivatives of Pi_T with the bubble eliminated: the symmetric 16 x 16 matrix [A B; B^T -C] of one cell.
+  template <typename Number>
+  struct TangentBlocks : BubbleElimination<Number>
+  {
+    Number A[4][4][3][3]; ///< velocity-velocity
+    Number B[4][4][3];    ///< velocity of the first node, pressure of the second
+    Number C[4][4];       ///< pressure-pressure, negative semi-definite (enters as it is)
+    Number viscosity;     ///< mean stress factor / 2 [MPa s], for the Schur complement's scale
+    Number volume;        ///< [mm^3]
+  };
+
+  using CellTangent = TangentBlocks<double>;
+
   void compute_cell_tangent(const CellGeometry<double> &geometry,
                             const CellValues<double>   &w,
                             const NortonHoff<double>   &law,
                             CellTangent                &tangent);
+
+  /// Four cells at once, one per lane of a vector register: what the assembly of the whole matrix uses.
+  typedef double Pack __attribute__((vector_size(32)));
+  inline constexpr unsigned int n_lanes = 4;
+  using TangentPack                     = TangentBlocks<Pack>;
+
+  /// As compute_cell_tangent, for n_lanes cells.
+  /// @param elimination  where each lane's part that must be kept goes
+  void compute_cell_tangents(const std::array<CellGeometry<double>, n_lanes>        &geometry,
+                             const std::array<CellValues<double>, n_lanes>          &w,
+                             const NortonHoff<double>                               &law,
+                             TangentPack                                            &tangent,
+                             const std::array<BubbleElimination<double> *, n_lanes> &elimination);
 
   /// The bubble that makes the bubble's residual vanish at given V and P: a convex problem in three unknowns, solved by
   /// Newton to rounding. Starts from w.beta.

@@ -56,7 +56,11 @@ namespace retroforge
 
     /// Solution of the uncondensed system for the right-hand side rhs (owned entries), to `tolerance` relative to the
     /// scaled right-hand side. Returns the number of Krylov iterations (0 for a direct solve). All ranks get all of it.
-    unsigned int solve(const Field<double> &rhs, const double tolerance, Field<double> &solution);
+    /// @param guesses  fields, like the solutions of earlier systems, the best combination of which is the start
+    unsigned int solve(const Field<double>              &rhs,
+                       double                            tolerance,
+                       Field<double>                    &solution,
+                       const std::vector<Field<double>> &guesses = {});
 
     /// Forget the preconditioner: the next solve makes a new one.
     void reset();
@@ -72,13 +76,16 @@ namespace retroforge
     struct Block; // raw access to the rows of one block
 
     void make_pattern();
-    void add_cell(const CellIndex c, const unsigned int visited, const CellTangent &tangent);
+    void add_cell(CellIndex c, unsigned int visited, const TangentPack &tangent, unsigned int lane);
     void add_contact(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
     void scale_and_fix();
     void make_preconditioner();
     void load(const Field<double> &rhs, dealii::TrilinosWrappers::MPI::BlockVector &b) const;
     void unload(const dealii::TrilinosWrappers::MPI::BlockVector &x, Field<double> &solution) const;
-    unsigned int solve_iteratively(double tolerance);
+    void load_guess(const Field<double> &guess, dealii::TrilinosWrappers::MPI::BlockVector &x) const;
+    /// Sets x_ to the combination of the guesses with the least residual, and returns its norm.
+    double       start_from(const std::vector<Field<double>> &guesses);
+    unsigned int solve_iteratively(double tolerance, const std::vector<Field<double>> &guesses);
     void         solve_directly();
     bool         direct() const { return parameters_.method == "direct"; }
 
@@ -90,10 +97,10 @@ namespace retroforge
     std::vector<double>      scale_;          ///< of each velocity component in its frame
     double                   pressure_scale_ = 1.;
     std::vector<double>      viscous_diagonal_;
-    std::vector<CellTangent> tangents_;       ///< of the visited cells
+    std::vector<BubbleElimination<double>> eliminations_; ///< of the visited cells
     std::vector<CellIndex>   visited_index_;  ///< cell -> position in visited_cells
 
-    std::vector<unsigned int> row_begin_;     ///< of the owned nodes, in neighbours
+    std::vector<unsigned int> diagonal_; ///< where an owned node stands in its own row
     /// Of each visited cell: where node b stands in the row of node a (invalid_index when a is not owned).
     std::vector<std::array<std::array<unsigned int, 4>, 4>> positions_;
 

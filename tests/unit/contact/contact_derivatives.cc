@@ -2,13 +2,16 @@
 // Copyright (C) 2026 The Retroforge authors
 
 // Derivatives of contact and friction at one node, and of what they need of the mesh. Proved:
-// - the force is the gradient of the potential (differences of fourth order), the tangent the derivative of the force,
+// - the force is the gradient of the potential (differences of fourth order), the tangent the derivative of
+// the force,
 //   symmetric;
-// - the reverse sweeps of force and friction power agree with forward differentiation in each of their 15 inputs:
+// - the reverse sweeps of force and friction power agree with forward differentiation in each of their 15
+// inputs:
 //   pressed or not, sliding or stuck (zero slip), Newtonian without regularisation, without friction area;
-// - gaps, ramps, areas under two tilted dies: <A x, y> = <x, A^T y> for A the forward derivative, where the smooth ramp,
+// - gaps, ramps, areas under two tilted dies: <A x, y> = <x, A^T y> for A the forward derivative, where the
+// smooth ramp,
 //   the sharp one and the dies' displacements count;
-// - the smooth ramp joins 1 and 0 with zero slope.
+// - the smooth ramp joins 1 and 0 with zero slope and curvature.
 
 #include <deal.II/base/mpi.h>
 
@@ -21,7 +24,8 @@ using namespace retroforge;
 
 /// The inputs of a node's force in the order u, n, delta, tau, S, Sf, alpha, K, m, rho, v0.
 constexpr unsigned int n_inputs = 15;
-const char *const      names[]  = {"u", "u", "u", "n", "n", "n", "delta", "tau", "S", "Sf", "alpha", "K", "m", "rho", "v0"};
+const char *const      names[] =
+  {"u", "u", "u", "n", "n", "n", "delta", "tau", "S", "Sf", "alpha", "K", "m", "rho", "v0"};
 
 template <typename Number>
 struct NodeCase
@@ -32,8 +36,21 @@ struct NodeCase
 
   std::array<Number *, n_inputs> inputs()
   {
-    return {{&node.u[0], &node.u[1], &node.u[2], &node.n[0], &node.n[1], &node.n[2], &node.delta, &node.tau, &node.S,
-             &node.Sf, &node.alpha, &law.K, &law.m, &contact.rho, &contact.v0}};
+    return {{&node.u[0],
+             &node.u[1],
+             &node.u[2],
+             &node.n[0],
+             &node.n[1],
+             &node.n[2],
+             &node.delta,
+             &node.tau,
+             &node.S,
+             &node.Sf,
+             &node.alpha,
+             &law.K,
+             &law.m,
+             &contact.rho,
+             &contact.v0}};
   }
 };
 
@@ -41,8 +58,8 @@ struct NodeCase
 NodeCase<Dual> vary(NodeCase<double> c, const unsigned int i)
 {
   NodeCase<Dual> d;
-  d.law.e0      = Dual(c.law.e0);
-  d.node.active = c.node.active;
+  d.law.e0        = Dual(c.law.e0);
+  d.node.active   = c.node.active;
   const auto from = c.inputs();
   const auto to   = d.inputs();
   for (unsigned int k = 0; k < n_inputs; ++k)
@@ -52,8 +69,21 @@ NodeCase<Dual> vary(NodeCase<double> c, const unsigned int i)
 
 std::array<double, n_inputs> values(const ContactNodeBar &bar)
 {
-  return {{bar.u[0], bar.u[1], bar.u[2], bar.n[0], bar.n[1], bar.n[2], bar.delta, bar.tau, bar.S, bar.Sf, bar.alpha,
-           bar.K, bar.m, bar.rho, bar.v0}};
+  return {{bar.u[0],
+           bar.u[1],
+           bar.u[2],
+           bar.n[0],
+           bar.n[1],
+           bar.n[2],
+           bar.delta,
+           bar.tau,
+           bar.S,
+           bar.Sf,
+           bar.alpha,
+           bar.K,
+           bar.m,
+           bar.rho,
+           bar.v0}};
 }
 
 void check_potential(const NodeCase<double> &c, Errors &errors)
@@ -61,16 +91,17 @@ void check_potential(const NodeCase<double> &c, Errors &errors)
   const double        step = 1e-3;
   std::vector<double> gradient;
   for (unsigned int i = 0; i < 3; ++i)
-    {
-      const auto at = [&](const double factor) {
-        NodeCase<double> moved = c;
-        moved.node.u[i] += factor * step;
-        return contact_potential(moved.node, moved.law, moved.contact);
-      };
-      gradient.push_back((8. * (at(1.) - at(-1.)) - (at(2.) - at(-2.))) / (12. * step));
-    }
+  {
+    const auto at = [&](const double factor) {
+      NodeCase<double> moved = c;
+      moved.node.u[i] += factor * step;
+      return contact_potential(moved.node, moved.law, moved.contact);
+    };
+    gradient.push_back((8. * (at(1.) - at(-1.)) - (at(2.) - at(-2.))) / (12. * step));
+  }
   const Vec3 force = contact_force(c.node, c.law, c.contact);
-  errors.compare("force as gradient of the potential, / 1e3", std::vector<double>(force.begin_raw(), force.end_raw()), gradient);
+  errors.compare(
+    "force as gradient of the potential", std::vector<double>(force.begin_raw(), force.end_raw()), gradient);
 }
 
 void check_tangent(const NodeCase<double> &c, Errors &errors)
@@ -78,40 +109,40 @@ void check_tangent(const NodeCase<double> &c, Errors &errors)
   const auto          tangent = contact_tangent(c.node, c.law, c.contact);
   std::vector<double> closed, transposed, expected;
   for (unsigned int j = 0; j < 3; ++j)
+  {
+    const NodeCase<Dual> d     = vary(c, j);
+    const auto           force = contact_force(d.node, d.law, d.contact);
+    for (unsigned int i = 0; i < 3; ++i)
     {
-      const NodeCase<Dual> d     = vary(c, j);
-      const auto           force = contact_force(d.node, d.law, d.contact);
-      for (unsigned int i = 0; i < 3; ++i)
-        {
-          closed.push_back(tangent[i][j]);
-          transposed.push_back(tangent[j][i]);
-          expected.push_back(force[i].dx(0));
-        }
+      closed.push_back(tangent[i][j]);
+      transposed.push_back(tangent[j][i]);
+      expected.push_back(force[i].dx(0));
     }
+  }
   errors.compare("tangent", closed, expected);
   errors.compare("symmetry of the tangent", closed, transposed);
 }
 
 void check_reverse(const NodeCase<double> &c, const Vec3 &lambda, Errors &errors)
 {
-  const double weight = -0.7;
+  const double weight    = -0.7;
   const auto   force_bar = values(reverse_contact_force(c.node, c.law, c.contact, lambda));
   const auto   power_bar = values(reverse_friction_power(c.node, c.law, c.contact, weight));
   std::map<std::string, std::vector<double>> force[2], power[2];
   for (unsigned int i = 0; i < n_inputs; ++i)
-    {
-      const NodeCase<Dual> d = vary(c, i);
-      const auto           f = contact_force(d.node, d.law, d.contact);
-      force[0][names[i]].push_back(force_bar[i]);
-      force[1][names[i]].push_back(lambda[0] * f[0].dx(0) + lambda[1] * f[1].dx(0) + lambda[2] * f[2].dx(0));
-      power[0][names[i]].push_back(power_bar[i]);
-      power[1][names[i]].push_back(weight * friction_power(d.node, d.law, d.contact).dx(0));
-    }
+  {
+    const NodeCase<Dual> d = vary(c, i);
+    const auto           f = contact_force(d.node, d.law, d.contact);
+    force[0][names[i]].push_back(force_bar[i]);
+    force[1][names[i]].push_back(lambda[0] * f[0].dx(0) + lambda[1] * f[1].dx(0) + lambda[2] * f[2].dx(0));
+    power[0][names[i]].push_back(power_bar[i]);
+    power[1][names[i]].push_back(weight * friction_power(d.node, d.law, d.contact).dx(0));
+  }
   for (const auto &[name, value] : force[0])
-    {
-      errors.compare("lambda·force in " + name, value, force[1][name]);
-      errors.compare("friction power in " + name, power[0][name], power[1][name]);
-    }
+  {
+    errors.compare("lambda·force in " + name, value, force[1][name]);
+    errors.compare("friction power in " + name, power[0][name], power[1][name]);
+  }
 }
 
 NodeCase<double> random_case(Random &random, const double m, const double v0)
@@ -125,22 +156,23 @@ NodeCase<double> random_case(Random &random, const double m, const double v0)
   return c;
 }
 
-double check_nodes(const std::string &title, const double m, const double v0, const bool sliding, const double Sf)
+double
+check_nodes(const std::string &title, const double m, const double v0, const bool sliding, const double Sf)
 {
   Random       random;
   Errors       errors;
   unsigned int n_active = 0;
   for (unsigned int k = 0; k < 20; ++k)
-    {
-      NodeCase<double> c = random_case(random, m, v0);
-      if (!sliding)
-        c.node.u = random.scalar() * c.node.n;
-      c.node.Sf     = Sf;
-      c.node.active = approach_excess(c.node) > 0.;
-      n_active += c.node.active;
-      check_tangent(c, errors);
-      check_reverse(c, random.vector(), errors);
-    }
+  {
+    NodeCase<double> c = random_case(random, m, v0);
+    if (!sliding)
+      c.node.u = random.scalar() * c.node.n;
+    c.node.Sf     = Sf;
+    c.node.active = approach_excess(c.node) > 0.;
+    n_active += c.node.active;
+    check_tangent(c, errors);
+    check_reverse(c, random.vector(), errors);
+  }
   std::cout << title << ", m = " << m << std::endl
             << "  pressed and free nodes: " << (n_active > 3 && n_active < 17 ? "yes" : "NO") << std::endl;
   errors.print(1e-12);
@@ -169,15 +201,13 @@ struct CornerScene
   }
 
   CornerScene(const FrictionRamp &ramp, Random &random)
-    : mesh(make_mesh())
-    , topology(mesh)
-    , X(mesh.X)
-    , ramp(ramp)
+      : mesh(make_mesh()), topology(mesh), X(mesh.X), ramp(ramp)
   {
     for (Vec3 &x : X)
       x += 0.1 * random.vector();
     const Vec3 up = Vec3({0.1, -0.15, 1.}), side = Vec3({-1., 0.1, 0.2});
-    dies   = {Die("lower", Vec3({0., 0., 0.1}), up / up.norm()), Die("side", Vec3({5., 0., 0.}), side / side.norm())};
+    dies   = {Die("lower", Vec3({0., 0., 0.1}), up / up.norm()),
+              Die("side", Vec3({5., 0., 0.}), side / side.norm())};
     states = {{Vec3(), 0.1 * random.vector(), 0.3}, {Vec3(), 0.1 * random.vector(), 0.2}};
     pairs  = find_contact_pairs(topology, dies, states, X, ramp, 1.5 * ramp.width);
   }
@@ -206,34 +236,38 @@ Vector3<Dual> with_direction(const Vec3 &x, const Vec3 &x_dot)
 {
   Vector3<Dual> d;
   for (unsigned int i = 0; i < 3; ++i)
-    {
-      d[i]                 = Dual(1, 0, x[i]);
-      d[i].fastAccessDx(0) = x_dot[i];
-    }
+  {
+    d[i]                 = Dual(1, 0, x[i]);
+    d[i].fastAccessDx(0) = x_dot[i];
+  }
   return d;
 }
 
 /// One random direction of nodes and dies, and the set and areas along it.
-void check_mesh(const CornerScene &scene, Random &random, const bool move_nodes, const bool move_dies, Errors &errors)
+void check_mesh(const CornerScene &scene,
+                Random            &random,
+                const bool         move_nodes,
+                const bool         move_dies,
+                Errors            &errors)
 {
   NodalVectors<double> X_dot(scene.X.size());
   NodalVectors<Dual>   X;
   for (std::size_t k = 0; k < scene.X.size(); ++k)
-    {
-      X_dot[k] = move_nodes ? random.vector() : Vec3();
-      X.push_back(with_direction(scene.X[k], X_dot[k]));
-    }
+  {
+    X_dot[k] = move_nodes ? random.vector() : Vec3();
+    X.push_back(with_direction(scene.X[k], X_dot[k]));
+  }
   std::vector<Vec3>           displacement_dot;
   std::vector<DieState<Dual>> states;
   for (const auto &state : scene.states)
-    {
-      displacement_dot.push_back(move_dies ? random.vector() : Vec3());
-      states.push_back({with_direction(state.velocity, Vec3()),
-                        with_direction(state.displacement, displacement_dot.back()),
-                        Dual(state.friction)});
-    }
-  const auto contact =
-    make_contact_set(scene.mesh, scene.topology, scene.dies, scene.states, scene.pairs, scene.ramp, 0.3, scene.X);
+  {
+    displacement_dot.push_back(move_dies ? random.vector() : Vec3());
+    states.push_back({with_direction(state.velocity, Vec3()),
+                      with_direction(state.displacement, displacement_dot.back()),
+                      Dual(state.friction)});
+  }
+  const auto contact = make_contact_set(
+    scene.mesh, scene.topology, scene.dies, scene.states, scene.pairs, scene.ramp, 0.3, scene.X);
   const auto moving =
     make_contact_set(scene.mesh, scene.topology, scene.dies, states, scene.pairs, scene.ramp, Dual(0.3), X);
   const auto areas = contact_areas(scene.mesh, scene.topology, moving, X);
@@ -243,17 +277,17 @@ void check_mesh(const CornerScene &scene, Random &random, const bool move_nodes,
   ContactAreas<double> areas_bar{std::vector<double>(n), std::vector<double>(n)};
   double               forward = 0.;
   for (unsigned int p = 0; p < n; ++p)
-    {
-      bar.delta[p]    = random.scalar();
-      bar.ramp[p]     = random.scalar();
-      bar.n[p]        = random.vector();
-      areas_bar.S[p]  = random.scalar();
-      areas_bar.Sf[p] = random.scalar();
-      forward += bar.delta[p] * moving.projections[p].delta.dx(0) + bar.ramp[p] * moving.ramps[p].dx(0) +
-                 areas_bar.S[p] * areas.S[p].dx(0) + areas_bar.Sf[p] * areas.Sf[p].dx(0);
-      for (unsigned int i = 0; i < 3; ++i)
-        forward += bar.n[p][i] * moving.projections[p].n[i].dx(0);
-    }
+  {
+    bar.delta[p]    = random.scalar();
+    bar.ramp[p]     = random.scalar();
+    bar.n[p]        = random.vector();
+    areas_bar.S[p]  = random.scalar();
+    areas_bar.Sf[p] = random.scalar();
+    forward += bar.delta[p] * moving.projections[p].delta.dx(0) + bar.ramp[p] * moving.ramps[p].dx(0) +
+               areas_bar.S[p] * areas.S[p].dx(0) + areas_bar.Sf[p] * areas.Sf[p].dx(0);
+    for (unsigned int i = 0; i < 3; ++i)
+      forward += bar.n[p][i] * moving.projections[p].n[i].dx(0);
+  }
   NodalVectors<double> X_bar(scene.X.size());
   ContactSensitivity   sensitivity;
   sensitivity.dies.resize(scene.dies.size());
@@ -281,14 +315,15 @@ double check_meshes(const FrictionRamp &ramp)
   for (const auto &face : contact.friction_faces)
     ++n_faces[contact.pairs[face.points[0]].die];
   std::cout << (ramp.sharp ? "sharp" : "smooth") << " ramp under two tilted dies" << std::endl
-            << "  friction faces on both dies: " << (n_faces[0] > 3 && n_faces[1] > 3 ? "yes" : "NO") << std::endl
+            << "  friction faces on both dies: " << (n_faces[0] > 3 && n_faces[1] > 3 ? "yes" : "NO")
+            << std::endl
             << "  nodes within the ramp: " << (n_partial > 3 ? "some" : "none") << std::endl;
   for (unsigned int k = 0; k < 5; ++k)
-    {
-      check_mesh(scene, random, true, true, errors);
-      check_mesh(scene, random, true, false, errors);
-      check_mesh(scene, random, false, true, errors);
-    }
+  {
+    check_mesh(scene, random, true, true, errors);
+    check_mesh(scene, random, true, false, errors);
+    check_mesh(scene, random, false, true, errors);
+  }
   errors.print(1e-12);
   return errors.largest();
 }
@@ -300,17 +335,22 @@ void check_ramp()
   bool               falls = true;
   double             last  = 1.;
   for (double delta = -0.1; delta < 0.95; delta += 0.013)
-    {
-      const Dual w = ramp(Dual(1, 0, delta), true);
-      errors.compare("slope", 1. + ramp.derivative(delta), 1. + (w.hasFastAccess() ? w.dx(0) : 0.));
-      falls = falls && w.val() <= last;
-      last  = w.val();
-    }
-  const double near = 1e-8;
-  errors.compare("slope at contact, / 1e5", 1. + 1e-5 * ramp.derivative(near), 1.);
-  errors.compare("slope out of reach, / 1e5", 1. + 1e-5 * ramp.derivative(0.8 - near), 1.);
+  {
+    const Dual w = ramp(Dual(1, 0, delta), true);
+    errors.compare("slope", 1. + ramp.derivative(delta), 1. + (w.hasFastAccess() ? w.dx(0) : 0.));
+    falls = falls && w.val() <= last;
+    last  = w.val();
+  }
+  const double near = 1e-6, far = ramp.width - near;
+  // Twice differentiable: the slope leaves zero with the square of the distance.
+  errors.compare("square law at contact, / 1e8",
+                 1. + 1e-8 * ramp.derivative(2. * near) / ramp.derivative(near),
+                 1. + 4e-8);
+  errors.compare("square law out of reach, / 1e8",
+                 1. + 1e-8 * ramp.derivative(far - near) / ramp.derivative(far),
+                 1. + 4e-8);
   errors.compare("value at contact", ramp(near, true), ramp(-near, true));
-  errors.compare("value out of reach", 1. + ramp(0.8 - near, true), 1. + ramp(0.8 + near, false));
+  errors.compare("value out of reach", 1. + ramp(far, true), 1. + ramp(ramp.width + near, false));
   errors.compare("value halfway", ramp(0.4, true), 0.5);
   std::cout << "smooth ramp" << std::endl << "  falls: " << (falls ? "yes" : "NO") << std::endl;
   errors.print(1e-12);
@@ -321,10 +361,10 @@ int main(int argc, char **argv)
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   double                                   largest = 0.;
   for (const double m : {1., 0.5, 0.139, 0.05})
-    {
-      largest = std::max(largest, check_nodes("sliding", m, 0.1, true, 1.2));
-      largest = std::max(largest, check_nodes("stuck", m, 0.1, false, 1.2));
-    }
+  {
+    largest = std::max(largest, check_nodes("sliding", m, 0.1, true, 1.2));
+    largest = std::max(largest, check_nodes("stuck", m, 0.1, false, 1.2));
+  }
   largest = std::max(largest, check_nodes("sliding, not regularised", 1., 0., true, 1.2));
   largest = std::max(largest, check_nodes("without friction area", 0.139, 0.1, true, 0.));
 
@@ -342,10 +382,10 @@ int main(int argc, char **argv)
   Errors potential;
   for (const double m : {1., 0.5, 0.139})
     for (unsigned int k = 0; k < 20; ++k)
-      {
-        NodeCase<double> sliding = random_case(random, m, 0.5);
-        check_potential(sliding, potential);
-      }
+    {
+      NodeCase<double> sliding = random_case(random, m, 0.5);
+      check_potential(sliding, potential);
+    }
   std::cout << "potential" << std::endl;
   potential.print(1e-9);
 

@@ -23,10 +23,10 @@ namespace retroforge
     {
       CellValues<double> w;
       for (unsigned int a = 0; a < 4; ++a)
-        {
-          w.V[a] = vector();
-          w.P[a] = scalar();
-        }
+      {
+        w.V[a] = vector();
+        w.P[a] = scalar();
+      }
       w.beta = vector();
       return w;
     }
@@ -51,17 +51,18 @@ namespace retroforge
   {
   public:
     /// Compares vectors relative to the reference's largest entry (absolutely when it is zero).
-    void compare(const std::string &what, const std::vector<double> &value, const std::vector<double> &reference)
+    void
+    compare(const std::string &what, const std::vector<double> &value, const std::vector<double> &reference)
     {
       double difference = 0., size = 0.;
       for (std::size_t i = 0; i < value.size(); ++i)
-        {
-          // Written so that a NaN counts as wrong.
-          if (!(std::abs(value[i] - reference[i]) <= difference))
-            difference = std::abs(value[i] - reference[i]);
-          size = std::max(size, std::abs(reference[i]));
-          finite_ = finite_ && std::isfinite(value[i]);
-        }
+      {
+        // Written so that a NaN counts as wrong.
+        if (!(std::abs(value[i] - reference[i]) <= difference))
+          difference = std::abs(value[i] - reference[i]);
+        size    = std::max(size, std::abs(reference[i]));
+        finite_ = finite_ && std::isfinite(value[i]);
+      }
       double &error = errors_[what];
       error         = std::max(error, finite_ ? difference / (size > 0. ? size : 1.) : 1e300);
     }

@@ -3,9 +3,12 @@
 
 // The closed forms of the mini element against forward automatic differentiation, on random cells. Proved:
 // - the residual is the gradient of the functional;
-// - the condensed tangent, its right-hand side and the recovered bubble solve the uncondensed 19 x 19 system, whose
-//   matrix is the derivative of the residual; both are symmetric, the pressure block is negative semi-definite;
-// - the reverse sweeps give the derivatives of lambda·residual and of the dissipation in X, K, m, e0 and the unknowns;
+// - the condensed tangent, its right-hand side and the recovered bubble solve the uncondensed 19 x 19 system,
+// whose
+//   matrix is the derivative of the residual; both are symmetric, the pressure block is negative
+//   semi-definite;
+// - the reverse sweeps give the derivatives of lambda·residual and of the dissipation in X, K, m, e0 and the
+// unknowns;
 // - the bubble found from V and P leaves no residual in its rows;
 // - a Newtonian cell at rest without regularisation (zero to the power zero) gives numbers everywhere.
 
@@ -35,11 +38,11 @@ CellValues<Number> constant(const CellValues<double> &w)
 {
   CellValues<Number> x;
   for (unsigned int a = 0; a < 4; ++a)
-    {
-      for (unsigned int i = 0; i < 3; ++i)
-        x.V[a][i] = Number(w.V[a][i]);
-      x.P[a] = Number(w.P[a]);
-    }
+  {
+    for (unsigned int i = 0; i < 3; ++i)
+      x.V[a][i] = Number(w.V[a][i]);
+    x.P[a] = Number(w.P[a]);
+  }
   for (unsigned int i = 0; i < 3; ++i)
     x.beta[i] = Number(w.beta[i]);
   return x;
@@ -110,14 +113,15 @@ double condensed(const CellTangent &t, const unsigned int r, const unsigned int 
 
 void check_tangent(const Case &c, Errors &errors, Random &random)
 {
-  const auto          residual = flatten(cell_residual(c.constant_geometry(), independent(c.w), constant<Unknowns>(c.law)));
+  const auto residual =
+    flatten(cell_residual(c.constant_geometry(), independent(c.w), constant<Unknowns>(c.law)));
   std::vector<double> H, H_transposed;
   for (unsigned int r = 0; r < 19; ++r)
     for (unsigned int s = 0; s < 19; ++s)
-      {
-        H.push_back(residual[r].dx(s));
-        H_transposed.push_back(residual[s].dx(r));
-      }
+    {
+      H.push_back(residual[r].dx(s));
+      H_transposed.push_back(residual[s].dx(r));
+    }
   errors.compare("symmetry of the uncondensed tangent", H, H_transposed);
 
   CellTangent t;
@@ -131,12 +135,12 @@ void check_tangent(const Case &c, Errors &errors, Random &random)
       Hx[r] += H[19 * r + s] * x_flat[s];
   CellValues<double> rhs;
   for (unsigned int a = 0; a < 4; ++a)
-    {
-      rhs.V[a] = Vec3({Hx[3 * a], Hx[3 * a + 1], Hx[3 * a + 2]});
-      rhs.P[a] = Hx[15 + a];
-    }
-  rhs.beta               = Vec3({Hx[12], Hx[13], Hx[14]});
-  const Vec3 bubble      = t.recover_bubble(rhs.beta, x.V, x.P);
+  {
+    rhs.V[a] = Vec3({Hx[3 * a], Hx[3 * a + 1], Hx[3 * a + 2]});
+    rhs.P[a] = Hx[15 + a];
+  }
+  rhs.beta          = Vec3({Hx[12], Hx[13], Hx[14]});
+  const Vec3 bubble = t.recover_bubble(rhs.beta, x.V, x.P);
   errors.compare("recovered bubble",
                  std::vector<double>(bubble.begin_raw(), bubble.end_raw()),
                  std::vector<double>(x.beta.begin_raw(), x.beta.end_raw()));
@@ -145,11 +149,11 @@ void check_tangent(const Case &c, Errors &errors, Random &random)
   nodal_rhs.insert(nodal_rhs.end(), rhs.P.begin(), rhs.P.end());
   for (unsigned int r = 0; r < 16; ++r)
     for (unsigned int s = 0; s < 16; ++s)
-      {
-        nodal[r] += condensed(t, r, s) * x_flat[s < 12 ? s : s + 3];
-        reduced.push_back(condensed(t, r, s));
-        transposed.push_back(condensed(t, s, r));
-      }
+    {
+      nodal[r] += condensed(t, r, s) * x_flat[s < 12 ? s : s + 3];
+      reduced.push_back(condensed(t, r, s));
+      transposed.push_back(condensed(t, s, r));
+    }
   errors.compare("condensed system", nodal, nodal_rhs);
   errors.compare("symmetry of the condensed tangent", reduced, transposed);
   double pCp = 0.;
@@ -159,7 +163,10 @@ void check_tangent(const Case &c, Errors &errors, Random &random)
   errors.compare("sign of the pressure block", pCp < 0. ? 1. : -1., 1.);
 }
 
-void compare_inputs(const std::string &what, const CellSensitivity &s, const Inputs &reference, Errors &errors)
+void compare_inputs(const std::string     &what,
+                    const CellSensitivity &s,
+                    const Inputs          &reference,
+                    Errors                &errors)
 {
   std::vector<double> X(12);
   for (unsigned int i = 0; i < 12; ++i)
@@ -178,7 +185,8 @@ void check_reverse_residual(const Case &c, Errors &errors)
   Inputs                    product(0.);
   for (unsigned int i = 0; i < 19; ++i)
     product += lambda[i] * residual[i];
-  compare_inputs("lambda·residual", reverse_cell_residual(c.geometry(), c.w, c.lambda, c.law), product, errors);
+  compare_inputs(
+    "lambda·residual", reverse_cell_residual(c.geometry(), c.w, c.lambda, c.law), product, errors);
 }
 
 void check_reverse_dissipation(const Case &c, Errors &errors)
@@ -239,26 +247,26 @@ int main()
   Random random;
   double largest = 0.;
   for (const double m : {1., 0.5, 0.139, 0.05})
-    {
-      Errors errors;
-      for (unsigned int n = 0; n < 20; ++n)
-        check({random.cell(), random.cell_values(), random.cell_values(), {1.693, m, 0.05}}, errors, random);
-      std::cout << "m = " << m << std::endl;
-      errors.print(1e-13);
-      largest = std::max(largest, errors.largest());
-    }
+  {
+    Errors errors;
+    for (unsigned int n = 0; n < 20; ++n)
+      check({random.cell(), random.cell_values(), random.cell_values(), {1.693, m, 0.05}}, errors, random);
+    std::cout << "m = " << m << std::endl;
+    errors.print(1e-13);
+    largest = std::max(largest, errors.largest());
+  }
 
   Errors errors;
   for (const bool at_rest : {false, true})
+  {
+    Case c{random.cell(), random.cell_values(), random.cell_values(), {1.693, 1., 0.}};
+    if (at_rest)
     {
-      Case c{random.cell(), random.cell_values(), random.cell_values(), {1.693, 1., 0.}};
-      if (at_rest)
-        {
-          c.w.V    = {};
-          c.w.beta = Vec3();
-        }
-      check(c, errors, random);
+      c.w.V    = {};
+      c.w.beta = Vec3();
     }
+    check(c, errors, random);
+  }
   std::cout << "Newtonian without regularisation, moving and at rest" << std::endl;
   errors.print(1e-13);
   largest = std::max(largest, errors.largest());

@@ -15,8 +15,8 @@
 #include <memory>
 #include <string>
 
-/// Flows under a body force, with velocities given on the boundary: what the program itself never solves, put together
-/// from its element kernels.
+/// Flows under a body force, with velocities given on the boundary: what the program itself never solves, put
+/// together from its element kernels.
 namespace retroforge
 {
   /// A unit cube of metal, its mesh unstructured.
@@ -47,22 +47,22 @@ namespace retroforge
     CellSystem system;
     t.condense(rhs);
     for (unsigned int a = 0; a < 4; ++a)
+    {
+      for (unsigned int i = 0; i < 3; ++i)
+        system.rhs[4 * a + i] = rhs.V[a][i];
+      system.rhs[4 * a + 3] = rhs.P[a];
+      for (unsigned int b = 0; b < 4; ++b)
       {
         for (unsigned int i = 0; i < 3; ++i)
-          system.rhs[4 * a + i] = rhs.V[a][i];
-        system.rhs[4 * a + 3] = rhs.P[a];
-        for (unsigned int b = 0; b < 4; ++b)
-          {
-            for (unsigned int i = 0; i < 3; ++i)
-              {
-                for (unsigned int j = 0; j < 3; ++j)
-                  system.matrix[4 * a + i][4 * b + j] = t.A[a][b][i][j];
-                system.matrix[4 * a + i][4 * b + 3] = t.B[a][b][i];
-                system.matrix[4 * b + 3][4 * a + i] = t.B[a][b][i];
-              }
-            system.matrix[4 * a + 3][4 * b + 3] = t.C[a][b];
-          }
+        {
+          for (unsigned int j = 0; j < 3; ++j)
+            system.matrix[4 * a + i][4 * b + j] = t.A[a][b][i][j];
+          system.matrix[4 * a + i][4 * b + 3] = t.B[a][b][i];
+          system.matrix[4 * b + 3][4 * a + i] = t.B[a][b][i];
+        }
+        system.matrix[4 * a + 3][4 * b + 3] = t.C[a][b];
       }
+    }
     return system;
   }
 
@@ -71,17 +71,15 @@ namespace retroforge
   {
   public:
     NodalSystem(const TetMesh &mesh, const std::vector<char> &fixed)
-      : mesh_(mesh)
-      , fixed_(fixed)
-      , rhs_(fixed.size(), 0.)
+        : mesh_(mesh), fixed_(fixed), rhs_(fixed.size(), 0.)
     {
       dealii::DynamicSparsityPattern pattern(fixed.size(), fixed.size());
       for (const auto &nodes : mesh.cells)
-        {
-          const auto indices = unknowns(nodes);
-          for (const auto i : indices)
-            pattern.add_entries(i, indices.begin(), indices.end());
-        }
+      {
+        const auto indices = unknowns(nodes);
+        for (const auto i : indices)
+          pattern.add_entries(i, indices.begin(), indices.end());
+      }
       const dealii::IndexSet all = dealii::complete_index_set(fixed.size());
       matrix_.reinit(all, all, pattern, MPI_COMM_SELF);
       b_.reinit(all, MPI_COMM_SELF);
@@ -93,19 +91,19 @@ namespace retroforge
       matrix_ = 0.;
       std::fill(rhs_.begin(), rhs_.end(), 0.);
       for (CellIndex c = 0; c < mesh_.n_cells(); ++c)
+      {
+        CellSystem cell    = cell_system(c);
+        const auto indices = unknowns(mesh_.cells[c]);
+        for (unsigned int r = 0; r < 16; ++r)
+          for (unsigned int s = 0; s < 16; ++s)
+            if (fixed_[indices[r]] || fixed_[indices[s]])
+              cell.matrix[r][s] = 0.;
+        for (unsigned int r = 0; r < 16; ++r)
         {
-          CellSystem cell    = cell_system(c);
-          const auto indices = unknowns(mesh_.cells[c]);
-          for (unsigned int r = 0; r < 16; ++r)
-            for (unsigned int s = 0; s < 16; ++s)
-              if (fixed_[indices[r]] || fixed_[indices[s]])
-                cell.matrix[r][s] = 0.;
-          for (unsigned int r = 0; r < 16; ++r)
-            {
-              matrix_.add(indices[r], 16, indices.data(), cell.matrix[r], false);
-              rhs_[indices[r]] += fixed_[indices[r]] ? 0. : cell.rhs[r];
-            }
+          matrix_.add(indices[r], 16, indices.data(), cell.matrix[r], false);
+          rhs_[indices[r]] += fixed_[indices[r]] ? 0. : cell.rhs[r];
         }
+      }
       for (dealii::types::global_dof_index i = 0; i < fixed_.size(); ++i)
         if (fixed_[i])
           matrix_.add(i, i, 1.);
@@ -178,14 +176,14 @@ namespace retroforge
     std::vector<SubCellPoint>      points;
     for (unsigned int a = 0; a < 4; ++a)
       for (unsigned int q = 0; q < rule.size(); ++q)
-        {
-          const auto        &x  = rule.point(q);
-          const Four<double> mu = {{1. - x[0] - x[1] - x[2], x[0], x[1], x[2]}};
-          SubCellPoint       point{{}, mu[a], a, 1.5 * rule.weight(q)};
-          for (unsigned int c = 0; c < 4; ++c)
-            point.lambda[c] = (c == a ? 0. : mu[c]) + 0.25 * mu[a];
-          points.push_back(point);
-        }
+      {
+        const auto        &x  = rule.point(q);
+        const Four<double> mu = {{1. - x[0] - x[1] - x[2], x[0], x[1], x[2]}};
+        SubCellPoint       point{{}, mu[a], a, 1.5 * rule.weight(q)};
+        for (unsigned int c = 0; c < 4; ++c)
+          point.lambda[c] = (c == a ? 0. : mu[c]) + 0.25 * mu[a];
+        points.push_back(point);
+      }
     return points;
   }
 } // namespace retroforge

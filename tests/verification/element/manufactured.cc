@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 
-// Convergence to a manufactured flow on unstructured meshes of a cube: velocities given on five faces, the traction on
-// the sixth, a body force inside; Newtonian and power-law metal. Expected of a first-order pair of elements: the errors
-// of the velocity (bubble included) fall as h^2, of its gradient as h, of the pressure as h or faster. Orders are slopes
-// of the line of least squares through the meshes.
-// The file `output` holds what is compared: whether the orders are reached.
+// Convergence to a manufactured flow on unstructured meshes of a cube: velocities given on five faces, the
+// traction on the sixth, a body force inside; Newtonian and power-law metal. Expected of a first-order pair
+// of elements: the errors of the velocity (bubble included) fall as h^2, of its gradient as h, of the
+// pressure as h or faster. Orders are slopes of the line of least squares through the meshes. The file
+// `output` holds what is compared: whether the orders are reached.
 
 #include <deal.II/base/mpi.h>
 
@@ -41,12 +41,12 @@ double newton_step(const ManufacturedFlow                &flow,
     CellValues<double> rhs      = loads[c];
     const auto         residual = cell_residual(geometry, w, flow.law);
     for (unsigned int a = 0; a < 4; ++a)
-      {
-        const NodeIndex k = mesh.cells[c][a];
-        rhs.V[a] += boundary[k] - residual.V[a];
-        rhs.P[a] -= residual.P[a];
-        boundary[k] = Vec3(); // given to the node's first cell
-      }
+    {
+      const NodeIndex k = mesh.cells[c][a];
+      rhs.V[a] += boundary[k] - residual.V[a];
+      rhs.P[a] -= residual.P[a];
+      boundary[k] = Vec3(); // given to the node's first cell
+    }
     rhs.beta -= residual.beta;
     bubble_rhs[c] = rhs.beta;
     compute_cell_tangent(geometry, w, flow.law, tangents[c]);
@@ -57,17 +57,17 @@ double newton_step(const ManufacturedFlow                &flow,
   Field<double> step(mesh);
   double        step2 = 0., size2 = 0.;
   for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
-    {
-      step.V[k] = Vec3({x[4 * k], x[4 * k + 1], x[4 * k + 2]});
-      step.P[k] = x[4 * k + 3];
-      step2 += step.V[k].norm_square();
-      size2 += W.V[k].norm_square();
-    }
+  {
+    step.V[k] = Vec3({x[4 * k], x[4 * k + 1], x[4 * k + 2]});
+    step.P[k] = x[4 * k + 3];
+    step2 += step.V[k].norm_square();
+    size2 += W.V[k].norm_square();
+  }
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
-    {
-      const auto w = step.on_cell(mesh, c);
-      step.beta[c] = tangents[c].recover_bubble(bubble_rhs[c], w.V, w.P);
-    }
+  {
+    const auto w = step.on_cell(mesh, c);
+    step.beta[c] = tangents[c].recover_bubble(bubble_rhs[c], w.V, w.P);
+  }
   W.add(1., step);
   return std::sqrt(step2 / size2);
 }
@@ -76,32 +76,32 @@ FlowErrors errors_of(const TetMesh &mesh, const Field<double> &W)
 {
   FlowErrors e{mean_edge(mesh), 0., 0., 0.};
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+  {
+    const auto X        = positions_of_cell(mesh, mesh.X, c);
+    const auto geometry = cell_geometry(X);
+    const auto w        = W.on_cell(mesh, c);
+    for (const SubCellPoint &point : points)
     {
-      const auto X        = positions_of_cell(mesh, mesh.X, c);
-      const auto geometry = cell_geometry(X);
-      const auto w        = W.on_cell(mesh, c);
-      for (const SubCellPoint &point : points)
-        {
-          const Vec3 x  = point.position(X);
-          Vec3       dv = point.bubble * w.beta - ManufacturedFlow::velocity_at(x);
-          double     dp = -ManufacturedFlow::pressure_at(x);
-          auto       dL = ManufacturedFlow::velocity_gradient(std::array<double, 3>{{x[0], x[1], x[2]}});
-          for (unsigned int a = 0; a < 4; ++a)
-            {
-              dv += point.lambda[a] * w.V[a];
-              dp += point.lambda[a] * w.P[a];
-              for (unsigned int i = 0; i < 3; ++i)
-                for (unsigned int j = 0; j < 3; ++j)
-                  dL[i][j] -= w.V[a][i] * geometry.g[a][j] +
-                              (a == point.sub ? 4. * w.beta[i] * geometry.g[a][j] : 0.);
-            }
-          const double dx = point.weight * geometry.volume;
-          e.v_l2 += dv.norm_square() * dx;
-          e.p_l2 += dp * dp * dx;
-          for (const auto &row : dL)
-            e.v_h1 += (row[0] * row[0] + row[1] * row[1] + row[2] * row[2]) * dx;
-        }
+      const Vec3 x  = point.position(X);
+      Vec3       dv = point.bubble * w.beta - ManufacturedFlow::velocity_at(x);
+      double     dp = -ManufacturedFlow::pressure_at(x);
+      auto       dL = ManufacturedFlow::velocity_gradient(std::array<double, 3>{{x[0], x[1], x[2]}});
+      for (unsigned int a = 0; a < 4; ++a)
+      {
+        dv += point.lambda[a] * w.V[a];
+        dp += point.lambda[a] * w.P[a];
+        for (unsigned int i = 0; i < 3; ++i)
+          for (unsigned int j = 0; j < 3; ++j)
+            dL[i][j] -=
+              w.V[a][i] * geometry.g[a][j] + (a == point.sub ? 4. * w.beta[i] * geometry.g[a][j] : 0.);
+      }
+      const double dx = point.weight * geometry.volume;
+      e.v_l2 += dv.norm_square() * dx;
+      e.p_l2 += dp * dp * dx;
+      for (const auto &row : dL)
+        e.v_h1 += (row[0] * row[0] + row[1] * row[1] + row[2] * row[2]) * dx;
     }
+  }
   e.v_l2 = std::sqrt(e.v_l2);
   e.v_h1 = std::sqrt(e.v_h1);
   e.p_l2 = std::sqrt(e.p_l2);
@@ -123,7 +123,8 @@ FlowErrors solve_on(const ManufacturedFlow &flow, const double element_size, std
   if (flow.law.m != 1.)
     output << "  Newton converged: " << (step < 1e-9 ? "yes" : "NO") << std::endl;
   const FlowErrors e = errors_of(mesh, W);
-  std::cout << mesh.n_nodes() << " nodes: v_l2 " << e.v_l2 << ", v_h1 " << e.v_h1 << ", p_l2 " << e.p_l2 << std::endl;
+  std::cout << mesh.n_nodes() << " nodes: v_l2 " << e.v_l2 << ", v_h1 " << e.v_h1 << ", p_l2 " << e.p_l2
+            << std::endl;
   return e;
 }
 
@@ -132,13 +133,13 @@ double order(const std::vector<FlowErrors> &errors, double FlowErrors::*error)
 {
   double n = errors.size(), x = 0., y = 0., xx = 0., xy = 0.;
   for (const FlowErrors &e : errors)
-    {
-      const double lx = std::log(e.h), ly = std::log(e.*error);
-      x += lx;
-      y += ly;
-      xx += lx * lx;
-      xy += lx * ly;
-    }
+  {
+    const double lx = std::log(e.h), ly = std::log(e.*error);
+    x += lx;
+    y += ly;
+    xx += lx * lx;
+    xy += lx * ly;
+  }
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
@@ -151,7 +152,8 @@ void check(const std::string &name, const NortonHoff<double> &law, std::ostream 
   const auto report = [&](const std::string &quantity, double FlowErrors::*error, const double bar) {
     const double value = order(errors, error);
     std::cout << "FIGURE " << name << "_" << quantity << "_order " << value << std::endl;
-    output << "  order of " << quantity << " at least " << bar << ": " << (value >= bar ? "yes" : "NO") << std::endl;
+    output << "  order of " << quantity << " at least " << bar << ": " << (value >= bar ? "yes" : "NO")
+           << std::endl;
   };
   report("v_l2", &FlowErrors::v_l2, 1.9);
   report("v_h1", &FlowErrors::v_h1, 0.95);

@@ -6,7 +6,8 @@
 
 namespace retroforge
 {
-  /// A smooth flow that is no solution by itself: the velocity is a curl, and a body force balances its stresses.
+  /// A smooth flow that is no solution by itself: the velocity is a curl, and a body force balances its
+  /// stresses.
   ///   v = curl( cos y sin 2z, cos z sin 2x, cos x sin 2y ),   p = sin 2x + cos(y + z)
   struct ManufacturedFlow
   {
@@ -22,10 +23,10 @@ namespace retroforge
       using std::sin;
       Point<Number> v;
       for (unsigned int i = 0; i < 3; ++i)
-        {
-          const Number &a = x[i], &b = x[(i + 1) % 3], &c = x[(i + 2) % 3];
-          v[i] = 2. * cos(a) * cos(Number(2. * b)) + sin(c) * sin(Number(2. * a));
-        }
+      {
+        const Number &a = x[i], &b = x[(i + 1) % 3], &c = x[(i + 2) % 3];
+        v[i] = 2. * cos(a) * cos(Number(2. * b)) + sin(c) * sin(Number(2. * a));
+      }
       return v;
     }
 
@@ -60,18 +61,18 @@ namespace retroforge
       Number                       eps2(0.);
       for (unsigned int i = 0; i < 3; ++i)
         for (unsigned int j = 0; j <= i; ++j)
-          {
-            sigma[i][j] = sigma[j][i] = 0.5 * (sigma[i][j] + sigma[j][i]);
-            eps2 += (i == j ? 1. : 2.) * sigma[i][j] * sigma[i][j];
-          }
+        {
+          sigma[i][j] = sigma[j][i] = 0.5 * (sigma[i][j] + sigma[j][i]);
+          eps2 += (i == j ? 1. : 2.) * sigma[i][j] * sigma[i][j];
+        }
       const NortonHoff<Number> here{Number(law.K), Number(law.m), Number(law.e0)};
       const Number             factor = here.stress_factor(here.q(eps2));
       for (unsigned int i = 0; i < 3; ++i)
-        {
-          for (unsigned int j = 0; j < 3; ++j)
-            sigma[i][j] = factor * sigma[i][j];
-          sigma[i][i] -= pressure(x);
-        }
+      {
+        for (unsigned int j = 0; j < 3; ++j)
+          sigma[i][j] = factor * sigma[i][j];
+        sigma[i][i] -= pressure(x);
+      }
       return sigma;
     }
 
@@ -111,10 +112,10 @@ namespace retroforge
     {
       Field<double> W(mesh);
       for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
-        {
-          W.V[k] = velocity_at(mesh.X[k]);
-          W.P[k] = pressure_at(mesh.X[k]);
-        }
+      {
+        W.V[k] = velocity_at(mesh.X[k]);
+        W.P[k] = pressure_at(mesh.X[k]);
+      }
       return W;
     }
 
@@ -124,12 +125,12 @@ namespace retroforge
       CellValues<double> load   = {};
       const double       volume = cell_geometry(X).volume;
       for (const SubCellPoint &point : points)
-        {
-          const Vec3 force = body_force(point.position(X)) * (point.weight * volume);
-          for (unsigned int a = 0; a < 4; ++a)
-            load.V[a] += point.lambda[a] * force;
-          load.beta += point.bubble * force;
-        }
+      {
+        const Vec3 force = body_force(point.position(X)) * (point.weight * volume);
+        for (unsigned int a = 0; a < 4; ++a)
+          load.V[a] += point.lambda[a] * force;
+        load.beta += point.bubble * force;
+      }
       return load;
     }
 
@@ -140,18 +141,18 @@ namespace retroforge
       NodalVectors<double>           load(mesh.n_nodes());
       for (const BoundaryFace &face : mesh.faces)
         if (mesh.patches[face.patch].name == patch)
+        {
+          const Vec3 &A = mesh.X[face.nodes[0]], &B = mesh.X[face.nodes[1]], &C = mesh.X[face.nodes[2]];
+          const Vec3  n = cross(Vec3(B - A), Vec3(C - A)); // twice the area long
+          for (unsigned int q = 0; q < rule.size(); ++q)
           {
-            const Vec3  &A = mesh.X[face.nodes[0]], &B = mesh.X[face.nodes[1]], &C = mesh.X[face.nodes[2]];
-            const Vec3   n = cross(Vec3(B - A), Vec3(C - A)); // twice the area long
-            for (unsigned int q = 0; q < rule.size(); ++q)
-              {
-                const double                s = rule.point(q)[0], t = rule.point(q)[1];
-                const std::array<double, 3> lambda = {{1. - s - t, s, t}};
-                const Vec3 force = traction(A + s * (B - A) + t * (C - A), n) * rule.weight(q);
-                for (unsigned int c = 0; c < 3; ++c)
-                  load[face.nodes[c]] += lambda[c] * force;
-              }
+            const double                s = rule.point(q)[0], t = rule.point(q)[1];
+            const std::array<double, 3> lambda = {{1. - s - t, s, t}};
+            const Vec3                  force  = traction(A + s * (B - A) + t * (C - A), n) * rule.weight(q);
+            for (unsigned int c = 0; c < 3; ++c)
+              load[face.nodes[c]] += lambda[c] * force;
           }
+        }
       return load;
     }
   };

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""Energies and gradients on one, two and three ranks, and the adjoint against the tangent derivative of each parameter."""
+import os
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "..", ".."))
+from case_tools import energy, figure, gradient, run  # noqa: E402
+
+BUILD, CASE = sys.argv[1], os.path.join(HERE, "case.prm")
+TIGHT = {"Newton/tolerance": 1e-12, "Adjoint/tolerance": 1e-14}
+SHORT = {"Billet/element size": 7, "Press/stroke": 2, "Press/increments": 3}
+# The tangent runs once per parameter whatever the differences: as few of those as can be asked for.
+CHECK = {"Check/steps": "1e-5", "Check/free differences": "false", "Check/taylor halvings": 3}
+
+
+def defect(a, b):
+    return abs(a - b) / max(abs(a), abs(b), 1e-300)
+
+
+def compare_ranks(name, settings):
+    """Worst change of energy and of any gradient between one rank and more."""
+    results = [run(BUILD, "gradient", CASE, settings, ranks=n)[0] for n in (1, 2, 3)]
+    one = gradient(results[0])
+    changes = {p: max(defect(gradient(other)[p], one[p]) for other in results[1:]) for p in one}
+    for parameter, change in changes.items():
+        print(f"{name:8} {parameter:24} {one[parameter]:18.12g}   changes by {change:.2e}")
+    figure(f"energy_change_{name}", max(defect(energy(other), energy(results[0])) for other in results[1:]))
+    figure(f"gradient_change_{name}", max(changes.values()))
+
+
+def adjoint_against_tangent(settings):
+    """{parameter: worst relative difference} over both schemes, on one and two ranks."""
+    worst = {}
+    for scheme in ("midpoint", "euler"):
+        for ranks in (1, 2):
+            # Exit status 1 says that some difference missed its bar; only adjoint and tangent count here.
+            summary, printed = run(BUILD, "check", CASE, {**TIGHT, **SHORT, **CHECK, **settings, "Press/scheme": scheme},
+                                   ranks=ranks, may_fail=True)
+            if summary is None:
+                sys.exit(printed)
+            for row in summary["check"]:
+                difference = defect(row["adjoint"], row["tangent"])
+                worst[row["parameter"]] = max(worst.get(row["parameter"], 0.), difference)
+                print(f"{scheme:8} {ranks} rank(s)  {row['parameter']:24} {difference:.1e}")
+    return worst
+
+
+def quick():
+    compare_ranks("tight", TIGHT)
+    compare_ranks("default", {})
+
+
+def slow():
+    soft = adjoint_against_tangent({"Contact/penetration": 1e-4})
+    figure("adjoint_tangent_soft_penalty", max(soft.values()))
+    stiff = adjoint_against_tangent({})
+    figure("adjoint_tangent_default_penalty_rho", stiff.pop("contact/rho"))
+    figure("adjoint_tangent_default_penalty", max(stiff.values()))
+
+
+if __name__ == "__main__":
+    {"quick": quick, "slow": slow}[sys.argv[2]]()

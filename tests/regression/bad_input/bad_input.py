@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""Wrong input: the program ends with a non-zero status and exactly one message on the error stream,
+
+    retroforge: where: what; rule; remedy
+
+and what was computed before the trouble can still be read. Usage: bad_input.py RETROFORGE"""
+import csv
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+PROGRAM = os.path.abspath(sys.argv[1])
+ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
+               "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+
+CASE = """
+subsection Billet
+  set shape           = box
+  set size            = 10, 10, 10
+  set element size    = 4
+  set symmetry planes = -1, 0, 0; 0, -1, 0
+end
+subsection Dies
+  set names = lower, upper
+end
+subsection Die lower
+  set point    = 0, 0, 0
+  set facing   = 0, 0, 1
+  set friction = 0.3
+end
+subsection Die upper
+  set point    = 0, 0, 10
+  set facing   = 0, 0, -1
+  set velocity = 0, 0, -100
+  set friction = 0.3
+end
+subsection Press
+  set stroke     = 1
+  set increments = 3
+end
+"""
+
+# A pyramid of two tetrahedra; {cells} names their nodes.
+MSH = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+{n}
+{nodes}
+$EndNodes
+$Elements
+{m}
+{elements}
+$EndElements
+"""
+
+
+def msh(nodes, cells, kind=4):
+    return MSH.format(n=len(nodes), nodes="\n".join(f"{i + 1} {x} {y} {z}" for i, (x, y, z) in enumerate(nodes)),
+                      m=len(cells), elements="\n".join(f"{i + 1} {kind} 2 1 1 " + " ".join(str(k + 1) for k in cell)
+                                                       for i, cell in enumerate(cells)))
+
+
+CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, -1, -1)]
+# Flattening or inverting a tetrahedron between two others cannot be told from a matter of orientation alone: the first
+# two overlap on the same side of their common face.
+MESHES = {
+    "overlapping": msh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0.2, 0.2, 2)], [(0, 1, 2, 3), (0, 1, 2, 4)]),
+    "flat": msh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 1, 2, 3)]),
+    "non_manifold": msh(CORNERS, [(0, 1, 2, 3), (0, 1, 2, 4), (0, 1, 2, 5)]),
+    "no_tets": msh(CORNERS[:3], [(0, 1, 2)], kind=2),
+    "garbage": "this is not a mesh\n",
+}
+
+
+def file_mesh(name):
+    return ["--set", "Billet/shape=file", "--set", f"Billet/file name={name}.msh"]
+
+
+def settings(*pairs):
+    return [word for pair in pairs for word in ("--set", pair)]
+
+
+# name: (arguments after the case file, what the message must say)
+MISTAKES = {
+    "unknown parameter": (settings("Press/strok=3"), r"Press/strok\b.*stroke"),
+    "unknown section": (settings("Pres/stroke=3"), r"Pres/stroke"),
+    "ill-typed number": (settings("Press/stroke=far"), r"Press/stroke.*far"),
+    "ill-typed integer": (settings("Press/increments=2.5"), r"Press/increments.*2\.5"),
+    "out of range": (settings("Press/stroke=-1"), r"Press/stroke.*-1"),
+    "negative friction": (settings("Die upper/friction=-0.3"), r"Die upper/friction.*-0\.3"),
+    "sensitivity of two": (settings("Material/strain rate sensitivity=2"), r"Material/strain rate sensitivity.*2"),
+    "no slip regularisation": (settings("Contact/slip regularisation=0"), r"Contact/slip regularisation"),
+    "unknown choice": (settings("Press/scheme=leapfrog"), r"Press/scheme.*leapfrog.*midpoint"),
+    "die without section": (settings("Dies/names=lower, upper, third"), r"[Dd]ie third"),
+    "no die": (settings("Dies/names="), r"Die"),
+    "no die moves": (settings("Die upper/velocity=0, 0, 0"), r"move"),
+    "unknown leading die": (settings("Press/leading die=middle"), r"Press/leading die.*middle"),
+    "unknown design parameter": (settings("Design/parameters=material/L"), r"material/L"),
+    "design parameter of another shape": (settings("Design/parameters=billet/radius"), r"billet/radius"),
+    "billet out of reach": (settings("Billet/translation=0, 0, 500", "Die upper/point=0, 0, 1000"), r"Die|billet"),
+    "billet inside a die": (settings("Die lower/point=0, 0, 4"), r"Die lower.*inside"),
+    "element size of zero": (settings("Billet/element size=0"), r"Billet/element size"),
+    "missing mesh": (file_mesh("absent"), r"absent\.msh"),
+    "overlapping tetrahedra": (file_mesh("overlapping"), r"overlapping\.msh|[Tt]etrahed|face"),
+    "flat tetrahedron": (file_mesh("flat"), r"flat\.msh|[Tt]etrahed"),
+    "non-manifold mesh": (file_mesh("non_manifold"), r"face"),
+    "mesh without tetrahedra": (file_mesh("no_tets"), r"tetrahed"),
+    "garbage for a mesh": (file_mesh("garbage"), r"garbage\.msh"),
+    "too few Newton steps": (settings("Newton/max iterations=1"), r"Newton"),
+}
+
+failures = []
+
+
+def run(arguments, folder, command="gradient"):
+    return subprocess.run([PROGRAM, command] + arguments, cwd=folder, env=ENVIRONMENT, capture_output=True, text=True,
+                          timeout=300, check=False)
+
+
+def judge(name, done, pattern):
+    message = done.stderr.strip()
+    faults = []
+    if done.returncode <= 0:
+        faults.append(f"exit status {done.returncode}")
+    if len(message.splitlines()) != 1:
+        faults.append(f"{len(message.splitlines())} lines on the error stream")
+    if not re.match(r"retroforge: [^;]+: [^;]+;[^;]+;[^;]+", message):
+        faults.append("not of the form where: what; rule; remedy")
+    if not re.search(pattern, message, re.DOTALL):
+        faults.append(f"does not say {pattern}")
+    print(f"{'ok    ' if not faults else 'FAILED'} {name}\n         {message}")
+    for fault in faults:
+        print(f"         ^ {fault}")
+    if faults:
+        failures.append(name)
+
+
+def whole_history(name, path, at_least):
+    """The lines of a history, each of which must be whole."""
+    with open(path, encoding="utf-8") as file:
+        rows = list(csv.reader(line for line in file if not line.startswith("#")))
+    good = len(rows) > at_least and all(len(row) == len(rows[0]) for row in rows)
+    print(f"{'ok    ' if good else 'FAILED'} {name}: {len(rows) - 1} increments in {os.path.basename(path)}")
+    if not good:
+        failures.append(name)
+
+
+def interrupted(folder):
+    """Newton fails in the second increment, once a node arrives: the first increment must be on file."""
+    done = run(["case.prm", "--output", "stopped"] + settings(
+        "Press/stroke=9", "Press/increments=6", "Press/max cuts=0", "Press/largest move=0.3"), folder)
+    judge("stopped on the way", done, r"Press/increments")
+    whole_history("what was computed before is kept", os.path.join(folder, "stopped", "history.csv"), 1)
+
+
+def full_disk(folder):
+    """A small file system of our own, where the machine lets us have one."""
+    for size, name in (("4k", "first files"), ("40k", "fields or record")):
+        disk, saved = os.path.join(folder, f"disk_{size}"), os.path.join(folder, f"saved_{size}")
+        os.mkdir(disk)
+        script = (f"mount -t tmpfs -o size={size} tmpfs {disk} || exit 77; "
+                  f"{PROGRAM} gradient case.prm --output {disk}/run; status=$?; cp -r {disk} {saved}; exit $status")
+        try:
+            done = subprocess.run(["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", script], cwd=folder,
+                                  env=ENVIRONMENT, capture_output=True, text=True, timeout=300, check=False)
+        except OSError:
+            done = None
+        if done is None or done.returncode == 77 or done.stderr.startswith("unshare"):
+            print(f"skipped disk full at the {name}: no private file system can be mounted here")
+            continue
+        judge(f"disk full at the {name}", done, re.escape(disk))
+        history = os.path.join(saved, "run", "history.csv")
+        if size == "40k":
+            whole_history("what was computed before the disk was full is kept", history, 0)
+
+
+def forbidden_output(folder):
+    with open(os.path.join(folder, "a_file"), "w", encoding="utf-8") as file:
+        file.write("in the way\n")
+    judge("output below a file", run(["case.prm", "--output", "a_file/results"], folder), "a_file")
+    judge("output is not writable", run(["case.prm", "--output", "/proc/results"], folder), "/proc/results")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "case.prm"), "w", encoding="utf-8") as file:
+            file.write(CASE)
+        for name, content in MESHES.items():
+            with open(os.path.join(folder, f"{name}.msh"), "w", encoding="utf-8") as file:
+                file.write(content)
+        judge("missing parameter file", run(["absent.prm"], folder), "absent.prm")
+        judge("unknown command", run(["case.prm"], folder, command="forge"), "forge")
+        for name, (arguments, pattern) in MISTAKES.items():
+            judge(name, run(["case.prm", "--output", "run"] + arguments, folder), pattern)
+        with open(os.path.join(folder, "unclosed.prm"), "w", encoding="utf-8") as file:
+            file.write(CASE.rstrip()[:-3])
+        judge("section not closed", run(["unclosed.prm"], folder), "unclosed.prm")
+        forbidden_output(folder)
+        interrupted(folder)
+        full_disk(folder)
+    print(f"{len(failures)} failed")
+    return 1 if failures else 0
+
+
+sys.exit(main())

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/core/error.h>
+#include <retroforge/record/record_file.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <random>
+#include <sstream>
+
+namespace retroforge
+{
+  inline std::string yes(const bool condition)
+  {
+    return condition ? "yes" : "NO";
+  }
+
+  /// Outer faces of the cells, turned outwards, on two patches: the plane x = 0, of symmetry, and the rest.
+  inline void add_boundary(TetMesh &mesh)
+  {
+    constexpr unsigned int opposite[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    std::map<std::array<NodeIndex, 3>, std::vector<std::array<NodeIndex, 3>>> found;
+    for (const auto &cell : mesh.cells)
+      for (const auto &corners : opposite)
+      {
+        const std::array<NodeIndex, 3> face{cell[corners[0]], cell[corners[1]], cell[corners[2]]};
+        auto                           key = face;
+        std::sort(key.begin(), key.end());
+        found[key].push_back(face);
+      }
+    mesh.patches = {{"x = 0", Plane{Vec3(), Vec3({-1., 0., 0.})}}, {"free, and \"die\"", {}}};
+    for (const auto &[key, faces] : found)
+      if (faces.size() == 1)
+      {
+        const bool is_free = mesh.X[key[0]][0] + mesh.X[key[1]][0] + mesh.X[key[2]][0] > 0.;
+        mesh.faces.push_back({faces[0], is_free ? 1u : 0u});
+      }
+  }
+
+  /// Unit cubes, a x b x c nodes, each split in six tetrahedra along its diagonal.
+  inline TetMesh brick(const unsigned int a, const unsigned int b, const unsigned int c)
+  {
+    TetMesh mesh;
+    for (unsigned int k = 0; k < c; ++k)
+      for (unsigned int j = 0; j < b; ++j)
+        for (unsigned int i = 0; i < a; ++i)
+          mesh.X.push_back(Vec3({1. * i, 1. * j, 1. * k}));
+    const NodeIndex        stride[3]   = {1, a, a * b};
+    constexpr unsigned int paths[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+    for (unsigned int k = 0; k + 1 < c; ++k)
+      for (unsigned int j = 0; j + 1 < b; ++j)
+        for (unsigned int i = 0; i + 1 < a; ++i)
+          for (unsigned int p = 0; p < 6; ++p)
+          {
+            const NodeIndex n0 = i + a * (j + b * k), n1 = n0 + stride[paths[p][0]],
+                            n2 = n1 + stride[paths[p][1]], n3 = n2 + stride[paths[p][2]];
+            mesh.cells.push_back(p < 3 ? std::array<NodeIndex, 4>{n0, n1, n2, n3}
+                                       : std::array<NodeIndex, 4>{n0, n2, n1, n3});
+          }
+    add_boundary(mesh);
+    return mesh;
+  }
+
+  inline RecordHeader sample_header(const TetMesh     &mesh,
+                                    const std::string &parameters = "set K = 1\n# 5°, µ\n")
+  {
+    RecordHeader header{"0.1.0", "abc1234", parameters, 2, mesh, mesh.X};
+    for (Vec3 &x : header.X_0)
+      x *= 1.1;
+    return header;
+  }
+
+  /// Increment i of a run, arbitrary but always the same: random numbers, every bit of them in use.
+  inline IncrementRecord
+  sample_increment(const RecordHeader &header, const unsigned int i, const unsigned int n_solves = 2)
+  {
+    std::mt19937_64 random(i + 1);
+    const auto      number = [&]() { return std::ldexp(static_cast<double>(random()) - 9e18, -60); };
+    IncrementRecord increment{0.1 * i, 0.1, i % 3, {}, {}, number(), number()};
+    for (NodeIndex k = 0; k < header.mesh.n_nodes(); k += 3)
+      increment.pairs.push_back({k, static_cast<unsigned int>(random() % header.n_dies), random() % 2 == 0});
+    for (unsigned int s = 0; s < n_solves; ++s)
+    {
+      SolveRecord solve;
+      for (NodeIndex k = 0; k < header.mesh.n_nodes(); ++k)
+      {
+        solve.V.push_back(Vec3({number(), number(), number()}));
+        solve.P.push_back(number());
+      }
+      for (std::size_t p = 0; p < increment.pairs.size(); ++p)
+        solve.active.push_back(random() % 2);
+      increment.solves.push_back(solve);
+    }
+    return increment;
+  }
+
+  template <typename T>
+  bool same_bits(const std::vector<T> &a, const std::vector<T> &b)
+  {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+  }
+
+  inline bool same_bits(const double a, const double b)
+  {
+    return std::memcmp(&a, &b, sizeof(double)) == 0;
+  }
+
+  inline bool same(const IncrementRecord &a, const IncrementRecord &b)
+  {
+    bool equal = same_bits(a.stroke, b.stroke) && same_bits(a.step, b.step) && a.cuts == b.cuts &&
+                 same_bits(a.deformation_energy, b.deformation_energy) &&
+                 same_bits(a.friction_energy, b.friction_energy) && a.pairs.size() == b.pairs.size() &&
+                 a.solves.size() == b.solves.size();
+    for (std::size_t p = 0; equal && p < a.pairs.size(); ++p)
+      equal = a.pairs[p].node == b.pairs[p].node && a.pairs[p].die == b.pairs[p].die &&
+              a.pairs[p].touching == b.pairs[p].touching;
+    for (std::size_t s = 0; equal && s < a.solves.size(); ++s)
+      equal = same_bits(a.solves[s].V, b.solves[s].V) && same_bits(a.solves[s].P, b.solves[s].P) &&
+              same_bits(a.solves[s].active, b.solves[s].active);
+    return equal;
+  }
+
+  inline bool same(const RecordHeader &a, const RecordHeader &b)
+  {
+    bool equal = a.program == b.program && a.commit == b.commit && a.parameters == b.parameters &&
+                 a.n_dies == b.n_dies && same_bits(a.X_0, b.X_0) && same_bits(a.mesh.X, b.mesh.X) &&
+                 same_bits(a.mesh.cells, b.mesh.cells) && same_bits(a.mesh.faces, b.mesh.faces) &&
+                 a.mesh.patches.size() == b.mesh.patches.size();
+    for (std::size_t p = 0; equal && p < a.mesh.patches.size(); ++p)
+    {
+      const Patch &q = a.mesh.patches[p], &r = b.mesh.patches[p];
+      equal =
+        q.name == r.name && q.symmetry.has_value() == r.symmetry.has_value() &&
+        (!q.symmetry || (q.symmetry->point == r.symmetry->point && q.symmetry->normal == r.symmetry->normal));
+    }
+    return equal;
+  }
+
+  inline std::string bytes_of(const std::string &file)
+  {
+    std::ifstream      in(file, std::ios::binary);
+    std::ostringstream out;
+    out << in.rdbuf();
+    return out.str();
+  }
+
+  inline void write_bytes(const std::string &file, const std::string &bytes)
+  {
+    std::ofstream(file, std::ios::binary) << bytes;
+  }
+
+  /// A fresh, empty folder below the test's own.
+  inline std::string fresh_folder(const std::string &name)
+  {
+    std::filesystem::remove_all(name);
+    std::filesystem::create_directories(name);
+    return name;
+  }
+
+  template <typename Action>
+  void show_error(const std::string &title, const Action &action)
+  {
+    std::cout << title << ":\n  ";
+    try
+    {
+      action();
+      std::cout << "no error\n";
+    }
+    catch (const Error &error)
+    {
+      std::cout << error.what() << '\n';
+    }
+  }
+} // namespace retroforge
