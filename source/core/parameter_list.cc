@@ -92,6 +92,15 @@ namespace retroforge
       return pattern.description(Patterns::PatternBase::Text);
     }
 
+    /// From deal.II's description of a pattern. Lists of lists are told from their text: made a pattern again, deal.II
+    /// 9.4 mistakes the inner list's separator and length for the outer one's.
+    std::string in_plain_words(const std::string &description)
+    {
+      if (description.rfind("[List of <[List", 0) == 0)
+        return "a list separated by ';', each item a list separated by ','";
+      return in_plain_words(*dealii::Patterns::pattern_factory(description));
+    }
+
     ParameterEntry
     to_entry(const Names &sections, const std::string &name, const nlohmann::ordered_json &node)
     {
@@ -104,7 +113,7 @@ namespace retroforge
       entry.value         = node["value"];
       entry.default_value = node["default_value"];
       entry.documentation = node["documentation"];
-      entry.allowed       = in_plain_words(*dealii::Patterns::pattern_factory(node["pattern_description"]));
+      entry.allowed       = in_plain_words(node["pattern_description"].get<std::string>());
       return entry;
     }
 

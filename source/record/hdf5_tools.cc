@@ -37,7 +37,6 @@ namespace retroforge::hdf5
       Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "file access");
       check(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG), "file access");
       check(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), "file access");
-      // No chunk cache: H5Dwrite itself writes, and reports a full disk.
       check(H5Pset_cache(access, 0, 0, 0, 0.), "file access");
       check(H5Pset_meta_block_size(access, 0), "file access");
       check(H5Pset_small_data_block_size(access, 0), "file access");
@@ -222,10 +221,22 @@ namespace retroforge::hdf5
     check(close_(id), "closing");
   }
 
-  Handle create_file(const std::string &file)
+  Handle create_in_memory()
   {
-    const Handle access = file_access(), creation = untimed(H5P_FILE_CREATE);
-    return Handle(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose, "creation");
+    constexpr std::size_t growth = 1 << 20;
+    const Handle          access = file_access(), creation = untimed(H5P_FILE_CREATE);
+    check(H5Pset_fapl_core(access, growth, false), "file in memory");
+    return Handle(H5Fcreate("record", H5F_ACC_TRUNC, creation, access), H5Fclose, "file in memory");
+  }
+
+  std::vector<char> image_of(const hid_t file)
+  {
+    check(H5Fflush(file, H5F_SCOPE_LOCAL), "file in memory");
+    const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+    check(size, "file in memory");
+    std::vector<char> image(size);
+    check(H5Fget_file_image(file, image.data(), image.size()), "file in memory");
+    return image;
   }
 
   Handle open_file(const std::string &file)

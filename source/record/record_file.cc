@@ -78,6 +78,26 @@ namespace retroforge
       return folder.empty() ? "." : folder;
     }
 
+    void write_bytes(const std::string &file, const std::vector<char> &bytes)
+    {
+      const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+      check_system(descriptor >= 0);
+      std::size_t done  = 0;
+      int         error = 0;
+      while (done < bytes.size() && error == 0)
+      {
+        const ssize_t n = ::write(descriptor, bytes.data() + done, bytes.size() - done);
+        if (n > 0)
+          done += n;
+        else if (n == 0 || errno != EINTR)
+          error = n == 0 ? ENOSPC : errno;
+      }
+      if (::close(descriptor) != 0 && error == 0) // network file systems report a full disk here
+        error = errno;
+      errno = error;
+      check_system(error == 0);
+    }
+
     /// Makes the file whole or not at all; on return it is on disk.
     void write_whole(const std::string &file, const std::function<void(hid_t)> &fill)
     {
@@ -85,9 +105,9 @@ namespace retroforge
       const std::string aside = file + ".tmp";
       try
       {
-        hdf5::Handle handle = hdf5::create_file(aside);
-        fill(handle);
-        handle.close();
+        const hdf5::Handle image = hdf5::create_in_memory();
+        fill(image);
+        write_bytes(aside, hdf5::image_of(image));
         sync(aside);
         check_system(std::rename(aside.c_str(), file.c_str()) == 0);
         sync(folder_of(file));

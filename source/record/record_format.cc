@@ -101,10 +101,10 @@ namespace retroforge
       mesh.X              = read_vectors(parent, "X", hdf5::any);
       const Indices cells = hdf5::read_array<unsigned int>(parent, "cells", {hdf5::any, 4});
       for (std::size_t i = 0; i < cells.size(); i += 4)
-        mesh.cells.push_back({cells[i], cells[i + 1], cells[i + 2], cells[i + 3]});
+        mesh.cells.push_back({{cells[i], cells[i + 1], cells[i + 2], cells[i + 3]}});
       const Indices faces = hdf5::read_array<unsigned int>(parent, "faces", {hdf5::any, 4});
       for (std::size_t i = 0; i < faces.size(); i += 4)
-        mesh.faces.push_back({{faces[i], faces[i + 1], faces[i + 2]}, faces[i + 3]});
+        mesh.faces.push_back({{{faces[i], faces[i + 1], faces[i + 2]}}, faces[i + 3]});
       const auto n_patches = hdf5::read_attribute<unsigned int>(parent, "n_patches");
       for (unsigned int p = 0; p < n_patches; ++p)
         mesh.patches.push_back(read_patch(parent, patch_name(p)));

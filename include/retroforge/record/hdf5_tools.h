@@ -67,8 +67,12 @@ namespace retroforge::hdf5
   /// Throws Failure with HDF5's reason if `result` is negative.
   void check(long long result, const std::string &what);
 
-  Handle create_file(const std::string &file); ///< replaces what is there
-  Handle open_file(const std::string &file);   ///< to read
+  Handle create_in_memory();                 ///< a file that never meets the disk
+  Handle open_file(const std::string &file); ///< to read
+  /// All bytes of a file made by create_in_memory(), to be written by the caller. HDF5 itself is not let near
+  /// a disk that may be full: releases up to 1.10.8 and perhaps later crash after a write that failed.
+  std::vector<char> image_of(hid_t file);
+
   Handle create_group(hid_t parent, const std::string &name);
   Handle open_group(hid_t parent, const std::string &name);
   bool   has_attribute(hid_t object, const std::string &name);

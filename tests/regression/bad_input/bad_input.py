@@ -77,7 +77,7 @@ MESHES = {
 
 
 def file_mesh(name):
-    return ["--set", "Billet/shape=file", "--set", f"Billet/file name={name}.msh"]
+    return ["--set", "Billet/symmetry planes=", "--set", "Billet/shape=file", "--set", f"Billet/file name={name}.msh"]
 
 
 def settings(*pairs):
@@ -159,7 +159,7 @@ def interrupted(folder):
 
 def full_disk(folder):
     """A small file system of our own, where the machine lets us have one."""
-    for size, name in (("4k", "first files"), ("40k", "fields or record")):
+    for size, name in (("4k", "first files"), ("48k", "fields or record")):
         disk, saved = os.path.join(folder, f"disk_{size}"), os.path.join(folder, f"saved_{size}")
         os.mkdir(disk)
         script = (f"mount -t tmpfs -o size={size} tmpfs {disk} || exit 77; "
@@ -174,7 +174,7 @@ def full_disk(folder):
             continue
         judge(f"disk full at the {name}", done, re.escape(disk))
         history = os.path.join(saved, "run", "history.csv")
-        if size == "40k":
+        if size == "48k":
             whole_history("what was computed before the disk was full is kept", history, 0)
 
 

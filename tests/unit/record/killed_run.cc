@@ -70,7 +70,7 @@ bool survived(const std::string &folder, const RecordHeader &header, const unsig
 
 int main()
 {
-  const std::string  folder = fresh_folder("killed_run");
+  const std::string  folder = fresh_folder("killed_run_data");
   const RecordHeader header = sample_header(brick(4, 4, 5));
   std::mt19937       random(7);
   unsigned int       n_good = 0, n_resumed = 0;

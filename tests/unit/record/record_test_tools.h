@@ -28,7 +28,7 @@ namespace retroforge
     for (const auto &cell : mesh.cells)
       for (const auto &corners : opposite)
       {
-        const std::array<NodeIndex, 3> face{cell[corners[0]], cell[corners[1]], cell[corners[2]]};
+        const std::array<NodeIndex, 3> face{{cell[corners[0]], cell[corners[1]], cell[corners[2]]}};
         auto                           key = face;
         std::sort(key.begin(), key.end());
         found[key].push_back(face);
@@ -59,8 +59,8 @@ namespace retroforge
           {
             const NodeIndex n0 = i + a * (j + b * k), n1 = n0 + stride[paths[p][0]],
                             n2 = n1 + stride[paths[p][1]], n3 = n2 + stride[paths[p][2]];
-            mesh.cells.push_back(p < 3 ? std::array<NodeIndex, 4>{n0, n1, n2, n3}
-                                       : std::array<NodeIndex, 4>{n0, n2, n1, n3});
+            mesh.cells.push_back(p < 3 ? std::array<NodeIndex, 4>{{n0, n1, n2, n3}}
+                                       : std::array<NodeIndex, 4>{{n0, n2, n1, n3}});
           }
     add_boundary(mesh);
     return mesh;

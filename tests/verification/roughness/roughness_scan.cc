@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 //
-// The energy and its adjoint derivative along one design parameter, at equally spaced values, one line of CSV each:
+// The energy and its adjoint derivative along one design parameter, at equally spaced values, one line of CSV
+// each:
 //   roughness_scan CASE.prm FROM TO POINTS [Section/name=value]...
 // The mesh is made once: values differ by the design's map only, and all decisions are taken anew at each.
 
@@ -29,24 +30,26 @@ namespace
   struct Scan
   {
     explicit Scan(const Parameters &all)
-      : parameters(all)
-      , scene(make_billet(all.billet, MPI_COMM_WORLD), make_dies(all.dies), MPI_COMM_WORLD)
-      , nominal(all.process(all.billet.size[2]))
-      , model(all.step_model())
-      , design(all.design.names, all.billet, all.dies, nominal, scene.mesh.X)
-      , system(scene, parameters.linear_solver, timings)
-      , increment(scene, model, parameters.newton, system, timings)
-      , forging(scene, parameters.press, increment)
-    {}
+        : parameters(all)
+        , scene(make_billet(all.billet, MPI_COMM_WORLD), make_dies(all.dies), MPI_COMM_WORLD)
+        , nominal(all.process(all.billet.size[2]))
+        , model(all.step_model())
+        , design(all.design.names, all.billet, all.dies, nominal, scene.mesh.X)
+        , system(scene, parameters.linear_solver, timings)
+        , increment(scene, model, parameters.newton, system, timings)
+        , forging(scene, parameters.press, increment)
+    {
+    }
 
     void print_line(const double mu)
     {
-      const std::vector<double>    value = {mu};
+      const std::vector<double>    value   = {mu};
       const Process<double>        process = design.process(value);
       std::vector<IncrementRecord> records;
-      const ForgingResult          forged = forging.run(process, design.positions(value), [&](const IncrementEvent &event) {
-        records.push_back(event.record);
-      });
+      const ForgingResult          forged =
+        forging.run(process, design.positions(value), [&](const IncrementEvent &event) {
+          records.push_back(event.record);
+        });
       const AdjointResult result =
         adjoint_sweep(scene,
                       increment,
@@ -79,30 +82,30 @@ int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   if (argc < 5)
-    {
-      std::cerr << "usage: roughness_scan CASE.prm FROM TO POINTS [Section/name=value]...\n";
-      return 2;
-    }
+  {
+    std::cerr << "usage: roughness_scan CASE.prm FROM TO POINTS [Section/name=value]...\n";
+    return 2;
+  }
   try
+  {
+    const double                                     from = std::stod(argv[2]), to = std::stod(argv[3]);
+    const unsigned int                               n = std::stoul(argv[4]);
+    std::vector<std::pair<std::string, std::string>> overrides;
+    for (int i = 5; i < argc; ++i)
     {
-      const double       from = std::stod(argv[2]), to = std::stod(argv[3]);
-      const unsigned int n = std::stoul(argv[4]);
-      std::vector<std::pair<std::string, std::string>> overrides;
-      for (int i = 5; i < argc; ++i)
-        {
-          const std::string word(argv[i]);
-          overrides.emplace_back(word.substr(0, word.find('=')), word.substr(word.find('=') + 1));
-        }
-      std::string echo;
-      Scan        scan(Parameters::read(argv[1], overrides, echo));
-      std::printf("mu,energy,gradient,nodes,increments\n");
-      for (unsigned int i = 0; i < n; ++i)
-        scan.print_line(n == 1 ? from : from + (to - from) * i / (n - 1));
+      const std::string word(argv[i]);
+      overrides.emplace_back(word.substr(0, word.find('=')), word.substr(word.find('=') + 1));
     }
+    std::string echo;
+    Scan        scan(Parameters::read(argv[1], overrides, echo));
+    std::printf("mu,energy,gradient,nodes,increments\n");
+    for (unsigned int i = 0; i < n; ++i)
+      scan.print_line(n == 1 ? from : from + (to - from) * i / (n - 1));
+  }
   catch (const std::exception &error)
-    {
-      std::cerr << error.what() << std::endl;
-      return 1;
-    }
+  {
+    std::cerr << error.what() << std::endl;
+    return 1;
+  }
   return 0;
 }
