@@ -15,32 +15,67 @@ namespace retroforge
   void ContactParameters::add_parameters(dealii::ParameterHandler &prm)
   {
     prm.enter_subsection("Contact");
-    prm.add_parameter("law",
-                      law,
-                      "smooth: friction sets in over a ramp of the gap, the objective is differentiable as nodes arrive. "
-                      "sharp: friction acts where the gap is below the ramp's width, decided once per increment. "
-                      "Units: none.",
-                      Selection("smooth|sharp"));
-    prm.add_parameter("approach",
-                      approach,
-                      "Approach time in increments: a gap closes within this many. 1 closes it in one, larger values "
-                      "smooth the objective and bias the energy. Units: none.",
-                      Double(1.));
-    prm.add_parameter("ramp width",
-                      ramp_width,
-                      "Gap over which friction sets in, in units of approach times the increment's stroke. Units: none.",
-                      Double(1e-6));
-    prm.add_parameter("penetration",
-                      penetration,
-                      "Part of the leading die's speed at which a node sinks into a die under the mean pressure: sets the "
-                      "penalty. Units: none.",
-                      Double(1e-14, 1.));
+    prm.add_parameter(
+      "law",
+      law,
+      "smooth: friction sets in over a ramp of the gap, the objective is differentiable as nodes arrive. "
+      "sharp: friction acts where the gap is below the ramp's width, decided once per increment. "
+      "Units: none.",
+      Selection("smooth|sharp"));
+    prm.add_parameter(
+      "approach",
+      approach,
+      "Approach time in increments: a gap closes within this many. 1 closes it in one, larger values "
+      "smooth the objective and bias the energy. Units: none.",
+      Double(1.));
+    prm.add_parameter(
+      "ramp width",
+      ramp_width,
+      "Gap over which friction sets in, in units of approach times the increment's stroke. Units: none.",
+      Double(1e-6));
+    prm.add_parameter(
+      "penetration",
+      penetration,
+      "Part of the leading die's speed at which a node sinks into a die under the mean pressure: sets the "
+      "penalty. Units: none.",
+      Double(1e-14, 1.));
     prm.add_parameter("penalty", penalty, "rho; 0 takes it from `penetration`. Units: MPa s/mm.", Double(0.));
-    prm.add_parameter("slip regularisation",
-                      slip_fraction,
-                      "v0 in |dv|^2 -> |dv|^2 + v0^2, as a part of the leading die's speed. Part of the model. Units: none.",
-                      Double(0.));
+    prm.add_parameter(
+      "slip regularisation",
+      slip_fraction,
+      "v0 in |dv|^2 -> |dv|^2 + v0^2, as a part of the leading die's speed. Part of the model. Units: none.",
+      Double(0.));
     prm.leave_subsection();
+  }
+
+  void AdjointParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Adjoint");
+    prm.add_parameter("tolerance",
+                      tolerance,
+                      "Relative tolerance of the adjoint and tangent linear systems. Units: none.",
+                      Double(1e-14, 1e-2));
+    prm.add_parameter(
+      "derivatives",
+      derivatives,
+      "How residual and dissipation are differentiated in the positions of the nodes: exact, or by "
+      "differences inside the elements (semi-analytic), to compare with. Units: none.",
+      Selection("exact|semi-analytic|semi-analytic central"));
+    prm.add_parameter(
+      "perturbation",
+      perturbation,
+      "Step of the semi-analytic derivatives, relative to the size of the element. Units: none.",
+      Double(1e-15, 1e-1));
+    prm.leave_subsection();
+  }
+
+  ShapeDerivatives AdjointParameters::shape_derivatives() const
+  {
+    using Method = ShapeDerivatives::Method;
+    return {derivatives == "exact"           ? Method::exact
+            : derivatives == "semi-analytic" ? Method::forward
+                                             : Method::central,
+            perturbation};
   }
 
   void OutputParameters::add_parameters(dealii::ParameterHandler &prm)
@@ -49,18 +84,20 @@ namespace retroforge
     prm.add_parameter("fields every",
                       every,
                       "Write the fields for viewing every so many increments; 0 for never. Units: none.");
-    prm.add_parameter("record", record, "Keep the record that a later gradient or replay needs. Units: none.");
+    prm.add_parameter(
+      "record", record, "Keep the record that a later gradient or replay needs. Units: none.");
     prm.leave_subsection();
   }
 
   void DesignParameters::add_parameters(dealii::ParameterHandler &prm)
   {
     prm.enter_subsection("Design");
-    prm.add_parameter("parameters",
-                      names,
-                      "Parameters whose gradient is wanted: material/K, material/m, material/e0, contact/rho, contact/v0, "
-                      "dies/friction, `die NAME/friction`, `die NAME/speed`, `die NAME/offset`, billet/stretch, "
-                      "billet/radius. The gradient by every node of the billet always comes along. Units: none.");
+    prm.add_parameter(
+      "parameters",
+      names,
+      "Parameters whose gradient is wanted: material/K, material/m, material/e0, contact/rho, contact/v0, "
+      "dies/friction, `die NAME/friction`, `die NAME/speed`, `die NAME/offset`, billet/stretch, "
+      "billet/radius. The gradient by every node of the billet always comes along. Units: none.");
     prm.leave_subsection();
   }
 
@@ -68,10 +105,8 @@ namespace retroforge
   {
     billet.add_parameters(prm);
     prm.enter_subsection("Dies");
-    prm.declare_entry("names",
-                      "",
-                      Anything(),
-                      "Names of the dies; each has a section `Die NAME`. Units: none.");
+    prm.declare_entry(
+      "names", "", Anything(), "Names of the dies; each has a section `Die NAME`. Units: none.");
     prm.leave_subsection();
     dies.clear();
     for (const std::string &name : die_names)
@@ -83,12 +118,7 @@ namespace retroforge
     contact.add_parameters(prm);
     newton.add_parameters(prm);
     linear_solver.add_parameters(prm);
-    prm.enter_subsection("Adjoint");
-    prm.add_parameter("tolerance",
-                      adjoint_tolerance,
-                      "Relative tolerance of the adjoint and tangent linear systems. Units: none.",
-                      Double(1e-14, 1e-2));
-    prm.leave_subsection();
+    adjoint.add_parameters(prm);
     design.add_parameters(prm);
     check.add_parameters(prm);
     output.add_parameters(prm);
@@ -96,21 +126,23 @@ namespace retroforge
 
   namespace
   {
-    /// The dies' names must be known before their sections can be: they are looked for ahead of the real reading.
-    std::vector<std::string> die_names(const std::string &file, const std::vector<std::pair<std::string, std::string>> &overrides)
+    /// The dies' names must be known before their sections can be: they are looked for ahead of the real
+    /// reading.
+    std::vector<std::string> die_names(const std::string                                      &file,
+                                       const std::vector<std::pair<std::string, std::string>> &overrides)
     {
       std::string   names;
       std::ifstream in(file);
       for (std::string line, section; std::getline(in, line);)
-        {
-          std::istringstream words(line.substr(0, line.find('#')));
-          std::string        first, second, equals;
-          words >> first >> second;
-          if (first == "subsection")
-            section = second;
-          else if (first == "set" && second == "names" && section == "Dies" && words >> equals && equals == "=")
-            std::getline(words, names);
-        }
+      {
+        std::istringstream words(line.substr(0, line.find('#')));
+        std::string        first, second, equals;
+        words >> first >> second;
+        if (first == "subsection")
+          section = second;
+        else if (first == "set" && second == "names" && section == "Dies" && words >> equals && equals == "=")
+          std::getline(words, names);
+      }
       for (const auto &[path, value] : overrides)
         if (path == "Dies/names")
           names = value;
@@ -139,19 +171,20 @@ namespace retroforge
     material.check();
     press.check();
     if (dies.empty())
-      throw Error("Dies/names", "names no die", "a billet is forged by at least one die", "set names = lower, upper");
+      throw Error(
+        "Dies/names", "names no die", "a billet is forged by at least one die", "set names = lower, upper");
     for (unsigned int d = 0; d < dies.size(); ++d)
-      {
-        dies[d].check();
-        for (unsigned int e = 0; e < d; ++e)
-          if (dies[e].name == dies[d].name)
-            throw Error("Dies/names", "'" + dies[d].name + "' stands twice", "names must differ", "rename one");
-        if (dies[d].friction > 0. && material.sensitivity < 1. && contact.slip_fraction == 0.)
-          throw Error("Contact/slip regularisation",
-                      "is 0 with friction and a strain rate sensitivity below 1",
-                      "the friction of a sticking node would be infinitely stiff",
-                      "use 1e-2, or 1e-3 for a sharper law");
-      }
+    {
+      dies[d].check();
+      for (unsigned int e = 0; e < d; ++e)
+        if (dies[e].name == dies[d].name)
+          throw Error("Dies/names", "'" + dies[d].name + "' stands twice", "names must differ", "rename one");
+      if (dies[d].friction > 0. && material.sensitivity < 1. && contact.slip_fraction == 0.)
+        throw Error("Contact/slip regularisation",
+                    "is 0 with friction and a strain rate sensitivity below 1",
+                    "the friction of a sticking node would be infinitely stiff",
+                    "use 1e-2, or 1e-3 for a sharper law");
+    }
     leading_die();
   }
 
@@ -159,14 +192,14 @@ namespace retroforge
   {
     for (unsigned int d = 0; d < dies.size(); ++d)
       if (press.leading_die.empty() ? dies[d].velocity.norm() > 0. : dies[d].name == press.leading_die)
-        {
-          if (dies[d].velocity.norm() == 0.)
-            throw Error("Press/leading die",
-                        "'" + dies[d].name + "' does not move",
-                        "the stroke is the path of the leading die",
-                        "give it a velocity or name another");
-          return d;
-        }
+      {
+        if (dies[d].velocity.norm() == 0.)
+          throw Error("Press/leading die",
+                      "'" + dies[d].name + "' does not move",
+                      "the stroke is the path of the leading die",
+                      "give it a velocity or name another");
+        return d;
+      }
     if (press.leading_die.empty())
       throw Error("Dies", "no die moves", "one at least must", "give a die a velocity");
     throw Error("Press/leading die",
@@ -183,7 +216,9 @@ namespace retroforge
     for (const DieParameters &die : dies)
       process.dies.push_back(die.initial_state());
     const double speed  = process.speed();
-    const double height = billet.shape == "box" ? billet.size[2] : billet.shape == "cylinder" ? billet.height : size;
+    const double height = billet.shape == "box"        ? billet.size[2]
+                          : billet.shape == "cylinder" ? billet.height
+                                                       : size;
     // Mean pressure of a frictionless upsetting.
     const double rate     = speed / height;
     const double pressure = process.law.stress_factor(process.law.q(1.5 * rate * rate)) * 1.5 * rate;
@@ -201,7 +236,8 @@ namespace retroforge
     model.ramp.sharp        = contact.law == "sharp";
     model.ramp.width        = contact.ramp_width * contact.approach * step;
     model.reach             = 3. * std::max(1., contact.ramp_width) * contact.approach * step;
-    model.adjoint_tolerance = adjoint_tolerance;
+    model.adjoint_tolerance = adjoint.tolerance;
+    model.shape_derivatives = adjoint.shape_derivatives();
     return model;
   }
 } // namespace retroforge

@@ -40,7 +40,7 @@ namespace retroforge
       if (command.command == "check")
         {
           parameters.newton.tolerance  = std::min(parameters.newton.tolerance, 1e-12);
-          parameters.adjoint_tolerance = std::min(parameters.adjoint_tolerance, 1e-13);
+          parameters.adjoint.tolerance = std::min(parameters.adjoint.tolerance, 1e-13);
         }
       return parameters;
     }

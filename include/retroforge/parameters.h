@@ -10,19 +10,30 @@ namespace retroforge
 {
   struct ContactParameters
   {
-    std::string law                = "smooth";
-    double      approach           = 1.;
-    double      ramp_width         = 1.;
-    double      penetration        = 1e-6;
-    double      penalty            = 0.;
-    double      slip_fraction      = 1e-2;
+    std::string law           = "smooth";
+    double      approach      = 1.;
+    double      ramp_width    = 1.;
+    double      penetration   = 1e-6;
+    double      penalty       = 0.;
+    double      slip_fraction = 1e-2;
 
     void add_parameters(dealii::ParameterHandler &prm);
   };
 
+  struct AdjointParameters
+  {
+    double      tolerance    = 1e-10;
+    std::string derivatives  = "exact";
+    double      perturbation = 1e-6;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+
+    ShapeDerivatives shape_derivatives() const;
+  };
+
   struct OutputParameters
   {
-    unsigned int every = 1;
+    unsigned int every  = 1;
     bool         record = true;
 
     void add_parameters(dealii::ParameterHandler &prm);
@@ -48,7 +59,7 @@ namespace retroforge
     DesignParameters           design;
     CheckParameters            check;
     OutputParameters           output;
-    double                     adjoint_tolerance = 1e-10;
+    AdjointParameters          adjoint;
 
     /// Declares everything; the dies are those of the names given.
     void add_parameters(dealii::ParameterHandler &prm, const std::vector<std::string> &die_names);
@@ -64,7 +75,7 @@ namespace retroforge
     StepModel       step_model() const;
 
   private:
-    void check_all();
+    void         check_all();
     unsigned int leading_die() const;
   };
 } // namespace retroforge

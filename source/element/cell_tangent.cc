@@ -3,13 +3,13 @@
 #include <retroforge/element/mini_element.h>
 #include <retroforge/element/mini_element.templates.h>
 
-// One source for one cell and for a pack of cells: what is between them must vanish into the caller, which alone is
-// compiled for several processors.
+// One source for one cell and for a pack of cells: what is between them must vanish into the caller, which
+// alone is compiled for several processors.
 #define RETROFORGE_INLINE inline __attribute__((always_inline))
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#  define RETROFORGE_FOR_EACH_PROCESSOR __attribute__((target_clones("arch=haswell", "default")))
+#define RETROFORGE_FOR_EACH_PROCESSOR __attribute__((target_clones("arch=haswell", "default")))
 #else
-#  define RETROFORGE_FOR_EACH_PROCESSOR
+#define RETROFORGE_FOR_EACH_PROCESSOR
 #endif
 
 namespace retroforge
@@ -41,8 +41,8 @@ namespace retroforge
               const NortonHoff<double>   &law,
               TangentInput<double>       &input)
     {
-      input.volume         = geometry.volume;
-      const double quarter = 0.25 * geometry.volume;
+      input.volume           = geometry.volume;
+      const double quarter   = 0.25 * geometry.volume;
       double       linear[6] = {};
       const auto   add_dyad  = [](const Vec3 &v, const double scale, const Vec3 &g, double *e) {
         e[0] += scale * v[0] * g[0];
@@ -53,22 +53,22 @@ namespace retroforge
         e[5] += 0.5 * scale * (v[0] * g[1] + v[1] * g[0]);
       };
       for (unsigned int c = 0; c < 4; ++c)
-        {
-          add_dyad(V[c], 1., geometry.g[c], linear);
-          for (unsigned int i = 0; i < 3; ++i)
-            input.g[c][i] = geometry.g[c][i];
-        }
+      {
+        add_dyad(V[c], 1., geometry.g[c], linear);
+        for (unsigned int i = 0; i < 3; ++i)
+          input.g[c][i] = geometry.g[c][i];
+      }
       for (unsigned int a = 0; a < 4; ++a)
-        {
-          double *eps = input.eps[a];
-          std::copy(linear, linear + 6, eps);
-          add_dyad(beta, 4., geometry.g[a], eps);
-          const double q      = law.q(eps[0] * eps[0] + eps[1] * eps[1] + eps[2] * eps[2] +
-                                 2. * (eps[3] * eps[3] + eps[4] * eps[4] + eps[5] * eps[5]));
-          const double factor = quarter * law.stress_factor(q);
-          input.half[a]       = 0.5 * factor;
-          input.rank_one[a]   = law.m == 1. ? 0. : 2. * (law.m - 1.) / q * factor;
-        }
+      {
+        double *eps = input.eps[a];
+        std::copy(linear, linear + 6, eps);
+        add_dyad(beta, 4., geometry.g[a], eps);
+        const double q      = law.q(eps[0] * eps[0] + eps[1] * eps[1] + eps[2] * eps[2] +
+                               2. * (eps[3] * eps[3] + eps[4] * eps[4] + eps[5] * eps[5]));
+        const double factor = quarter * law.stress_factor(q);
+        input.half[a]       = 0.5 * factor;
+        input.rank_one[a]   = law.m == 1. ? 0. : 2. * (law.m - 1.) / q * factor;
+      }
     }
 
     /// y = eps_a g_c
@@ -91,8 +91,8 @@ namespace retroforge
     RETROFORGE_INLINE void invert(const T (&A)[3][3], T (&inverse)[3][3])
     {
       const T c00 = A[1][1] * A[2][2] - A[1][2] * A[2][1], c01 = A[1][2] * A[2][0] - A[1][0] * A[2][2],
-              c02 = A[1][0] * A[2][1] - A[1][1] * A[2][0];
-      const T d   = 1. / (A[0][0] * c00 + A[0][1] * c01 + A[0][2] * c02);
+              c02   = A[1][0] * A[2][1] - A[1][1] * A[2][0];
+      const T d     = 1. / (A[0][0] * c00 + A[0][1] * c01 + A[0][2] * c02);
       inverse[0][0] = c00 * d;
       inverse[0][1] = inverse[1][0] = c01 * d;
       inverse[0][2] = inverse[2][0] = c02 * d;
@@ -109,18 +109,18 @@ namespace retroforge
         for (unsigned int j = 0; j < 3; ++j)
           block[i][j] = T{};
       for (unsigned int a = 0; a < 4; ++a)
+      {
+        const T h = 16. * in.half[a], r = 16. * in.rank_one[a], diagonal = h * dot(in.g[a], in.g[a]);
+        T       y[3] = {};
+        if (!linear)
+          eps_times_g(in.eps[a], in.g[a], y);
+        for (unsigned int i = 0; i < 3; ++i)
         {
-          const T h = 16. * in.half[a], r = 16. * in.rank_one[a], diagonal = h * dot(in.g[a], in.g[a]);
-          T       y[3] = {};
-          if (!linear)
-            eps_times_g(in.eps[a], in.g[a], y);
-          for (unsigned int i = 0; i < 3; ++i)
-            {
-              block[i][i] += diagonal;
-              for (unsigned int j = 0; j < 3; ++j)
-                block[i][j] += h * in.g[a][i] * in.g[a][j] + r * y[i] * y[j];
-            }
+          block[i][i] += diagonal;
+          for (unsigned int j = 0; j < 3; ++j)
+            block[i][j] += h * in.g[a][i] * in.g[a][j] + r * y[i] * y[j];
         }
+      }
     }
 
     template <typename T>
@@ -148,64 +148,65 @@ namespace retroforge
 
       T h[3];
       for (unsigned int i = 0; i < 3; ++i)
-        h[i] = 4. * (in.half[0] * g[0][i] + in.half[1] * g[1][i] + in.half[2] * g[2][i] + in.half[3] * g[3][i]);
+        h[i] =
+          4. * (in.half[0] * g[0][i] + in.half[1] * g[1][i] + in.half[2] * g[2][i] + in.half[3] * g[3][i]);
       T VbM[4][3][3];
       for (unsigned int c = 0; c < 4; ++c)
-        {
-          auto   &N        = t.Vb[c];
-          const T diagonal = 4. * (in.half[0] * gg[c][0] + in.half[1] * gg[c][1] + in.half[2] * gg[c][2] +
-                                   in.half[3] * gg[c][3]);
-          for (unsigned int i = 0; i < 3; ++i)
-            for (unsigned int j = 0; j < 3; ++j)
-              N[i][j] = h[i] * g[c][j];
-          for (unsigned int i = 0; i < 3; ++i)
-            N[i][i] += diagonal;
-          if (!linear)
-            for (unsigned int a = 0; a < 4; ++a)
-              for (unsigned int i = 0; i < 3; ++i)
-                {
-                  const T scaled = 4. * in.rank_one[a] * y[a][c][i];
-                  for (unsigned int j = 0; j < 3; ++j)
-                    N[i][j] += scaled * y[a][a][j];
-                }
-          for (unsigned int i = 0; i < 3; ++i)
+      {
+        auto   &N        = t.Vb[c];
+        const T diagonal = 4. * (in.half[0] * gg[c][0] + in.half[1] * gg[c][1] + in.half[2] * gg[c][2] +
+                                 in.half[3] * gg[c][3]);
+        for (unsigned int i = 0; i < 3; ++i)
+          for (unsigned int j = 0; j < 3; ++j)
+            N[i][j] = h[i] * g[c][j];
+        for (unsigned int i = 0; i < 3; ++i)
+          N[i][i] += diagonal;
+        if (!linear)
+          for (unsigned int a = 0; a < 4; ++a)
+            for (unsigned int i = 0; i < 3; ++i)
             {
-              t.Pb[c][i] = quarter * g[c][i];
+              const T scaled = 4. * in.rank_one[a] * y[a][c][i];
               for (unsigned int j = 0; j < 3; ++j)
-                VbM[c][i][j] = N[i][0] * t.M[0][j] + N[i][1] * t.M[1][j] + N[i][2] * t.M[2][j];
+                N[i][j] += scaled * y[a][a][j];
             }
+        for (unsigned int i = 0; i < 3; ++i)
+        {
+          t.Pb[c][i] = quarter * g[c][i];
+          for (unsigned int j = 0; j < 3; ++j)
+            VbM[c][i][j] = N[i][0] * t.M[0][j] + N[i][1] * t.M[1][j] + N[i][2] * t.M[2][j];
         }
+      }
 
       for (unsigned int c = 0; c < 4; ++c)
         for (unsigned int i = 0; i < 3; ++i)
-          {
-            T scaled[4];
-            if (!linear)
-              for (unsigned int a = 0; a < 4; ++a)
-                scaled[a] = in.rank_one[a] * y[a][c][i];
-            for (unsigned int d = 0; d <= c; ++d)
-              for (unsigned int j = 0; j < 3; ++j)
-                {
-                  T sum = half_sum * g[d][i] * g[c][j] - dot(VbM[c][i], t.Vb[d][j]);
-                  if (!linear)
-                    sum += scaled[0] * y[0][d][j] + scaled[1] * y[1][d][j] + scaled[2] * y[2][d][j] +
-                           scaled[3] * y[3][d][j];
-                  if (i == j)
-                    sum += half_sum * gg[c][d];
-                  t.A[c][d][i][j] = sum;
-                  t.A[d][c][j][i] = sum;
-                }
-            for (unsigned int d = 0; d < 4; ++d)
-              t.B[c][d][i] = -quarter * g[c][i] - dot(VbM[c][i], t.Pb[d]);
-          }
-      for (unsigned int c = 0; c < 4; ++c)
         {
-          T PbM[3];
-          for (unsigned int i = 0; i < 3; ++i)
-            PbM[i] = t.Pb[c][0] * t.M[0][i] + t.Pb[c][1] * t.M[1][i] + t.Pb[c][2] * t.M[2][i];
+          T scaled[4];
+          if (!linear)
+            for (unsigned int a = 0; a < 4; ++a)
+              scaled[a] = in.rank_one[a] * y[a][c][i];
+          for (unsigned int d = 0; d <= c; ++d)
+            for (unsigned int j = 0; j < 3; ++j)
+            {
+              T sum = half_sum * g[d][i] * g[c][j] - dot(VbM[c][i], t.Vb[d][j]);
+              if (!linear)
+                sum += scaled[0] * y[0][d][j] + scaled[1] * y[1][d][j] + scaled[2] * y[2][d][j] +
+                       scaled[3] * y[3][d][j];
+              if (i == j)
+                sum += half_sum * gg[c][d];
+              t.A[c][d][i][j] = sum;
+              t.A[d][c][j][i] = sum;
+            }
           for (unsigned int d = 0; d < 4; ++d)
-            t.C[c][d] = -dot(PbM, t.Pb[d]);
+            t.B[c][d][i] = -quarter * g[c][i] - dot(VbM[c][i], t.Pb[d]);
         }
+      for (unsigned int c = 0; c < 4; ++c)
+      {
+        T PbM[3];
+        for (unsigned int i = 0; i < 3; ++i)
+          PbM[i] = t.Pb[c][0] * t.M[0][i] + t.Pb[c][1] * t.M[1][i] + t.Pb[c][2] * t.M[2][i];
+        for (unsigned int d = 0; d < 4; ++d)
+          t.C[c][d] = -dot(PbM, t.Pb[d]);
+      }
     }
 
     RETROFORGE_FOR_EACH_PROCESSOR
@@ -241,20 +242,22 @@ namespace retroforge
   {
     TangentInput<Pack> pack;
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
-      {
-        TangentInput<double> input;
-        fill(geometry[lane], w[lane].V.data(), w[lane].beta, law, input);
-        for_each_entry(pack, input, [lane](double &p, const double &x) { (&p)[lane] = x; });
-      }
+    {
+      TangentInput<double> input;
+      fill(geometry[lane], w[lane].V.data(), w[lane].beta, law, input);
+      for_each_entry(pack, input, [lane](double &p, const double &x) { (&p)[lane] = x; });
+    }
     tangent_pack(pack, law.m == 1., tangent);
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
-      for_each_entry(static_cast<BubbleElimination<Pack> &>(tangent), *elimination[lane], [lane](const double &p, double &x) {
-        x = (&p)[lane];
-      });
+      for_each_entry(static_cast<BubbleElimination<Pack> &>(tangent),
+                     *elimination[lane],
+                     [lane](const double &p, double &x) { x = (&p)[lane]; });
   }
 
   template <>
-  Vec3 BubbleElimination<double>::recover_bubble(const Vec3 &rhs_beta, const Four<Vec3> &V, const Four<double> &P) const
+  Vec3 BubbleElimination<double>::recover_bubble(const Vec3         &rhs_beta,
+                                                 const Four<Vec3>   &V,
+                                                 const Four<double> &P) const
   {
     Vec3 rhs = rhs_beta;
     for (unsigned int c = 0; c < 4; ++c)
@@ -268,10 +271,10 @@ namespace retroforge
   {
     const Vec3 b = multiply(M, rhs.beta);
     for (unsigned int c = 0; c < 4; ++c)
-      {
-        rhs.V[c] -= multiply(Vb[c], b);
-        rhs.P[c] -= Pb[c][0] * b[0] + Pb[c][1] * b[1] + Pb[c][2] * b[2];
-      }
+    {
+      rhs.V[c] -= multiply(Vb[c], b);
+      rhs.P[c] -= Pb[c][0] * b[0] + Pb[c][1] * b[1] + Pb[c][2] * b[2];
+    }
   }
 
   namespace
@@ -293,15 +296,16 @@ namespace retroforge
         residual = 0.25 * geometry.volume * grad_p;
         value    = residual * beta;
         for (unsigned int a = 0; a < 4; ++a)
-          {
-            double y[3];
-            eps_times_g(in.eps[a], in.g[a], y);
-            for (unsigned int i = 0; i < 3; ++i)
-              residual[i] += 8. * in.half[a] * y[i];
-            const auto &e = in.eps[a];
-            value += in.half[a] / (law.m + 1.) *
-                     law.q(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + 2. * (e[3] * e[3] + e[4] * e[4] + e[5] * e[5]));
-          }
+        {
+          double y[3];
+          eps_times_g(in.eps[a], in.g[a], y);
+          for (unsigned int i = 0; i < 3; ++i)
+            residual[i] += 8. * in.half[a] * y[i];
+          const auto &e = in.eps[a];
+          value +=
+            in.half[a] / (law.m + 1.) *
+            law.q(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + 2. * (e[3] * e[3] + e[4] * e[4] + e[5] * e[5]));
+        }
         double block[3][3], inverse[3][3];
         bubble_block(in, law.m == 1., block);
         invert(block, inverse);
@@ -310,33 +314,36 @@ namespace retroforge
     };
   } // namespace
 
-  Vec3 solve_bubble(const CellGeometry<double> &geometry, const CellValues<double> &w, const NortonHoff<double> &law)
+  Vec3 solve_bubble(const CellGeometry<double> &geometry,
+                    const CellValues<double>   &w,
+                    const NortonHoff<double>   &law)
   {
-    const Vec3  grad_p = pressure_gradient(geometry, w.P);
-    double      spread = 0.;
+    const Vec3 grad_p = pressure_gradient(geometry, w.P);
+    double     spread = 0.;
     for (unsigned int c = 1; c < 4; ++c)
       spread += (w.V[c] - w.V[0]).norm();
     Vec3        beta = w.beta;
     BubbleState state(geometry, w, grad_p, beta, law);
     for (unsigned int iteration = 0; iteration < 60; ++iteration)
+    {
+      const Vec3   step      = state.newton_step;
+      const double decrement = -(step * state.residual);
+      if (!(decrement > 0.))
+        break;
+      // Convergence is quadratic: the error left by so small a step is below rounding.
+      if (step.norm() <= 1e-9 * beta.norm() + 1e-16 * spread)
+        return beta + step;
+      double      scale = 1.;
+      BubbleState next(geometry, w, grad_p, beta + step, law);
+      while (scale > 1e-4 &&
+             next.value > state.value - 1e-4 * scale * decrement + 1e-14 * std::abs(state.value))
       {
-        const Vec3   step      = state.newton_step;
-        const double decrement = -(step * state.residual);
-        if (!(decrement > 0.))
-          break;
-        // Convergence is quadratic: the error left by so small a step is below rounding.
-        if (step.norm() <= 1e-9 * beta.norm() + 1e-16 * spread)
-          return beta + step;
-        double      scale = 1.;
-        BubbleState next(geometry, w, grad_p, beta + step, law);
-        while (scale > 1e-4 && next.value > state.value - 1e-4 * scale * decrement + 1e-14 * std::abs(state.value))
-          {
-            scale *= 0.5;
-            next = BubbleState(geometry, w, grad_p, beta + scale * step, law);
-          }
-        beta += scale * step;
-        state = next;
+        scale *= 0.5;
+        next = BubbleState(geometry, w, grad_p, beta + scale * step, law);
       }
+      beta += scale * step;
+      state = next;
+    }
     return beta;
   }
 } // namespace retroforge

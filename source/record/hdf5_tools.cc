@@ -221,22 +221,49 @@ namespace retroforge::hdf5
     check(close_(id), "closing");
   }
 
-  Handle create_in_memory()
+  MemoryFile::MemoryFile() : contents_(std::make_unique<Contents>()), file_(create(*contents_)) {}
+
+  /// HDF5 calls this to free its memory; when it closes the file, the memory holds the final contents.
+  herr_t MemoryFile::take(void *memory, const H5FD_file_image_op_t operation, void *contents)
   {
-    constexpr std::size_t growth = 1 << 20;
-    const Handle          access = file_access(), creation = untimed(H5P_FILE_CREATE);
+    if (operation == H5FD_FILE_IMAGE_OP_FILE_CLOSE)
+      static_cast<Contents *>(contents)->reset(static_cast<char *>(memory));
+    else
+      std::free(memory);
+    return 0;
+  }
+
+  Handle MemoryFile::create(Contents &contents)
+  {
+    constexpr std::size_t       growth = 1 << 20;
+    H5FD_file_image_callbacks_t callbacks;
+    callbacks.image_malloc = [](size_t size, H5FD_file_image_op_t, void *) { return std::malloc(size); };
+    callbacks.image_memcpy = [](void *to, const void *from, size_t size, H5FD_file_image_op_t, void *) {
+      return std::memcpy(to, from, size);
+    };
+    callbacks.image_realloc = [](void *old, size_t size, H5FD_file_image_op_t, void *) {
+      return std::realloc(old, size);
+    };
+    callbacks.image_free = take;
+    callbacks.udata_copy = [](void *contents) { return contents; };
+    callbacks.udata_free = [](void *) -> herr_t { return 0; };
+    callbacks.udata      = &contents;
+
+    const Handle access = file_access(), creation = untimed(H5P_FILE_CREATE);
     check(H5Pset_fapl_core(access, growth, false), "file in memory");
+    check(H5Pset_file_image_callbacks(access, &callbacks), "file in memory");
     return Handle(H5Fcreate("record", H5F_ACC_TRUNC, creation, access), H5Fclose, "file in memory");
   }
 
-  std::vector<char> image_of(const hid_t file)
+  void MemoryFile::close()
   {
-    check(H5Fflush(file, H5F_SCOPE_LOCAL), "file in memory");
-    const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+    check(H5Fflush(file_, H5F_SCOPE_LOCAL), "file in memory");
+    const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
     check(size, "file in memory");
-    std::vector<char> image(size);
-    check(H5Fget_file_image(file, image.data(), image.size()), "file in memory");
-    return image;
+    file_.close();
+    if (*contents_ == nullptr)
+      throw Failure("file in memory: HDF5 gave no contents");
+    size_ = size;
   }
 
   Handle open_file(const std::string &file)

@@ -78,15 +78,15 @@ namespace retroforge
       return folder.empty() ? "." : folder;
     }
 
-    void write_bytes(const std::string &file, const std::vector<char> &bytes)
+    void write_bytes(const std::string &file, const char *bytes, const std::size_t size)
     {
       const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
       check_system(descriptor >= 0);
       std::size_t done  = 0;
       int         error = 0;
-      while (done < bytes.size() && error == 0)
+      while (done < size && error == 0)
       {
-        const ssize_t n = ::write(descriptor, bytes.data() + done, bytes.size() - done);
+        const ssize_t n = ::write(descriptor, bytes + done, size - done);
         if (n > 0)
           done += n;
         else if (n == 0 || errno != EINTR)
@@ -105,9 +105,10 @@ namespace retroforge
       const std::string aside = file + ".tmp";
       try
       {
-        const hdf5::Handle image = hdf5::create_in_memory();
+        hdf5::MemoryFile image;
         fill(image);
-        write_bytes(aside, hdf5::image_of(image));
+        image.close();
+        write_bytes(aside, image.data(), image.size());
         sync(aside);
         check_system(std::rename(aside.c_str(), file.c_str()) == 0);
         sync(folder_of(file));

@@ -17,14 +17,14 @@ namespace retroforge
   void LinearSolverParameters::add_parameters(ParameterHandler &prm)
   {
     prm.enter_subsection("Linear solver");
-    prm.add_parameter("method",
-                      method,
-                      "auto takes `ilu` on small and `multigrid` on large meshes, and falls back to `direct` when they "
-                      "fail. Units: none.",
-                      Patterns::Selection("auto|ilu|multigrid|direct"));
-    prm.add_parameter("multigrid from",
-                      multigrid_from,
-                      "Number of nodes from which `auto` takes multigrid. Units: none.");
+    prm.add_parameter(
+      "method",
+      method,
+      "auto takes `ilu` on small and `multigrid` on large meshes, and falls back to `direct` when they "
+      "fail. Units: none.",
+      Patterns::Selection("auto|ilu|multigrid|direct"));
+    prm.add_parameter(
+      "multigrid from", multigrid_from, "Number of nodes from which `auto` takes multigrid. Units: none.");
     prm.add_parameter("max iterations",
                       max_iterations,
                       "Krylov iterations after which the direct solver takes over. Units: none.",
@@ -53,43 +53,42 @@ namespace retroforge
   {
     std::vector<NodeFrame>    frames(scene.mesh.n_nodes());
     std::vector<unsigned int> n_axes(scene.mesh.n_nodes(), 0);
-    const auto append = [&](const NodeIndex k, const Vec3 &direction) {
+    const auto                append = [&](const NodeIndex k, const Vec3 &direction) {
       n_axes[k] = append_axis(frames[k].axes, n_axes[k], direction);
     };
     for (NodeIndex k = 0; k < frames.size(); ++k)
-      {
-        for (const Vec3 &direction : scene.topology.fixed_directions[k])
-          append(k, direction);
-        frames[k].n_fixed = n_axes[k];
-      }
+    {
+      for (const Vec3 &direction : scene.topology.fixed_directions[k])
+        append(k, direction);
+      frames[k].n_fixed = n_axes[k];
+    }
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       append(contact.pairs[p].node, contact.projections[p].n);
     for (NodeIndex k = 0; k < frames.size(); ++k)
       if (n_axes[k] > 0)
+      {
+        frames[k].identity = false;
+        for (unsigned int i = 0; i < 3 && n_axes[k] < 3; ++i)
         {
-          frames[k].identity = false;
-          for (unsigned int i = 0; i < 3 && n_axes[k] < 3; ++i)
-            {
-              Vec3 unit;
-              unit[(i + 1) % 3] = 1.;
-              // A direction far from the axes there are keeps the completion well conditioned.
-              Vec3 rest = unit;
-              for (unsigned int j = 0; j < n_axes[k]; ++j)
-                rest -= (frames[k].axes[j] * unit) * frames[k].axes[j];
-              if (rest.norm() > 0.5)
-                append(k, unit);
-            }
+          Vec3 unit;
+          unit[(i + 1) % 3] = 1.;
+          // A direction far from the axes there are keeps the completion well conditioned.
+          Vec3 rest = unit;
+          for (unsigned int j = 0; j < n_axes[k]; ++j)
+            rest -= (frames[k].axes[j] * unit) * frames[k].axes[j];
+          if (rest.norm() > 0.5)
+            append(k, unit);
         }
+      }
     return frames;
   }
 
-  /// Rows of one block as Trilinos stores them: node b's entries of the r-th component of owned node a begin at
-  /// row_begin(rows_per_node * a + r) + columns_per_node * position.
+  /// Rows of one block as Trilinos stores them: node b's entries of the r-th component of owned node a begin
+  /// at row_begin(rows_per_node * a + r) + columns_per_node * position.
   struct LinearSystem::Block
   {
     Block(TrilinosWrappers::SparseMatrix &matrix, const unsigned int rows, const unsigned int columns)
-      : rows(rows)
-      , columns(columns)
+        : rows(rows), columns(columns)
     {
       auto &epetra = const_cast<Epetra_CrsMatrix &>(matrix.trilinos_matrix());
       int  *indices;
@@ -103,21 +102,22 @@ namespace retroforge
       return values + row_begin[rows * local_node + r] + columns * position;
     }
 
-    unsigned int     rows, columns;
-    int             *row_begin;
-    double          *values;
-    const int       *column_indices;
+    unsigned int           rows, columns;
+    int                   *row_begin;
+    double                *values;
+    const int             *column_indices;
     const Epetra_BlockMap *column_map;
 
     /// Node of an entry's column.
-    NodeIndex node_of(const int entry) const { return column_map->GID(column_indices[entry]) / columns; }
-    unsigned int component_of(const int entry) const { return column_map->GID(column_indices[entry]) % columns; }
+    NodeIndex    node_of(const int entry) const { return column_map->GID(column_indices[entry]) / columns; }
+    unsigned int component_of(const int entry) const
+    {
+      return column_map->GID(column_indices[entry]) % columns;
+    }
   };
 
   LinearSystem::LinearSystem(const Scene &scene, const LinearSolverParameters &parameters, Timings &timings)
-    : scene_(scene)
-    , parameters_(parameters)
-    , timings_(timings)
+      : scene_(scene), parameters_(parameters), timings_(timings)
   {
     make_pattern();
   }
@@ -131,11 +131,13 @@ namespace retroforge
     IndexSet           velocity(3 * n), pressure(n);
     velocity.add_range(3 * partition.node_begin, 3 * partition.node_end);
     pressure.add_range(partition.node_begin, partition.node_end);
-    const auto make = [&](TrilinosWrappers::SparseMatrix &matrix, const unsigned int rows, const unsigned int columns) {
-      const IndexSet        &row_set = rows == 3 ? velocity : pressure, &column_set = columns == 3 ? velocity : pressure;
-      DynamicSparsityPattern pattern(rows * n, columns * n, row_set);
-      std::vector<types::global_dof_index> entries;
-      for (NodeIndex a = partition.node_begin; a < partition.node_end; ++a)
+    const auto make =
+      [&](TrilinosWrappers::SparseMatrix &matrix, const unsigned int rows, const unsigned int columns) {
+        const IndexSet &row_set    = rows == 3 ? velocity : pressure,
+                       &column_set = columns == 3 ? velocity : pressure;
+        DynamicSparsityPattern               pattern(rows * n, columns * n, row_set);
+        std::vector<types::global_dof_index> entries;
+        for (NodeIndex a = partition.node_begin; a < partition.node_end; ++a)
         {
           entries.clear();
           for (const NodeIndex b : scene_.topology.neighbours[a])
@@ -144,8 +146,8 @@ namespace retroforge
           for (unsigned int i = 0; i < rows; ++i)
             pattern.add_entries(rows * a + i, entries.begin(), entries.end(), true);
         }
-      matrix.reinit(row_set, column_set, pattern, partition.comm);
-    };
+        matrix.reinit(row_set, column_set, pattern, partition.comm);
+      };
     matrix_.reinit(2, 2);
     make(matrix_.block(0, 0), 3, 3);
     make(matrix_.block(0, 1), 3, 1);
@@ -170,85 +172,88 @@ namespace retroforge
       for (auto &row : cell)
         row.fill(invalid_index);
     for (NodeIndex a = partition.node_begin; a < partition.node_end; ++a)
-      {
-        const unsigned int local = a - partition.node_begin;
-        for (int e = C_->row_begin[local]; e < C_->row_begin[local + 1]; ++e)
-          position[C_->node_of(e)] = e - C_->row_begin[local];
-        diagonal_.push_back(position[a]);
-        // The same node must stand at the same place in the rows of the other blocks.
-        for (int e = A_->row_begin[3 * local]; e < A_->row_begin[3 * local + 1]; ++e)
-          AssertThrow(position[A_->node_of(e)] * 3 + A_->component_of(e) ==
-                        static_cast<unsigned int>(e - A_->row_begin[3 * local]),
-                      ExcInternalError("The blocks of the matrix order their columns differently."));
-        for (const CellIndex c : scene_.topology.cells[a])
-          for (unsigned int i = 0; i < 4; ++i)
-            if (scene_.mesh.cells[c][i] == a)
-              for (unsigned int j = 0; j < 4; ++j)
-                positions_[visited_index_[c]][i][j] = position[scene_.mesh.cells[c][j]];
-      }
+    {
+      const unsigned int local = a - partition.node_begin;
+      for (int e = C_->row_begin[local]; e < C_->row_begin[local + 1]; ++e)
+        position[C_->node_of(e)] = e - C_->row_begin[local];
+      diagonal_.push_back(position[a]);
+      // The same node must stand at the same place in the rows of the other blocks.
+      for (int e = A_->row_begin[3 * local]; e < A_->row_begin[3 * local + 1]; ++e)
+        AssertThrow(position[A_->node_of(e)] * 3 + A_->component_of(e) ==
+                      static_cast<unsigned int>(e - A_->row_begin[3 * local]),
+                    ExcInternalError("The blocks of the matrix order their columns differently."));
+      for (const CellIndex c : scene_.topology.cells[a])
+        for (unsigned int i = 0; i < 4; ++i)
+          if (scene_.mesh.cells[c][i] == a)
+            for (unsigned int j = 0; j < 4; ++j)
+              positions_[visited_index_[c]][i][j] = position[scene_.mesh.cells[c][j]];
+    }
   }
 
-  void LinearSystem::add_cell(const CellIndex c, const unsigned int visited, const TangentPack &t, const unsigned int lane)
+  void LinearSystem::add_cell(const CellIndex    c,
+                              const unsigned int visited,
+                              const TangentPack &t,
+                              const unsigned int lane)
   {
-    const double       mass      = t.volume[lane] / 20. / t.viscosity[lane];
-    const auto        &nodes     = scene_.mesh.cells[c];
-    const Partition   &partition = scene_.partition;
+    const double     mass      = t.volume[lane] / 20. / t.viscosity[lane];
+    const auto      &nodes     = scene_.mesh.cells[c];
+    const Partition &partition = scene_.partition;
     for (unsigned int a = 0; a < 4; ++a)
       if (partition.owns(nodes[a]))
+      {
+        const unsigned int local   = nodes[a] - partition.node_begin;
+        const NodeFrame   &frame_a = frames_[nodes[a]];
+        for (unsigned int b = 0; b < 4; ++b)
         {
-          const unsigned int local   = nodes[a] - partition.node_begin;
-          const NodeFrame   &frame_a = frames_[nodes[a]];
-          for (unsigned int b = 0; b < 4; ++b)
+          const unsigned int position = positions_[visited][a][b];
+          const NodeFrame   &frame_b  = frames_[nodes[b]];
+          double             A[3][3], Vp[3], pV[3];
+          for (unsigned int i = 0; i < 3; ++i)
+          {
+            Vp[i] = t.B[a][b][i][lane];
+            pV[i] = t.B[b][a][i][lane];
+            for (unsigned int j = 0; j < 3; ++j)
+              A[i][j] = t.A[a][b][i][j][lane];
+          }
+          if (!frame_a.identity)
+          {
+            double R[3][3], r[3];
+            for (unsigned int i = 0; i < 3; ++i)
             {
-              const unsigned int position = positions_[visited][a][b];
-              const NodeFrame   &frame_b  = frames_[nodes[b]];
-              double             A[3][3], Vp[3], pV[3];
-              for (unsigned int i = 0; i < 3; ++i)
-                {
-                  Vp[i] = t.B[a][b][i][lane];
-                  pV[i] = t.B[b][a][i][lane];
-                  for (unsigned int j = 0; j < 3; ++j)
-                    A[i][j] = t.A[a][b][i][j][lane];
-                }
-              if (!frame_a.identity)
-                {
-                  double R[3][3], r[3];
-                  for (unsigned int i = 0; i < 3; ++i)
-                    {
-                      const auto &q = frame_a.axes[i];
-                      r[i]          = q[0] * Vp[0] + q[1] * Vp[1] + q[2] * Vp[2];
-                      for (unsigned int j = 0; j < 3; ++j)
-                        R[i][j] = q[0] * A[0][j] + q[1] * A[1][j] + q[2] * A[2][j];
-                    }
-                  std::copy(&R[0][0], &R[0][0] + 9, &A[0][0]);
-                  std::copy(r, r + 3, Vp);
-                }
-              if (!frame_b.identity)
-                {
-                  double R[3][3], r[3];
-                  for (unsigned int j = 0; j < 3; ++j)
-                    {
-                      const auto &q = frame_b.axes[j];
-                      r[j]          = q[0] * pV[0] + q[1] * pV[1] + q[2] * pV[2];
-                      for (unsigned int i = 0; i < 3; ++i)
-                        R[i][j] = A[i][0] * q[0] + A[i][1] * q[1] + A[i][2] * q[2];
-                    }
-                  std::copy(&R[0][0], &R[0][0] + 9, &A[0][0]);
-                  std::copy(r, r + 3, pV);
-                }
-              double *continuity = Bt_->entry(local, 0, position);
-              for (unsigned int i = 0; i < 3; ++i)
-                {
-                  double *row = A_->entry(local, i, position);
-                  for (unsigned int j = 0; j < 3; ++j)
-                    row[j] += A[i][j];
-                  *B_->entry(local, i, position) += Vp[i];
-                  continuity[i] += pV[i];
-                }
-              *C_->entry(local, 0, position) += t.C[a][b][lane];
-              *S_->entry(local, 0, position) += (a == b ? 2. : 1.) * mass - t.C[a][b][lane];
+              const auto &q = frame_a.axes[i];
+              r[i]          = q[0] * Vp[0] + q[1] * Vp[1] + q[2] * Vp[2];
+              for (unsigned int j = 0; j < 3; ++j)
+                R[i][j] = q[0] * A[0][j] + q[1] * A[1][j] + q[2] * A[2][j];
             }
+            std::copy(&R[0][0], &R[0][0] + 9, &A[0][0]);
+            std::copy(r, r + 3, Vp);
+          }
+          if (!frame_b.identity)
+          {
+            double R[3][3], r[3];
+            for (unsigned int j = 0; j < 3; ++j)
+            {
+              const auto &q = frame_b.axes[j];
+              r[j]          = q[0] * pV[0] + q[1] * pV[1] + q[2] * pV[2];
+              for (unsigned int i = 0; i < 3; ++i)
+                R[i][j] = A[i][0] * q[0] + A[i][1] * q[1] + A[i][2] * q[2];
+            }
+            std::copy(&R[0][0], &R[0][0] + 9, &A[0][0]);
+            std::copy(r, r + 3, pV);
+          }
+          double *continuity = Bt_->entry(local, 0, position);
+          for (unsigned int i = 0; i < 3; ++i)
+          {
+            double *row = A_->entry(local, i, position);
+            for (unsigned int j = 0; j < 3; ++j)
+              row[j] += A[i][j];
+            *B_->entry(local, i, position) += Vp[i];
+            continuity[i] += pV[i];
+          }
+          *C_->entry(local, 0, position) += t.C[a][b][lane];
+          *S_->entry(local, 0, position) += (a == b ? 2. : 1.) * mass - t.C[a][b][lane];
         }
+      }
   }
 
   void LinearSystem::assemble(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
@@ -275,60 +280,61 @@ namespace retroforge
     TangentPack                                      tangent;
     const unsigned int                               n_visited = partition.visited_cells.size();
     for (unsigned int begin = 0; begin < n_visited; begin += n_lanes)
+    {
+      const unsigned int n = std::min(n_lanes, n_visited - begin);
+      for (unsigned int lane = 0; lane < n_lanes; ++lane)
       {
-        const unsigned int n = std::min(n_lanes, n_visited - begin);
-        for (unsigned int lane = 0; lane < n_lanes; ++lane)
-          {
-            // Lanes without a cell repeat the last one.
-            const CellIndex c = partition.visited_cells[begin + std::min(lane, n - 1)];
-            geometry[lane]    = cell_geometry(positions_of_cell(scene_.mesh, stage.X, c));
-            w[lane]           = W.on_cell(scene_.mesh, c);
-            elimination[lane] = lane < n ? &eliminations_[begin + lane] : &unused;
-          }
-        compute_cell_tangents(geometry, w, stage.physics.law, tangent, elimination);
-        for (unsigned int lane = 0; lane < n; ++lane)
-          {
-            const CellIndex c = partition.visited_cells[begin + lane];
-            add_cell(c, begin + lane, tangent, lane);
-            if (c >= partition.cell_begin && c < partition.cell_end)
-              {
-                log_viscosity += std::log(tangent.viscosity[lane]) * tangent.volume[lane];
-                volume += tangent.volume[lane];
-              }
-          }
+        // Lanes without a cell repeat the last one.
+        const CellIndex c = partition.visited_cells[begin + std::min(lane, n - 1)];
+        geometry[lane]    = cell_geometry(positions_of_cell(scene_.mesh, stage.X, c));
+        w[lane]           = W.on_cell(scene_.mesh, c);
+        elimination[lane] = lane < n ? &eliminations_[begin + lane] : &unused;
       }
+      compute_cell_tangents(geometry, w, stage.physics.law, tangent, elimination);
+      for (unsigned int lane = 0; lane < n; ++lane)
+      {
+        const CellIndex c = partition.visited_cells[begin + lane];
+        add_cell(c, begin + lane, tangent, lane);
+        if (c >= partition.cell_begin && c < partition.cell_end)
+        {
+          log_viscosity += std::log(tangent.viscosity[lane]) * tangent.volume[lane];
+          volume += tangent.volume[lane];
+        }
+      }
+    }
     volume = partition.sum(volume);
     pressure_scale_ =
       std::exp(partition.sum(log_viscosity) / volume) / std::cbrt(8.5 * volume / scene_.mesh.n_cells());
     viscous_diagonal_.resize(3 * n_owned);
     for (unsigned int a = 0; a < n_owned; ++a)
-      {
-        for (unsigned int i = 0; i < 3; ++i)
-          viscous_diagonal_[3 * a + i] = A_->entry(a, i, diagonal_[a])[i];
-      }
+    {
+      for (unsigned int i = 0; i < 3; ++i)
+        viscous_diagonal_[3 * a + i] = A_->entry(a, i, diagonal_[a])[i];
+    }
     add_contact(stage, W, active);
     scale_and_fix();
   }
 
   void LinearSystem::add_contact(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
   {
-    const Partition   &partition = scene_.partition;
-    const unsigned int n_owned   = partition.node_end - partition.node_begin;
+    const Partition    &partition = scene_.partition;
+    const unsigned int  n_owned   = partition.node_end - partition.node_begin;
     std::vector<double> added(3 * n_owned, 0.);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (const NodeIndex k = stage.contact.pairs[p].node; partition.owns(k))
+      {
+        const Tensor<2, 3> &Q = frames_[k].axes;
+        const Tensor<2, 3>  tangent =
+          Q * contact_tangent(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact) *
+          transpose(Q);
+        const unsigned int local = k - partition.node_begin;
+        for (unsigned int i = 0; i < 3; ++i)
         {
-          const Tensor<2, 3> &Q = frames_[k].axes;
-          const Tensor<2, 3>  tangent =
-            Q * contact_tangent(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact) * transpose(Q);
-          const unsigned int local = k - partition.node_begin;
-          for (unsigned int i = 0; i < 3; ++i)
-            {
-              added[3 * local + i] += tangent[i][i];
-              for (unsigned int j = 0; j < 3; ++j)
-                A_->entry(local, i, diagonal_[local])[j] += tangent[i][j];
-            }
+          added[3 * local + i] += tangent[i][i];
+          for (unsigned int j = 0; j < 3; ++j)
+            A_->entry(local, i, diagonal_[local])[j] += tangent[i][j];
         }
+      }
     scale_.assign(3 * scene_.mesh.n_nodes(), 1.);
     for (unsigned int a = 0; a < n_owned; ++a)
       for (unsigned int i = 0; i < 3; ++i)
@@ -354,26 +360,26 @@ namespace retroforge
     };
     const std::vector<double> A_factor = of_columns(*A_), Bt_factor = of_columns(*Bt_);
     for (unsigned int a = 0; a < n_owned; ++a)
+    {
+      const NodeIndex k = a + partition.node_begin;
+      for (unsigned int i = 0; i < 3; ++i)
       {
-        const NodeIndex k = a + partition.node_begin;
-        for (unsigned int i = 0; i < 3; ++i)
-          {
-            const double       f   = factor[3 * k + i];
-            const unsigned int row = 3 * a + i;
-            for (int e = A_->row_begin[row]; e < A_->row_begin[row + 1]; ++e)
-              A_->values[e] *= f * A_factor[A_->column_indices[e]];
-            if (f == 0.)
-              A_->entry(a, i, diagonal_[a])[i] = viscous_diagonal_[row];
-            for (int e = B_->row_begin[row]; e < B_->row_begin[row + 1]; ++e)
-              B_->values[e] *= f * pressure_scale_;
-          }
-        for (int e = Bt_->row_begin[a]; e < Bt_->row_begin[a + 1]; ++e)
-          Bt_->values[e] *= pressure_scale_ * Bt_factor[Bt_->column_indices[e]];
-        for (int e = C_->row_begin[a]; e < C_->row_begin[a + 1]; ++e)
-          C_->values[e] *= pressure_scale_ * pressure_scale_;
-        for (int e = S_->row_begin[a]; e < S_->row_begin[a + 1]; ++e)
-          S_->values[e] *= pressure_scale_ * pressure_scale_;
+        const double       f   = factor[3 * k + i];
+        const unsigned int row = 3 * a + i;
+        for (int e = A_->row_begin[row]; e < A_->row_begin[row + 1]; ++e)
+          A_->values[e] *= f * A_factor[A_->column_indices[e]];
+        if (f == 0.)
+          A_->entry(a, i, diagonal_[a])[i] = viscous_diagonal_[row];
+        for (int e = B_->row_begin[row]; e < B_->row_begin[row + 1]; ++e)
+          B_->values[e] *= f * pressure_scale_;
       }
+      for (int e = Bt_->row_begin[a]; e < Bt_->row_begin[a + 1]; ++e)
+        Bt_->values[e] *= pressure_scale_ * Bt_factor[Bt_->column_indices[e]];
+      for (int e = C_->row_begin[a]; e < C_->row_begin[a + 1]; ++e)
+        C_->values[e] *= pressure_scale_ * pressure_scale_;
+      for (int e = S_->row_begin[a]; e < S_->row_begin[a + 1]; ++e)
+        S_->values[e] *= pressure_scale_ * pressure_scale_;
+    }
   }
 
   std::pair<double, double> LinearSystem::residual_norm(const Field<double> &r) const
@@ -381,46 +387,46 @@ namespace retroforge
     const Partition &partition = scene_.partition;
     double           momentum2 = 0., continuity2 = 0.;
     for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
-      {
-        const Vec3 v = frames_[k].to_frame(r.V[k]);
-        for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
-          momentum2 += std::pow(scale_[3 * k + i] * v[i], 2);
-        continuity2 += r.P[k] * r.P[k];
-      }
+    {
+      const Vec3 v = frames_[k].to_frame(r.V[k]);
+      for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
+        momentum2 += std::pow(scale_[3 * k + i] * v[i], 2);
+      continuity2 += r.P[k] * r.P[k];
+    }
     return {std::sqrt(partition.sum(momentum2)), std::sqrt(partition.sum(continuity2))};
   }
 
   void LinearSystem::load(const Field<double> &rhs, TrilinosWrappers::MPI::BlockVector &b) const
   {
-    const Partition   &partition = scene_.partition;
-    Field<double>      condensed(scene_.mesh);
+    const Partition &partition = scene_.partition;
+    Field<double>    condensed(scene_.mesh);
     for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
-      {
-        condensed.V[k] = rhs.V[k];
-        condensed.P[k] = rhs.P[k];
-      }
+    {
+      condensed.V[k] = rhs.V[k];
+      condensed.P[k] = rhs.P[k];
+    }
     for (unsigned int v = 0; v < partition.visited_cells.size(); ++v)
+    {
+      const CellIndex    c    = partition.visited_cells[v];
+      CellValues<double> cell = {};
+      cell.beta               = rhs.beta[c];
+      eliminations_[v].condense(cell);
+      for (unsigned int a = 0; a < 4; ++a)
       {
-        const CellIndex    c    = partition.visited_cells[v];
-        CellValues<double> cell = {};
-        cell.beta               = rhs.beta[c];
-        eliminations_[v].condense(cell);
-        for (unsigned int a = 0; a < 4; ++a)
-          {
-            condensed.V[scene_.mesh.cells[c][a]] += cell.V[a];
-            condensed.P[scene_.mesh.cells[c][a]] += cell.P[a];
-          }
+        condensed.V[scene_.mesh.cells[c][a]] += cell.V[a];
+        condensed.P[scene_.mesh.cells[c][a]] += cell.P[a];
       }
+    }
     double *momentum   = b.block(0).trilinos_vector()[0];
     double *continuity = b.block(1).trilinos_vector()[0];
     for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
-      {
-        const unsigned int local = k - partition.node_begin;
-        const Vec3         v     = frames_[k].to_frame(condensed.V[k]);
-        for (unsigned int i = 0; i < 3; ++i)
-          momentum[3 * local + i] = i < frames_[k].n_fixed ? 0. : scale_[3 * k + i] * v[i];
-        continuity[local] = pressure_scale_ * condensed.P[k];
-      }
+    {
+      const unsigned int local = k - partition.node_begin;
+      const Vec3         v     = frames_[k].to_frame(condensed.V[k]);
+      for (unsigned int i = 0; i < 3; ++i)
+        momentum[3 * local + i] = i < frames_[k].n_fixed ? 0. : scale_[3 * k + i] * v[i];
+      continuity[local] = pressure_scale_ * condensed.P[k];
+    }
   }
 
   void LinearSystem::unload(const TrilinosWrappers::MPI::BlockVector &x, Field<double> &solution) const
@@ -430,14 +436,14 @@ namespace retroforge
     const double *velocity     = x.block(0).trilinos_vector()[0];
     const double *pressure     = x.block(1).trilinos_vector()[0];
     for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
-      {
-        const unsigned int local = k - partition.node_begin;
-        Vec3               v;
-        for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
-          v[i] = scale_[3 * k + i] * velocity[3 * local + i];
-        solution.V[k] = frames_[k].to_space(v);
-        solution.P[k] = pressure_scale_ * pressure[local];
-      }
+    {
+      const unsigned int local = k - partition.node_begin;
+      Vec3               v;
+      for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
+        v[i] = scale_[3 * k + i] * velocity[3 * local + i];
+      solution.V[k] = frames_[k].to_space(v);
+      solution.P[k] = pressure_scale_ * pressure[local];
+    }
     partition.gather(solution.V);
     partition.gather(solution.P);
   }
@@ -448,44 +454,44 @@ namespace retroforge
     double          *velocity  = x.block(0).trilinos_vector()[0];
     double          *pressure  = x.block(1).trilinos_vector()[0];
     for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
-      {
-        const unsigned int local = k - partition.node_begin;
-        const Vec3         v     = frames_[k].to_frame(guess.V[k]);
-        for (unsigned int i = 0; i < 3; ++i)
-          velocity[3 * local + i] = i < frames_[k].n_fixed ? 0. : v[i] / scale_[3 * k + i];
-        pressure[local] = guess.P[k] / pressure_scale_;
-      }
+    {
+      const unsigned int local = k - partition.node_begin;
+      const Vec3         v     = frames_[k].to_frame(guess.V[k]);
+      for (unsigned int i = 0; i < 3; ++i)
+        velocity[3 * local + i] = i < frames_[k].n_fixed ? 0. : v[i] / scale_[3 * k + i];
+      pressure[local] = guess.P[k] / pressure_scale_;
+    }
   }
 
   double LinearSystem::start_from(const std::vector<Field<double>> &guesses)
   {
-    using Vector = TrilinosWrappers::MPI::BlockVector;
-    x_           = 0.;
+    using Vector          = TrilinosWrappers::MPI::BlockVector;
+    x_                    = 0.;
     Vector              r = rhs_;
     std::vector<Vector> images, sources;
     for (const Field<double> &guess : guesses)
+    {
+      Vector x(x_), y(x_);
+      load_guess(guess, x);
+      matrix_.vmult(y, x);
+      const double whole = y.l2_norm();
+      for (std::size_t j = 0; j < images.size(); ++j)
       {
-        Vector x(x_), y(x_);
-        load_guess(guess, x);
-        matrix_.vmult(y, x);
-        const double whole = y.l2_norm();
-        for (std::size_t j = 0; j < images.size(); ++j)
-          {
-            const double c = y * images[j];
-            y.add(-c, images[j]);
-            x.add(-c, sources[j]);
-          }
-        const double norm = y.l2_norm();
-        if (!(norm > 1e-8 * whole))
-          continue;
-        y *= 1. / norm;
-        x *= 1. / norm;
-        const double c = y * r;
-        r.add(-c, y);
-        x_.add(c, x);
-        images.push_back(y);
-        sources.push_back(x);
+        const double c = y * images[j];
+        y.add(-c, images[j]);
+        x.add(-c, sources[j]);
       }
+      const double norm = y.l2_norm();
+      if (!(norm > 1e-8 * whole))
+        continue;
+      y *= 1. / norm;
+      x *= 1. / norm;
+      const double c = y * r;
+      r.add(-c, y);
+      x_.add(c, x);
+      images.push_back(y);
+      sources.push_back(x);
+    }
     return r.l2_norm();
   }
 
@@ -503,10 +509,10 @@ namespace retroforge
     unload(x_, solution);
     const Partition &partition = scene_.partition;
     for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
-      {
-        const CellValues<double> w = solution.on_cell(scene_.mesh, c);
-        solution.beta[c] = eliminations_[visited_index_[c]].recover_bubble(rhs.beta[c], w.V, w.P);
-      }
+    {
+      const CellValues<double> w = solution.on_cell(scene_.mesh, c);
+      solution.beta[c]           = eliminations_[visited_index_[c]].recover_bubble(rhs.beta[c], w.V, w.P);
+    }
     partition.gather_cells(solution.beta.data()->begin_raw(), 3);
     ++n_solves;
     n_iterations += iterations;
@@ -523,27 +529,29 @@ namespace retroforge
     const auto         timing    = timings_.scope("preconditioner");
     const Partition   &partition = scene_.partition;
     const unsigned int n_rows    = 3 * (partition.node_end - partition.node_begin);
-    const bool         multigrid = parameters_.method == "multigrid" ||
-                           (parameters_.method == "auto" && scene_.mesh.n_nodes() >= parameters_.multigrid_from);
+    const bool         multigrid =
+      parameters_.method == "multigrid" ||
+      (parameters_.method == "auto" && scene_.mesh.n_nodes() >= parameters_.multigrid_from);
     // Rigid translations, zero where a component is fixed or held by the penalty.
     std::vector<double> near_kernel(3 * n_rows, 0.);
     if (multigrid)
       for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
         for (unsigned int mode = 0; mode < 3; ++mode)
-          {
-            Vec3 unit;
-            unit[mode]   = 1.;
-            const Vec3 v = frames_[k].to_frame(unit);
-            for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
-              if (scale_[3 * k + i] > 0.1)
-                near_kernel[mode * n_rows + 3 * (k - partition.node_begin) + i] = v[i] / scale_[3 * k + i];
-          }
-    preconditioner_ =
-      std::make_unique<Preconditioner>(matrix_.block(0, 0), matrix_.block(0, 1), schur_, multigrid, near_kernel);
+        {
+          Vec3 unit;
+          unit[mode]   = 1.;
+          const Vec3 v = frames_[k].to_frame(unit);
+          for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
+            if (scale_[3 * k + i] > 0.1)
+              near_kernel[mode * n_rows + 3 * (k - partition.node_begin) + i] = v[i] / scale_[3 * k + i];
+        }
+    preconditioner_ = std::make_unique<Preconditioner>(
+      matrix_.block(0, 0), matrix_.block(0, 1), schur_, multigrid, near_kernel);
     first_rate_ = 0.;
   }
 
-  unsigned int LinearSystem::solve_iteratively(const double tolerance, const std::vector<Field<double>> &guesses)
+  unsigned int LinearSystem::solve_iteratively(const double                      tolerance,
+                                               const std::vector<Field<double>> &guesses)
   {
     const double norm = rhs_.l2_norm();
     x_                = 0.;
@@ -555,43 +563,45 @@ namespace retroforge
     const double decades = std::max(0.5, std::log10(start / (tolerance * norm)));
     unsigned int total   = 0;
     for (unsigned int attempt = 0; attempt < 2; ++attempt)
+    {
+      const bool fresh = !preconditioner_;
+      if (fresh)
+        make_preconditioner();
+      const unsigned int limit =
+        fresh ? parameters_.max_iterations
+              : std::min<unsigned int>(parameters_.max_iterations, 2.5 * first_rate_ * decades + 10);
+      const auto                                       timing = timings_.scope("krylov");
+      SolverControl                                    control(limit, tolerance * norm, false, false);
+      SolverFGMRES<TrilinosWrappers::MPI::BlockVector> krylov(
+        control,
+        typename SolverFGMRES<TrilinosWrappers::MPI::BlockVector>::AdditionalData(
+          std::min(parameters_.restart, limit + 2)));
+      try
       {
-        const bool fresh = !preconditioner_;
+        krylov.solve(matrix_, x_, rhs_, *preconditioner_);
+        total += control.last_step();
+        const double rate = control.last_step() / decades;
         if (fresh)
-          make_preconditioner();
-        const unsigned int limit =
-          fresh ? parameters_.max_iterations
-                : std::min<unsigned int>(parameters_.max_iterations, 2.5 * first_rate_ * decades + 10);
-        const auto    timing = timings_.scope("krylov");
-        SolverControl control(limit, tolerance * norm, false, false);
-        SolverFGMRES<TrilinosWrappers::MPI::BlockVector> krylov(control,
-                                                                typename SolverFGMRES<TrilinosWrappers::MPI::BlockVector>::AdditionalData(
-                                                                  std::min(parameters_.restart, limit + 2)));
-        try
-          {
-            krylov.solve(matrix_, x_, rhs_, *preconditioner_);
-            total += control.last_step();
-            const double rate = control.last_step() / decades;
-            if (fresh)
-              first_rate_ = rate;
-            else if (rate > 1.7 * first_rate_ + 1.)
-              reset();
-            return total;
-          }
-        catch (const SolverControl::NoConvergence &)
-          {
-            total += control.last_step();
-            reset();
-            if (fresh)
-              break;
-          }
+          first_rate_ = rate;
+        else if (rate > 1.7 * first_rate_ + 1.)
+          reset();
+        return total;
       }
+      catch (const SolverControl::NoConvergence &)
+      {
+        total += control.last_step();
+        reset();
+        if (fresh)
+          break;
+      }
+    }
     if (parameters_.method != "auto")
       throw Error("Linear solver/method",
                   "'" + parameters_.method + "' did not reach " + std::to_string(tolerance) + " in " +
                     std::to_string(parameters_.max_iterations) + " iterations",
                   "the linear system must be solved",
-                  "use 'auto', which falls back to the direct solver, or check that the billet cannot slide or spin freely");
+                  "use 'auto', which falls back to the direct solver, or check that the billet cannot slide "
+                  "or spin freely");
     solve_directly();
     return total;
   }
@@ -606,18 +616,19 @@ namespace retroforge
     DynamicSparsityPattern               pattern(4 * n, 4 * n, rows);
     std::vector<types::global_dof_index> columns;
     for (NodeIndex a = partition.node_begin; a < partition.node_end; ++a)
-      {
-        columns.clear();
-        for (const NodeIndex b : scene_.topology.neighbours[a])
-          for (unsigned int j = 0; j < 4; ++j)
-            columns.push_back(4 * b + j);
-        for (unsigned int i = 0; i < 4; ++i)
-          pattern.add_entries(4 * a + i, columns.begin(), columns.end(), true);
-      }
+    {
+      columns.clear();
+      for (const NodeIndex b : scene_.topology.neighbours[a])
+        for (unsigned int j = 0; j < 4; ++j)
+          columns.push_back(4 * b + j);
+      for (unsigned int i = 0; i < 4; ++i)
+        pattern.add_entries(4 * a + i, columns.begin(), columns.end(), true);
+    }
     TrilinosWrappers::SparseMatrix whole;
     whole.reinit(rows, rows, pattern, partition.comm);
     TrilinosWrappers::MPI::Vector b(rows, partition.comm), x(rows, partition.comm);
-    const auto copy = [&](const Block &block, const unsigned int row_offset, const unsigned int column_offset) {
+    const auto                    copy = [&](
+                        const Block &block, const unsigned int row_offset, const unsigned int column_offset) {
       for (unsigned int a = 0; a < partition.node_end - partition.node_begin; ++a)
         for (unsigned int r = 0; r < block.rows; ++r)
           for (int e = block.row_begin[block.rows * a + r]; e < block.row_begin[block.rows * a + r + 1]; ++e)
@@ -636,7 +647,8 @@ namespace retroforge
         b.trilinos_vector()[0][4 * a + i] =
           i < 3 ? rhs_.block(0).trilinos_vector()[0][3 * a + i] : rhs_.block(1).trilinos_vector()[0][a];
     SolverControl                  control(1, 0.);
-    TrilinosWrappers::SolverDirect solver(control, TrilinosWrappers::SolverDirect::AdditionalData(false, "Amesos_Mumps"));
+    TrilinosWrappers::SolverDirect solver(
+      control, TrilinosWrappers::SolverDirect::AdditionalData(false, "Amesos_Mumps"));
     solver.initialize(whole);
     solver.solve(x, b);
     for (unsigned int a = 0; a < n_owned; ++a)

@@ -6,13 +6,12 @@
 namespace retroforge
 {
   template <typename Number>
-  ContactNode<Number> Stage<Number>::contact_node(const unsigned int     p,
-                                                  const Field<Number>   &W,
-                                                  const ActiveSet       &active) const
+  ContactNode<Number>
+  Stage<Number>::contact_node(const unsigned int p, const Field<Number> &W, const ActiveSet &active) const
   {
-    const ContactPair     &pair = contact.pairs[p];
-    const DieState<Number> &die = physics.dies[pair.die];
-    ContactNode<Number>    node;
+    const ContactPair      &pair = contact.pairs[p];
+    const DieState<Number> &die  = physics.dies[pair.die];
+    ContactNode<Number>     node;
     node.u      = W.V[pair.node] - die.velocity;
     node.n      = contact.projections[p].n;
     node.delta  = contact.projections[p].delta;
@@ -39,16 +38,16 @@ namespace retroforge
     const Partition &partition = scene.partition;
     Field<Number>    r(scene.mesh);
     for (const CellIndex c : partition.visited_cells)
+    {
+      const CellValues<Number> cell = cell_residual(
+        cell_geometry(positions_of_cell(scene.mesh, X, c)), W.on_cell(scene.mesh, c), physics.law);
+      for (unsigned int a = 0; a < 4; ++a)
       {
-        const CellValues<Number> cell =
-          cell_residual(cell_geometry(positions_of_cell(scene.mesh, X, c)), W.on_cell(scene.mesh, c), physics.law);
-        for (unsigned int a = 0; a < 4; ++a)
-          {
-            r.V[scene.mesh.cells[c][a]] += cell.V[a];
-            r.P[scene.mesh.cells[c][a]] += cell.P[a];
-          }
-        r.beta[c] = cell.beta;
+        r.V[scene.mesh.cells[c][a]] += cell.V[a];
+        r.P[scene.mesh.cells[c][a]] += cell.P[a];
       }
+      r.beta[c] = cell.beta;
+    }
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (partition.owns(contact.pairs[p].node))
         r.V[contact.pairs[p].node] += contact_force(contact_node(p, W, active), physics.law, physics.contact);
@@ -61,8 +60,8 @@ namespace retroforge
     const Partition          &partition = scene.partition;
     std::pair<Number, Number> power{Number(0.), Number(0.)};
     for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
-      power.first +=
-        cell_dissipation(cell_geometry(positions_of_cell(scene.mesh, X, c)), W.on_cell(scene.mesh, c), physics.law);
+      power.first += cell_dissipation(
+        cell_geometry(positions_of_cell(scene.mesh, X, c)), W.on_cell(scene.mesh, c), physics.law);
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (partition.owns(contact.pairs[p].node))
         power.second += friction_power(contact_node(p, W, active), physics.law, physics.contact);
@@ -74,28 +73,28 @@ namespace retroforge
 
   std::pair<double, double> residual_scale(const Stage<double> &stage, const Field<double> &W)
   {
-    const TetMesh      &mesh = stage.scene.mesh;
+    const TetMesh      &mesh      = stage.scene.mesh;
     const Partition    &partition = stage.scene.partition;
     std::vector<double> force(mesh.n_nodes(), 0.), flow(mesh.n_nodes(), 0.);
     for (const CellIndex c : partition.visited_cells)
+    {
+      const auto   geometry = cell_geometry(positions_of_cell(mesh, stage.X, c));
+      const auto   w        = W.on_cell(mesh, c);
+      const auto   r        = cell_residual(geometry, w, stage.physics.law);
+      const auto   rates    = cell_strain_rates(geometry, w);
+      const double flow_c   = 0.25 * geometry.volume * 0.25 * (rates[0] + rates[1] + rates[2] + rates[3]);
+      for (unsigned int a = 0; a < 4; ++a)
       {
-        const auto geometry = cell_geometry(positions_of_cell(mesh, stage.X, c));
-        const auto w        = W.on_cell(mesh, c);
-        const auto r        = cell_residual(geometry, w, stage.physics.law);
-        const auto rates    = cell_strain_rates(geometry, w);
-        const double flow_c = 0.25 * geometry.volume * 0.25 * (rates[0] + rates[1] + rates[2] + rates[3]);
-        for (unsigned int a = 0; a < 4; ++a)
-          {
-            force[mesh.cells[c][a]] += r.V[a].norm();
-            flow[mesh.cells[c][a]] += flow_c;
-          }
+        force[mesh.cells[c][a]] += r.V[a].norm();
+        flow[mesh.cells[c][a]] += flow_c;
       }
+    }
     double force2 = 0., flow2 = 0.;
     for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
-      {
-        force2 += force[k] * force[k];
-        flow2 += flow[k] * flow[k];
-      }
+    {
+      force2 += force[k] * force[k];
+      flow2 += flow[k] * flow[k];
+    }
     return {std::sqrt(partition.sum(force2)), std::sqrt(partition.sum(flow2))};
   }
 
@@ -113,11 +112,11 @@ namespace retroforge
     const TetMesh   &mesh      = stage.scene.mesh;
     const Partition &partition = stage.scene.partition;
     for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
-      {
-        W.beta[c] = Vec3();
-        W.beta[c] =
-          solve_bubble(cell_geometry(positions_of_cell(mesh, stage.X, c)), W.on_cell(mesh, c), stage.physics.law);
-      }
+    {
+      W.beta[c] = Vec3();
+      W.beta[c] = solve_bubble(
+        cell_geometry(positions_of_cell(mesh, stage.X, c)), W.on_cell(mesh, c), stage.physics.law);
+    }
     if (mesh.n_cells() > 0)
       partition.gather_cells(W.beta.data()->begin_raw(), 3);
   }
@@ -160,74 +159,79 @@ namespace retroforge
     }
   } // namespace
 
-  void reverse_residual(const Stage<double> &stage,
-                        const Field<double> &W,
-                        const ActiveSet     &active,
-                        const Field<double> &lambda,
-                        NodalVectors<double> &X_bar,
-                        ContactSetBar        &contact_bar,
-                        PhysicsBar           &physics_bar)
+  void reverse_residual(const Stage<double>    &stage,
+                        const Field<double>    &W,
+                        const ActiveSet        &active,
+                        const Field<double>    &lambda,
+                        NodalVectors<double>   &X_bar,
+                        ContactSetBar          &contact_bar,
+                        PhysicsBar             &physics_bar,
+                        const ShapeDerivatives &shape)
   {
     const TetMesh   &mesh      = stage.scene.mesh;
     const Partition &partition = stage.scene.partition;
     for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
-      {
-        const CellSensitivity s = reverse_cell_residual(cell_geometry(positions_of_cell(mesh, stage.X, c)),
-                                                        W.on_cell(mesh, c),
-                                                        lambda.on_cell(mesh, c),
-                                                        stage.physics.law);
-        for (unsigned int a = 0; a < 4; ++a)
-          X_bar[mesh.cells[c][a]] += s.X[a];
-        add_material(s, physics_bar);
-      }
+    {
+      const auto               X        = positions_of_cell(mesh, stage.X, c);
+      const CellValues<double> w        = W.on_cell(mesh, c);
+      const CellValues<double> lambda_c = lambda.on_cell(mesh, c);
+      CellSensitivity          s = reverse_cell_residual(cell_geometry(X), w, lambda_c, stage.physics.law);
+      if (shape.method != ShapeDerivatives::Method::exact)
+        s.X = difference_cell_residual(X, w, lambda_c, stage.physics.law, shape);
+      for (unsigned int a = 0; a < 4; ++a)
+        X_bar[mesh.cells[c][a]] += s.X[a];
+      add_material(s, physics_bar);
+    }
     ContactAreas<double> areas_bar = no_areas(stage);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (const NodeIndex k = stage.contact.pairs[p].node; partition.owns(k))
         scatter(stage,
                 p,
-                reverse_contact_force(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, lambda.V[k]),
+                reverse_contact_force(
+                  stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, lambda.V[k]),
                 areas_bar,
                 contact_bar,
                 physics_bar);
     reverse_contact_areas(mesh, stage.scene.topology, stage.contact, stage.X, areas_bar, X_bar, contact_bar);
   }
 
-  void reverse_power(const Stage<double>  &stage,
-                     const Field<double>  &W,
-                     const ActiveSet      &active,
-                     const double          weight,
-                     Field<double>        &W_bar,
-                     NodalVectors<double> &X_bar,
-                     ContactSetBar        &contact_bar,
-                     PhysicsBar           &physics_bar)
+  void reverse_power(const Stage<double>    &stage,
+                     const Field<double>    &W,
+                     const ActiveSet        &active,
+                     const double            weight,
+                     Field<double>          &W_bar,
+                     NodalVectors<double>   &X_bar,
+                     ContactSetBar          &contact_bar,
+                     PhysicsBar             &physics_bar,
+                     const ShapeDerivatives &shape)
   {
     const TetMesh   &mesh      = stage.scene.mesh;
     const Partition &partition = stage.scene.partition;
     for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+    {
+      const auto               X     = positions_of_cell(mesh, stage.X, c);
+      const CellValues<double> w     = W.on_cell(mesh, c);
+      CellValues<double>       w_bar = {};
+      CellSensitivity s = reverse_cell_dissipation(cell_geometry(X), w, stage.physics.law, weight, w_bar);
+      if (shape.method != ShapeDerivatives::Method::exact)
+        s.X = difference_cell_dissipation(X, w, stage.physics.law, weight, shape);
+      for (unsigned int a = 0; a < 4; ++a)
       {
-        CellValues<double>    w_bar = {};
-        const CellSensitivity s     = reverse_cell_dissipation(cell_geometry(positions_of_cell(mesh, stage.X, c)),
-                                                           W.on_cell(mesh, c),
-                                                           stage.physics.law,
-                                                           weight,
-                                                           w_bar);
-        for (unsigned int a = 0; a < 4; ++a)
-          {
-            X_bar[mesh.cells[c][a]] += s.X[a];
-            W_bar.V[mesh.cells[c][a]] += w_bar.V[a];
-          }
-        W_bar.beta[c] += w_bar.beta;
-        add_material(s, physics_bar);
+        X_bar[mesh.cells[c][a]] += s.X[a];
+        W_bar.V[mesh.cells[c][a]] += w_bar.V[a];
       }
+      W_bar.beta[c] += w_bar.beta;
+      add_material(s, physics_bar);
+    }
     ContactAreas<double> areas_bar = no_areas(stage);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (const NodeIndex k = stage.contact.pairs[p].node; partition.owns(k))
-        {
-          const ContactNodeBar node_bar =
-            reverse_friction_power(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, weight);
-          W_bar.V[k] += node_bar.u;
-          scatter(stage, p, node_bar, areas_bar, contact_bar, physics_bar);
-        }
+      {
+        const ContactNodeBar node_bar = reverse_friction_power(
+          stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, weight);
+        W_bar.V[k] += node_bar.u;
+        scatter(stage, p, node_bar, areas_bar, contact_bar, physics_bar);
+      }
     reverse_contact_areas(mesh, stage.scene.topology, stage.contact, stage.X, areas_bar, X_bar, contact_bar);
   }
 } // namespace retroforge

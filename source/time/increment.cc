@@ -9,7 +9,8 @@ namespace retroforge
   namespace
   {
     template <typename Number>
-    NodalVectors<Number> advanced(const NodalVectors<Number> &X, const Number &dt, const NodalVectors<Number> &V)
+    NodalVectors<Number>
+    advanced(const NodalVectors<Number> &X, const Number &dt, const NodalVectors<Number> &V)
     {
       NodalVectors<Number> moved = X;
       for (std::size_t k = 0; k < X.size(); ++k)
@@ -41,10 +42,10 @@ namespace retroforge
     {
       Vector3<Dual> x;
       for (unsigned int i = 0; i < 3; ++i)
-        {
-          x[i]           = Dual(value[i]);
-          x[i].fastAccessDx(0) = dot[i];
-        }
+      {
+        x[i]                 = Dual(value[i]);
+        x[i].fastAccessDx(0) = dot[i];
+      }
       return x;
     }
 
@@ -71,16 +72,16 @@ namespace retroforge
                         {physics.contact.rho.val(), physics.contact.v0.val()},
                         {}};
       for (const auto &die : physics.dies)
+      {
+        DieState<double> d;
+        for (unsigned int i = 0; i < 3; ++i)
         {
-          DieState<double> d;
-          for (unsigned int i = 0; i < 3; ++i)
-            {
-              d.velocity[i]     = die.velocity[i].val();
-              d.displacement[i] = die.displacement[i].val();
-            }
-          d.friction = die.friction.val();
-          v.dies.push_back(d);
+          d.velocity[i]     = die.velocity[i].val();
+          d.displacement[i] = die.displacement[i].val();
         }
+        d.friction = die.friction.val();
+        v.dies.push_back(d);
+      }
       return v;
     }
 
@@ -88,11 +89,11 @@ namespace retroforge
     {
       Field<Dual> W;
       for (std::size_t k = 0; k < value.V.size(); ++k)
-        {
-          W.V.push_back(make_dual(value.V[k], dot.V[k]));
-          W.P.push_back(Dual(value.P[k]));
-          W.P.back().fastAccessDx(0) = dot.P[k];
-        }
+      {
+        W.V.push_back(make_dual(value.V[k], dot.V[k]));
+        W.P.push_back(Dual(value.P[k]));
+        W.P.back().fastAccessDx(0) = dot.P[k];
+      }
       for (std::size_t c = 0; c < value.beta.size(); ++c)
         W.beta.push_back(make_dual(value.beta[c], dot.beta[c]));
       return W;
@@ -104,12 +105,9 @@ namespace retroforge
                        const NewtonParameters &newton,
                        LinearSystem           &system,
                        Timings                &timings)
-    : scene_(scene)
-    , model_(model)
-    , system_(system)
-    , newton_(scene, newton, system)
-    , timings_(timings)
-  {}
+      : scene_(scene), model_(model), system_(system), newton_(scene, newton, system), timings_(timings)
+  {
+  }
 
   ContactSet<double> Increment::contact_set(const Physics<double>      &physics,
                                             const NodalVectors<double> &X,
@@ -117,8 +115,14 @@ namespace retroforge
                                             const double                dt) const
   {
     const auto timing = timings_.scope("contact");
-    return make_contact_set(
-      scene_.mesh, scene_.topology, scene_.dies, physics.dies, record.pairs, model_.ramp, model_.approach * dt, X);
+    return make_contact_set(scene_.mesh,
+                            scene_.topology,
+                            scene_.dies,
+                            physics.dies,
+                            record.pairs,
+                            model_.ramp,
+                            model_.approach * dt,
+                            X);
   }
 
   bool Increment::escaped(const Stage<double> &stage, const Field<double> &W) const
@@ -130,12 +134,12 @@ namespace retroforge
     for (unsigned int d = 0; d < scene_.dies.size(); ++d)
       for (NodeIndex k = 0; k < W.V.size(); ++k)
         if (!watched[d][k] && scene_.topology.is_on_surface(k))
-          {
-            const auto &die        = stage.physics.dies[d];
-            const auto  projection = scene_.dies[d].project(stage.X[k], die.displacement);
-            if ((W.V[k] - die.velocity) * projection.n > projection.delta / stage.contact.tau)
-              return true;
-          }
+        {
+          const auto &die        = stage.physics.dies[d];
+          const auto  projection = scene_.dies[d].project(stage.X[k], die.displacement);
+          if ((W.V[k] - die.velocity) * projection.n > projection.delta / stage.contact.tau)
+            return true;
+        }
     return false;
   }
 
@@ -149,46 +153,46 @@ namespace retroforge
     const Physics<double> physics = process.at_stroke(record.stroke);
     const double          dt      = record.step / process.speed();
     const bool            two     = model_.scheme == Scheme::midpoint;
-    const auto            frozen  = [&](const unsigned int s) { return replay ? record.solves[s].active : ActiveSet(); };
+    const auto frozen = [&](const unsigned int s) { return replay ? record.solves[s].active : ActiveSet(); };
     std::vector<SolveRecord> solves(two ? 2 : 1);
     for (double reach = model_.reach;; reach *= 2.)
+    {
+      if (!replay)
       {
-        if (!replay)
-          {
-            const auto timing = timings_.scope("contact");
-            record.pairs = find_contact_pairs(scene_.topology, scene_.dies, physics.dies, X, model_.ramp, reach);
-          }
-        const ContactSet<double> contact  = contact_set(physics, X, record, dt);
-        Field<double>            trial    = W;
-        NodalVectors<double>     position = X;
-        bool                     repeat   = false;
-        report.newton                     = {};
-        for (unsigned int s = 0; s < solves.size() && !repeat; ++s)
-          {
-            if (s == 1)
-              position = advanced(X, 0.5 * dt, trial.V);
-            const Stage<double>    stage(scene_, physics, contact, position);
-            const NewtonStatistics statistics = newton_.solve(stage, trial, frozen(s));
-            report.newton.iterations += statistics.iterations;
-            report.newton.krylov += statistics.krylov;
-            report.newton.residual = std::max(report.newton.residual, statistics.residual);
-            const ActiveSet active = replay ? frozen(s) : stage.decide_active(trial);
-            repeat                 = !replay && escaped(stage, trial);
-            solves[s]              = {trial.V, trial.P, active};
-            if (s + 1 == solves.size() && !repeat)
-              {
-                const auto [deformation, friction] = stage.power(trial, active);
-                record.deformation_energy          = dt * scene_.partition.sum(deformation);
-                record.friction_energy             = dt * scene_.partition.sum(friction);
-                report.forces                      = die_forces(stage, trial, active);
-              }
-          }
-        if (repeat)
-          continue;
-        record.solves = std::move(solves);
-        W             = std::move(trial);
-        return advanced(X, dt, W.V);
+        const auto timing = timings_.scope("contact");
+        record.pairs = find_contact_pairs(scene_.topology, scene_.dies, physics.dies, X, model_.ramp, reach);
       }
+      const ContactSet<double> contact  = contact_set(physics, X, record, dt);
+      Field<double>            trial    = W;
+      NodalVectors<double>     position = X;
+      bool                     repeat   = false;
+      report.newton                     = {};
+      for (unsigned int s = 0; s < solves.size() && !repeat; ++s)
+      {
+        if (s == 1)
+          position = advanced(X, 0.5 * dt, trial.V);
+        const Stage<double>    stage(scene_, physics, contact, position);
+        const NewtonStatistics statistics = newton_.solve(stage, trial, frozen(s));
+        report.newton.iterations += statistics.iterations;
+        report.newton.krylov += statistics.krylov;
+        report.newton.residual = std::max(report.newton.residual, statistics.residual);
+        const ActiveSet active = replay ? frozen(s) : stage.decide_active(trial);
+        repeat                 = !replay && escaped(stage, trial);
+        solves[s]              = {trial.V, trial.P, active};
+        if (s + 1 == solves.size() && !repeat)
+        {
+          const auto [deformation, friction] = stage.power(trial, active);
+          record.deformation_energy          = dt * scene_.partition.sum(deformation);
+          record.friction_energy             = dt * scene_.partition.sum(friction);
+          report.forces                      = die_forces(stage, trial, active);
+        }
+      }
+      if (repeat)
+        continue;
+      record.solves = std::move(solves);
+      W             = std::move(trial);
+      return advanced(X, dt, W.V);
+    }
   }
 
   Field<double> Increment::recorded_field(const Stage<double> &stage, const SolveRecord &solve) const
@@ -204,7 +208,9 @@ namespace retroforge
                                                   const NodalVectors<double> &X,
                                                   const IncrementRecord      &record) const
   {
-    return model_.scheme == Scheme::euler ? X : advanced(X, 0.5 * record.step / process.speed(), record.solves[0].V);
+    return model_.scheme == Scheme::euler
+             ? X
+             : advanced(X, 0.5 * record.step / process.speed(), record.solves[0].V);
   }
 
   void Increment::reverse(const Process<double>      &process,
@@ -223,42 +229,56 @@ namespace retroforge
     PhysicsBar               physics_bar(scene_.dies.size());
     NodalVectors<double>     X_bar(X.size());
     for (unsigned int s = record.solves.size(); s-- > 0;)
+    {
+      const bool                 last     = s + 1 == record.solves.size();
+      const SolveRecord         &solve    = record.solves[s];
+      const NodalVectors<double> position = s == 0 ? X : stage_positions(process, X, record);
+      const Stage<double>        stage(scene_, physics, contact, position);
+      const Field<double>        W = recorded_field(stage, solve);
+      // X_{i+1} = X_i + dt V, and for the first of two stages  Y = X_i + dt/2 V.
+      const double         fraction = last ? 1. : 0.5;
+      NodalVectors<double> position_bar(X.size());
+      Field<double>        rhs(scene_.mesh);
+      if (first)
+        physics_bar.dt += fraction * dot(last ? G : X_bar, W.V);
+      if (last && energy_weight != 0.)
       {
-        const bool                 last     = s + 1 == record.solves.size();
-        const SolveRecord         &solve    = record.solves[s];
-        const NodalVectors<double> position = s == 0 ? X : stage_positions(process, X, record);
-        const Stage<double>        stage(scene_, physics, contact, position);
-        const Field<double>        W = recorded_field(stage, solve);
-        // X_{i+1} = X_i + dt V, and for the first of two stages  Y = X_i + dt/2 V.
-        const double         fraction = last ? 1. : 0.5;
-        NodalVectors<double> position_bar(X.size());
-        Field<double>        rhs(scene_.mesh);
-        if (first)
-          physics_bar.dt += fraction * dot(last ? G : X_bar, W.V);
-        if (last && energy_weight != 0.)
-          {
-            reverse_power(
-              stage, W, solve.active, energy_weight * dt, rhs, position_bar, contact_bar, physics_bar);
-            const auto [deformation, friction] = stage.power(W, solve.active);
-            physics_bar.dt += energy_weight * (deformation + friction);
-            sum_over_ranks(rhs, comm);
-          }
-        for (std::size_t k = 0; k < X.size(); ++k)
-          rhs.V[k] += fraction * dt * (last ? G[k] : X_bar[k]);
-        Field<double> minus_rhs(scene_.mesh), lambda;
-        minus_rhs.add(-1., rhs);
-        system_.assemble(stage, W, solve.active);
-        system_.solve(minus_rhs, model_.adjoint_tolerance, lambda);
-        reverse_residual(stage, W, solve.active, lambda, position_bar, contact_bar, physics_bar);
-        if (s == 0)
-          {
-            reverse_contact_set(scene_.dies, contact, model_.ramp, contact_bar, position_bar, physics_bar.contact);
-          }
-        sum_over_ranks(position_bar, comm);
-        for (std::size_t k = 0; k < X.size(); ++k)
-          G[k] += position_bar[k];
-        X_bar = std::move(position_bar);
+        reverse_power(stage,
+                      W,
+                      solve.active,
+                      energy_weight * dt,
+                      rhs,
+                      position_bar,
+                      contact_bar,
+                      physics_bar,
+                      model_.shape_derivatives);
+        const auto [deformation, friction] = stage.power(W, solve.active);
+        physics_bar.dt += energy_weight * (deformation + friction);
+        sum_over_ranks(rhs, comm);
       }
+      for (std::size_t k = 0; k < X.size(); ++k)
+        rhs.V[k] += fraction * dt * (last ? G[k] : X_bar[k]);
+      Field<double> minus_rhs(scene_.mesh), lambda;
+      minus_rhs.add(-1., rhs);
+      system_.assemble(stage, W, solve.active);
+      auto &guesses = earlier_lambdas_[s];
+      if (!guesses.empty() && (guesses[0].P.size() != X.size() || guesses[0].beta.size() != rhs.beta.size()))
+        guesses.clear();
+      system_.solve(minus_rhs, model_.adjoint_tolerance, lambda, guesses);
+      guesses.insert(guesses.begin(), lambda);
+      guesses.resize(std::min<std::size_t>(guesses.size(), 3));
+      reverse_residual(
+        stage, W, solve.active, lambda, position_bar, contact_bar, physics_bar, model_.shape_derivatives);
+      if (s == 0)
+      {
+        reverse_contact_set(
+          scene_.dies, contact, model_.ramp, contact_bar, position_bar, physics_bar.contact);
+      }
+      sum_over_ranks(position_bar, comm);
+      for (std::size_t k = 0; k < X.size(); ++k)
+        G[k] += position_bar[k];
+      X_bar = std::move(position_bar);
+    }
     process_bar.add(physics_bar, process, {record.stroke, record.step}, model_.approach);
   }
 
@@ -269,15 +289,15 @@ namespace retroforge
                                        const SolveRecord          &solve)
   {
     const Stage<double> value_stage(scene_, physics, contact, X);
-    const Field<double> W = recorded_field(value_stage, solve);
+    const Field<double> W     = recorded_field(value_stage, solve);
     Field<Dual>         still = make_dual(W, Field<double>(scene_.mesh));
     const Field<Dual>   R     = stage.residual(still, solve.active);
     Field<double>       minus_R_dot(scene_.mesh), W_dot;
     for (std::size_t k = 0; k < R.V.size(); ++k)
-      {
-        minus_R_dot.V[k] = -dot_of(R.V[k]);
-        minus_R_dot.P[k] = -R.P[k].dx(0);
-      }
+    {
+      minus_R_dot.V[k] = -dot_of(R.V[k]);
+      minus_R_dot.P[k] = -R.P[k].dx(0);
+    }
     for (std::size_t c = 0; c < R.beta.size(); ++c)
       minus_R_dot.beta[c] = -dot_of(R.beta[c]);
     system_.assemble(value_stage, W, solve.active);
@@ -290,9 +310,9 @@ namespace retroforge
                                         const IncrementRecord    &record,
                                         Energy<Dual>             &energy)
   {
-    const Physics<Dual>    physics = process.at_stroke(record.stroke);
-    const Dual             dt      = record.step / process.speed();
-    const ContactSet<Dual> contact = make_contact_set(scene_.mesh,
+    const Physics<Dual>      physics       = process.at_stroke(record.stroke);
+    const Dual               dt            = record.step / process.speed();
+    const ContactSet<Dual>   contact       = make_contact_set(scene_.mesh,
                                                       scene_.topology,
                                                       scene_.dies,
                                                       physics.dies,
@@ -304,18 +324,19 @@ namespace retroforge
     const ContactSet<double> contact_value = contact_set(physics_value, values_of(X), record, dt.val());
     NodalVectors<Dual>       position      = X;
     for (unsigned int s = 0;; ++s)
+    {
+      const Stage<Dual> stage(scene_, physics, contact, position);
+      const Field<Dual> W =
+        tangent_field(stage, values_of(position), contact_value, physics_value, record.solves[s]);
+      if (s + 1 < record.solves.size())
       {
-        const Stage<Dual> stage(scene_, physics, contact, position);
-        const Field<Dual> W = tangent_field(stage, values_of(position), contact_value, physics_value, record.solves[s]);
-        if (s + 1 < record.solves.size())
-          {
-            position = advanced(X, Dual(0.5 * dt), W.V);
-            continue;
-          }
-        const auto [deformation, friction] = stage.power(W, record.solves[s].active);
-        energy.deformation += dt * deformation;
-        energy.friction += dt * friction;
-        return advanced(X, dt, W.V);
+        position = advanced(X, Dual(0.5 * dt), W.V);
+        continue;
       }
+      const auto [deformation, friction] = stage.power(W, record.solves[s].active);
+      energy.deformation += dt * deformation;
+      energy.friction += dt * friction;
+      return advanced(X, dt, W.V);
+    }
   }
 } // namespace retroforge

@@ -51,6 +51,6 @@ namespace retroforge
   Four<Vector3<Number>> positions_of_cell(const TetMesh &mesh, const NodalVectors<Number> &X, const CellIndex c)
   {
     const auto &nodes = mesh.cells[c];
-    return {X[nodes[0]], X[nodes[1]], X[nodes[2]], X[nodes[3]]};
+    return {{X[nodes[0]], X[nodes[1]], X[nodes[2]], X[nodes[3]]}};
   }
 } // namespace retroforge

@@ -9,10 +9,13 @@
 
 /// The tetrahedron with P1 + hat bubble velocity and P1 pressure, integrated in closed form.
 ///
-/// The bubble is 4 lambda_a on the sub-tetrahedron w_a spanned by the barycentre and the face opposite node a, so all
-/// gradients are constant there:  eps_a = sym( sum_c V_c (x) g_c + 4 beta (x) g_a ),  |w_a| = |T|/4,  and
-///   Pi_T(V, beta, P) = |T|/4 sum_a K/(m+1) q_a^((m+1)/2) - |T| pbar tr(L) + |T|/4 beta·grad p,   L = sum_c V_c (x) g_c
-/// is the element's part of the saddle functional, whose gradient is the residual.  @cite Laroussi2003, Eq. (36)-(39)
+/// The bubble is 4 lambda_a on the sub-tetrahedron w_a spanned by the barycentre and the face opposite node
+/// a, so all gradients are constant there:  eps_a = sym( sum_c V_c (x) g_c + 4 beta (x) g_a ),  |w_a| =
+/// |T|/4,  and
+///   Pi_T(V, beta, P) = |T|/4 sum_a K/(m+1) q_a^((m+1)/2) - |T| pbar tr(L) + |T|/4 beta·grad p,   L = sum_c
+///   V_c (x) g_c
+/// is the element's part of the saddle functional, whose gradient is the residual.  @cite Laroussi2003, Eq.
+/// (36)-(39)
 namespace retroforge
 {
   template <typename Number>
@@ -80,7 +83,8 @@ namespace retroforge
                                         const CellValues<double>   &lambda,
                                         const NortonHoff<double>   &law);
 
-  /// Adds weight times the derivatives of cell_dissipation in the unknowns to w_bar and returns those in X, K, m, e0.
+  /// Adds weight times the derivatives of cell_dissipation in the unknowns to w_bar and returns those in X,
+  /// K, m, e0.
   CellSensitivity reverse_cell_dissipation(const CellGeometry<double> &geometry,
                                            const CellValues<double>   &w,
                                            const NortonHoff<double>   &law,
@@ -102,7 +106,8 @@ namespace retroforge
     void condense(CellValues<double> &rhs) const;
   };
 
-  /// Second derivatives of Pi_T with the bubble eliminated: the symmetric 16 x 16 matrix [A B; B^T -C] of one cell.
+  /// Second derivatives of Pi_T with the bubble eliminated: the symmetric 16 x 16 matrix [A B; B^T -C] of one
+  /// cell.
   template <typename Number>
   struct TangentBlocks : BubbleElimination<Number>
   {
@@ -121,7 +126,7 @@ namespace retroforge
                             CellTangent                &tangent);
 
   /// Four cells at once, one per lane of a vector register: what the assembly of the whole matrix uses.
-  typedef double Pack __attribute__((vector_size(32)));
+  typedef double                Pack __attribute__((vector_size(32)));
   inline constexpr unsigned int n_lanes = 4;
   using TangentPack                     = TangentBlocks<Pack>;
 
@@ -133,7 +138,9 @@ namespace retroforge
                              TangentPack                                            &tangent,
                              const std::array<BubbleElimination<double> *, n_lanes> &elimination);
 
-  /// The bubble that makes the bubble's residual vanish at given V and P: a convex problem in three unknowns, solved by
-  /// Newton to rounding. Starts from w.beta.
-  Vec3 solve_bubble(const CellGeometry<double> &geometry, const CellValues<double> &w, const NortonHoff<double> &law);
+  /// The bubble that makes the bubble's residual vanish at given V and P: a convex problem in three unknowns,
+  /// solved by Newton to rounding. Starts from w.beta.
+  Vec3 solve_bubble(const CellGeometry<double> &geometry,
+                    const CellValues<double>   &w,
+                    const NortonHoff<double>   &law);
 } // namespace retroforge

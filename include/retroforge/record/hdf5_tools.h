@@ -5,6 +5,8 @@
 #include <hdf5.h>
 
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -67,11 +69,37 @@ namespace retroforge::hdf5
   /// Throws Failure with HDF5's reason if `result` is negative.
   void check(long long result, const std::string &what);
 
-  Handle create_in_memory();                 ///< a file that never meets the disk
   Handle open_file(const std::string &file); ///< to read
-  /// All bytes of a file made by create_in_memory(), to be written by the caller. HDF5 itself is not let near
-  /// a disk that may be full: releases up to 1.10.8 and perhaps later crash after a write that failed.
-  std::vector<char> image_of(hid_t file);
+
+  /// A file made in memory, whose bytes the caller brings to the disk. HDF5 itself is not let near a disk
+  /// that may be full: after a write that failed, its release 1.10.8 crashes.
+  class MemoryFile
+  {
+  public:
+    MemoryFile();
+
+    operator hid_t() const { return file_; }
+
+    /// Closes the file: then `data()` and `size()` are its contents.
+    void        close();
+    const char *data() const { return contents_->get(); }
+    std::size_t size() const { return size_; }
+
+  private:
+    struct Free
+    {
+      void operator()(char *memory) const { std::free(memory); }
+    };
+    using Contents = std::unique_ptr<char, Free>;
+
+    static Handle create(Contents &contents);
+    static herr_t take(void *memory, H5FD_file_image_op_t operation, void *contents);
+
+    // HDF5 keeps a pointer to what contents_ points to, until file_ is closed: mind the order.
+    std::unique_ptr<Contents> contents_;
+    Handle                    file_;
+    std::size_t               size_ = 0;
+  };
 
   Handle create_group(hid_t parent, const std::string &name);
   Handle open_group(hid_t parent, const std::string &name);

@@ -22,7 +22,8 @@ namespace retroforge
     void add_parameters(dealii::ParameterHandler &prm);
   };
 
-  /// The axes a node's velocity is solved in: first the directions that are fixed, then those in which dies push.
+  /// The axes a node's velocity is solved in: first the directions that are fixed, then those in which dies
+  /// push.
   struct NodeFrame
   {
     dealii::Tensor<2, 3> axes; ///< orthonormal rows
@@ -33,8 +34,8 @@ namespace retroforge
     Vec3 to_space(const Vec3 &v) const { return identity ? v : v * axes; }
   };
 
-  /// Frames of all nodes: symmetry planes fix their normals, a die's normal becomes an axis of its own, so that the
-  /// penalty stands on one diagonal entry whatever the die's orientation.
+  /// Frames of all nodes: symmetry planes fix their normals, a die's normal becomes an axis of its own, so
+  /// that the penalty stands on one diagonal entry whatever the die's orientation.
   std::vector<NodeFrame> make_frames(const Scene &scene, const ContactSet<double> &contact);
 
   /// Preconditioner of the velocity block, and of the Schur complement.
@@ -43,8 +44,8 @@ namespace retroforge
   /// The Newton matrix of a stage with bubbles condensed, in node frames and scaled:
   ///   [A B; B^T C] d = rhs.   It is symmetric: forward and transposed solve are one.
   ///
-  /// Scaling: pressures by viscosity/edge, and each velocity component by (viscous/total diagonal)^(1/2), which takes
-  /// penalty and friction off the residual's norm. A preconditioner is kept while it works.
+  /// Scaling: pressures by viscosity/edge, and each velocity component by (viscous/total diagonal)^(1/2),
+  /// which takes penalty and friction off the residual's norm. A preconditioner is kept while it works.
   class LinearSystem
   {
   public:
@@ -54,9 +55,11 @@ namespace retroforge
     /// Matrix of `stage` at W; velocities fixed by symmetry are eliminated.
     void assemble(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
 
-    /// Solution of the uncondensed system for the right-hand side rhs (owned entries), to `tolerance` relative to the
-    /// scaled right-hand side. Returns the number of Krylov iterations (0 for a direct solve). All ranks get all of it.
-    /// @param guesses  fields, like the solutions of earlier systems, the best combination of which is the start
+    /// Solution of the uncondensed system for the right-hand side rhs (owned entries), to `tolerance`
+    /// relative to the scaled right-hand side. Returns the number of Krylov iterations (0 for a direct
+    /// solve). All ranks get all of it.
+    /// @param guesses  fields, like the solutions of earlier systems, the best combination of which is the
+    /// start
     unsigned int solve(const Field<double>              &rhs,
                        double                            tolerance,
                        Field<double>                    &solution,
@@ -65,7 +68,8 @@ namespace retroforge
     /// Forget the preconditioner: the next solve makes a new one.
     void reset();
 
-    /// The scaled norm in which solves and Newton converge: of a residual's momentum rows, and of its continuity rows.
+    /// The scaled norm in which solves and Newton converge: of a residual's momentum rows, and of its
+    /// continuity rows.
     std::pair<double, double> residual_norm(const Field<double> &r) const;
 
     const std::vector<NodeFrame> &frames() const { return frames_; }
@@ -93,22 +97,22 @@ namespace retroforge
     const LinearSolverParameters &parameters_;
     Timings                      &timings_;
 
-    std::vector<NodeFrame>   frames_;
-    std::vector<double>      scale_;          ///< of each velocity component in its frame
-    double                   pressure_scale_ = 1.;
-    std::vector<double>      viscous_diagonal_;
-    std::vector<BubbleElimination<double>> eliminations_; ///< of the visited cells
-    std::vector<CellIndex>   visited_index_;  ///< cell -> position in visited_cells
+    std::vector<NodeFrame>                 frames_;
+    std::vector<double>                    scale_; ///< of each velocity component in its frame
+    double                                 pressure_scale_ = 1.;
+    std::vector<double>                    viscous_diagonal_;
+    std::vector<BubbleElimination<double>> eliminations_;  ///< of the visited cells
+    std::vector<CellIndex>                 visited_index_; ///< cell -> position in visited_cells
 
     std::vector<unsigned int> diagonal_; ///< where an owned node stands in its own row
     /// Of each visited cell: where node b stands in the row of node a (invalid_index when a is not owned).
     std::vector<std::array<std::array<unsigned int, 4>, 4>> positions_;
 
-    dealii::TrilinosWrappers::BlockSparseMatrix   matrix_;
-    dealii::TrilinosWrappers::SparseMatrix        schur_;
-    std::unique_ptr<Block>                        A_, B_, Bt_, C_, S_;
-    dealii::TrilinosWrappers::MPI::BlockVector    rhs_, x_;
-    std::unique_ptr<Preconditioner>               preconditioner_;
-    double                                        first_rate_ = 0.; ///< iterations per decade when it was fresh
+    dealii::TrilinosWrappers::BlockSparseMatrix matrix_;
+    dealii::TrilinosWrappers::SparseMatrix      schur_;
+    std::unique_ptr<Block>                      A_, B_, Bt_, C_, S_;
+    dealii::TrilinosWrappers::MPI::BlockVector  rhs_, x_;
+    std::unique_ptr<Preconditioner>             preconditioner_;
+    double                                      first_rate_ = 0.; ///< iterations per decade when it was fresh
   };
 } // namespace retroforge

@@ -4,6 +4,7 @@
 
 #include <retroforge/contact/contact.h>
 #include <retroforge/element/field.h>
+#include <retroforge/element/semi_analytic.h>
 #include <retroforge/mesh/partition.h>
 
 namespace retroforge
@@ -17,11 +18,9 @@ namespace retroforge
     std::vector<Die> dies;
 
     Scene(TetMesh made_mesh, std::vector<Die> dies, MPI_Comm comm)
-      : mesh(std::move(made_mesh))
-      , topology(mesh)
-      , partition(mesh, comm)
-      , dies(std::move(dies))
-    {}
+        : mesh(std::move(made_mesh)), topology(mesh), partition(mesh, comm), dies(std::move(dies))
+    {
+    }
   };
 
   /// The numbers of the laws and the state of the dies during one increment.
@@ -45,8 +44,8 @@ namespace retroforge
   /// Which pairs count as h > 0; empty: decide from the velocity. A replay passes what was recorded.
   using ActiveSet = std::vector<char>;
 
-  /// Equilibrium at given positions: the sums over cells and contact nodes of value, residual, tangent data, and their
-  /// reverse. Entries of results are right on owned nodes and cells; `gather` completes them.
+  /// Equilibrium at given positions: the sums over cells and contact nodes of value, residual, tangent data,
+  /// and their reverse. Entries of results are right on owned nodes and cells; `gather` completes them.
   template <typename Number>
   class Stage
   {
@@ -74,8 +73,8 @@ namespace retroforge
     ContactAreas<Number>        areas;
   };
 
-  /// Sum over the nodes of the norms of the cells' forces, the scale a residual is measured against, as a root of
-  /// squares over nodes: (momentum [N], continuity [mm^3/s]).
+  /// Sum over the nodes of the norms of the cells' forces, the scale a residual is measured against, as a
+  /// root of squares over nodes: (momentum [N], continuity [mm^3/s]).
   std::pair<double, double> residual_scale(const Stage<double> &stage, const Field<double> &W);
 
   /// Force of each die on the workpiece [N], contact and friction.
@@ -86,33 +85,37 @@ namespace retroforge
 
   /// Derivatives of  lambda·residual  at fixed W: X_bar += ..., contact data and physics likewise.
   /// Sums are this rank's part; completed by the caller once per increment.
-  void reverse_residual(const Stage<double> &stage,
-                        const Field<double> &W,
-                        const ActiveSet     &active,
-                        const Field<double> &lambda,
-                        NodalVectors<double> &X_bar,
-                        ContactSetBar        &contact_bar,
-                        PhysicsBar           &physics_bar);
+  void reverse_residual(const Stage<double>    &stage,
+                        const Field<double>    &W,
+                        const ActiveSet        &active,
+                        const Field<double>    &lambda,
+                        NodalVectors<double>   &X_bar,
+                        ContactSetBar          &contact_bar,
+                        PhysicsBar             &physics_bar,
+                        const ShapeDerivatives &shape = {});
 
-  /// Derivatives of  weight * (deformation power + friction power)  in W, X, contact data and physics, this rank's part.
-  void reverse_power(const Stage<double>  &stage,
-                     const Field<double>  &W,
-                     const ActiveSet      &active,
-                     double                weight,
-                     Field<double>        &W_bar,
-                     NodalVectors<double> &X_bar,
-                     ContactSetBar        &contact_bar,
-                     PhysicsBar           &physics_bar);
+  /// Derivatives of  weight * (deformation power + friction power)  in W, X, contact data and physics, this
+  /// rank's part.
+  void reverse_power(const Stage<double>    &stage,
+                     const Field<double>    &W,
+                     const ActiveSet        &active,
+                     double                  weight,
+                     Field<double>          &W_bar,
+                     NodalVectors<double>   &X_bar,
+                     ContactSetBar          &contact_bar,
+                     PhysicsBar             &physics_bar,
+                     const ShapeDerivatives &shape = {});
 
   template <typename Number>
   Stage<Number>::Stage(const Scene                &scene,
                        const Physics<Number>      &physics,
                        const ContactSet<Number>   &contact,
                        const NodalVectors<Number> &X)
-    : scene(scene)
-    , physics(physics)
-    , contact(contact)
-    , X(X)
-    , areas(contact_areas(scene.mesh, scene.topology, contact, X))
-  {}
+      : scene(scene)
+      , physics(physics)
+      , contact(contact)
+      , X(X)
+      , areas(contact_areas(scene.mesh, scene.topology, contact, X))
+  {
+  }
 } // namespace retroforge

@@ -17,11 +17,12 @@ namespace retroforge
   /// What of a scene's numerical model is neither mesh nor process.
   struct StepModel
   {
-    Scheme       scheme   = Scheme::midpoint;
-    double       approach = 1.; ///< approach time in increments: tau = approach * dt
-    FrictionRamp ramp;
-    double       reach             = 0.;    ///< nodes nearer than this to a die are watched [mm]
-    double       adjoint_tolerance = 1e-10; ///< of the adjoint and tangent linear systems
+    Scheme           scheme   = Scheme::midpoint;
+    double           approach = 1.; ///< approach time in increments: tau = approach * dt
+    FrictionRamp     ramp;
+    double           reach             = 0.;    ///< nodes nearer than this to a die are watched [mm]
+    double           adjoint_tolerance = 1e-10; ///< of the adjoint and tangent linear systems
+    ShapeDerivatives shape_derivatives;         ///< of the backward sweep
   };
 
   /// Energy spent, deformation and friction [mJ].
@@ -50,7 +51,8 @@ namespace retroforge
               LinearSystem           &system,
               Timings                &timings);
 
-    /// From X_i to X_{i+1}. @param record  in: stroke, step; with `replay`, the recorded decisions are obeyed.
+    /// From X_i to X_{i+1}. @param record  in: stroke, step; with `replay`, the recorded decisions are
+    /// obeyed.
     ///        Out: pairs, solves, energies.
     /// @param W  in: initial guess, out: the last stage's solution
     NodalVectors<double> forward(const Process<double>      &process,
@@ -66,7 +68,8 @@ namespace retroforge
                                const IncrementRecord    &record,
                                Energy<Dual>             &energy);
 
-    /// Reverse of forward for  Phi = weights·energy + (what follows):  G is dPhi/dX_{i+1} on entry, dPhi/dX_i on exit.
+    /// Reverse of forward for  Phi = weights·energy + (what follows):  G is dPhi/dX_{i+1} on entry, dPhi/dX_i
+    /// on exit.
     void reverse(const Process<double>      &process,
                  const NodalVectors<double> &X,
                  const IncrementRecord      &record,
@@ -80,23 +83,25 @@ namespace retroforge
                                          const IncrementRecord      &record) const;
 
   private:
-    NewtonStatistics solve_stage(const Stage<double> &stage, const ActiveSet &frozen, Field<double> &W);
+    NewtonStatistics   solve_stage(const Stage<double> &stage, const ActiveSet &frozen, Field<double> &W);
     ContactSet<double> contact_set(const Physics<double>      &physics,
                                    const NodalVectors<double> &X,
                                    const IncrementRecord      &record,
                                    double                      dt) const;
-    bool escaped(const Stage<double> &stage, const Field<double> &W) const;
-    Field<double> recorded_field(const Stage<double> &stage, const SolveRecord &solve) const;
-    Field<Dual> tangent_field(const Stage<Dual>          &stage,
-                              const NodalVectors<double> &X,
-                              const ContactSet<double>   &contact,
-                              const Physics<double>      &physics,
-                              const SolveRecord          &solve);
+    bool               escaped(const Stage<double> &stage, const Field<double> &W) const;
+    Field<double>      recorded_field(const Stage<double> &stage, const SolveRecord &solve) const;
+    Field<Dual>        tangent_field(const Stage<Dual>          &stage,
+                                     const NodalVectors<double> &X,
+                                     const ContactSet<double>   &contact,
+                                     const Physics<double>      &physics,
+                                     const SolveRecord          &solve);
 
     const Scene     &scene_;
     const StepModel &model_;
     LinearSystem    &system_;
     Newton           newton_;
     Timings         &timings_;
+    /// Of each stage, from the increments reversed last: where the next adjoint system starts.
+    std::array<std::vector<Field<double>>, 2> earlier_lambdas_;
   };
 } // namespace retroforge

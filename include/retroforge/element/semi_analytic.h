@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/element/mini_element.h>
+
+namespace retroforge
+{
+  /// How derivatives of a cell in the positions of its nodes are formed: in closed form, or by differences
+  /// inside the cell in its twelve coordinates, with a step relative to the cell's size.  @cite Laroussi2003,
+  /// Eq. (76)-(79)
+  struct ShapeDerivatives
+  {
+    enum class Method
+    {
+      exact,
+      forward, ///< the thesis' choice
+      central
+    };
+    Method method       = Method::exact;
+    double perturbation = 1e-6;
+  };
+
+  /// Derivative of lambda·cell_residual in X by differences, of the method that `how` says (not exact).
+  Four<Vec3> difference_cell_residual(const Four<Vec3>         &X,
+                                      const CellValues<double> &w,
+                                      const CellValues<double> &lambda,
+                                      const NortonHoff<double> &law,
+                                      const ShapeDerivatives   &how);
+
+  /// Derivative of weight * cell_dissipation in X, likewise.
+  Four<Vec3> difference_cell_dissipation(const Four<Vec3>         &X,
+                                         const CellValues<double> &w,
+                                         const NortonHoff<double> &law,
+                                         double                    weight,
+                                         const ShapeDerivatives   &how);
+} // namespace retroforge

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/element/semi_analytic.h>
+
+namespace retroforge
+{
+  namespace
+  {
+    template <typename Scalar>
+    Four<Vec3> differences(const Four<Vec3> &X, const ShapeDerivatives &how, const Scalar &f)
+    {
+      const bool   central = how.method == ShapeDerivatives::Method::central;
+      const double step    = how.perturbation * std::cbrt(6. * std::abs(cell_geometry(X).volume));
+      const double here    = central ? 0. : f(X);
+      Four<Vec3>   slope;
+      for (unsigned int a = 0; a < 4; ++a)
+        for (unsigned int i = 0; i < 3; ++i)
+        {
+          Four<Vec3> moved = X;
+          moved[a][i] += step;
+          // The step as it was rounded, not as it was meant.
+          const double plus = moved[a][i], there = f(moved);
+          if (!central)
+          {
+            slope[a][i] = (there - here) / (plus - X[a][i]);
+            continue;
+          }
+          moved[a][i] = X[a][i] - step;
+          slope[a][i] = (there - f(moved)) / (plus - moved[a][i]);
+        }
+      return slope;
+    }
+  } // namespace
+
+  Four<Vec3> difference_cell_residual(const Four<Vec3>         &X,
+                                      const CellValues<double> &w,
+                                      const CellValues<double> &lambda,
+                                      const NortonHoff<double> &law,
+                                      const ShapeDerivatives   &how)
+  {
+    return differences(X, how, [&](const Four<Vec3> &at) {
+      const CellValues<double> r   = cell_residual(cell_geometry(at), w, law);
+      double                   sum = r.beta * lambda.beta;
+      for (unsigned int a = 0; a < 4; ++a)
+        sum += r.V[a] * lambda.V[a] + r.P[a] * lambda.P[a];
+      return sum;
+    });
+  }
+
+  Four<Vec3> difference_cell_dissipation(const Four<Vec3>         &X,
+                                         const CellValues<double> &w,
+                                         const NortonHoff<double> &law,
+                                         const double              weight,
+                                         const ShapeDerivatives   &how)
+  {
+    return differences(
+      X, how, [&](const Four<Vec3> &at) { return weight * cell_dissipation(cell_geometry(at), w, law); });
+  }
+} // namespace retroforge
