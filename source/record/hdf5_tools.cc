@@ -177,15 +177,9 @@ namespace retroforge::hdf5
     }
   } // namespace
 
-  Quiet::Quiet()
+  void silence()
   {
-    H5Eget_auto2(H5E_DEFAULT, &printer_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-
-  Quiet::~Quiet()
-  {
-    H5Eset_auto2(H5E_DEFAULT, printer_, data_);
   }
 
   void check(const long long result, const std::string &what)

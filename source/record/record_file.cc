@@ -101,7 +101,7 @@ namespace retroforge
     /// Makes the file whole or not at all; on return it is on disk.
     void write_whole(const std::string &file, const std::function<void(hid_t)> &fill)
     {
-      const hdf5::Quiet quiet;
+      hdf5::silence();
       const std::string aside = file + ".tmp";
       try
       {
@@ -124,7 +124,7 @@ namespace retroforge
     template <typename Result>
     Result read_whole(const std::string &file, const std::function<Result(hid_t)> &get)
     {
-      const hdf5::Quiet quiet;
+      hdf5::silence();
       try
       {
         const hdf5::Handle handle = hdf5::open_file(file);

@@ -24,7 +24,7 @@ namespace retroforge
       list.set("smoother: sweeps", 2);
       list.set("smoother: pre or post", "both");
       list.set("coarse: type", "Amesos-KLU");
-      list.set("coarse: max size", 1500);
+      list.set("coarse: max size", 400);
       list.set("null space: type", "pre-computed");
       list.set("null space: dimension", 3);
       list.set("null space: vectors", near_kernel.data());

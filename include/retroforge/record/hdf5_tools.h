@@ -30,19 +30,9 @@ namespace retroforge::hdf5
     int error_number;
   };
 
-  /// Keeps HDF5 from printing its errors while it lives.
-  class Quiet
-  {
-  public:
-    Quiet();
-    ~Quiet();
-    Quiet(const Quiet &)            = delete;
-    Quiet &operator=(const Quiet &) = delete;
-
-  private:
-    H5E_auto2_t printer_;
-    void       *data_;
-  };
+  /// Turns off HDF5's own printing of errors, for good: Failure tells them, and after a damaged file HDF5
+  /// would still complain when the program ends.
+  void silence();
 
   /// Owns an identifier of HDF5.
   class Handle

@@ -15,14 +15,14 @@
 ///     DIR/record.h5                        of a finished run: header and increments in one file
 ///
 /// Why not one file from the start: HDF5 changes its metadata in place and in an order of its own, so a
-/// process killed while it appends can lose all that was there before; and HDF5's single-writer mode, made
-/// for readers of growing arrays, forbids new groups and arrays and promises nothing about a machine that
-/// stops. Files that are written aside, brought to disk and renamed cannot tear: each increment exists whole
-/// or not at all, and a failure (a full disk) costs only the increment at hand. An increment file costs about
-/// 3 kB beyond its numbers, 1 kB once merged.
+/// process killed while it appends can lose all that was there before. HDF5's single-writer mode is made for
+/// readers of growing arrays: it forbids new groups and arrays, leaves a file that must be repaired after a
+/// kill, and promises nothing about a machine that stops. Files that are written aside, brought to disk and
+/// renamed cannot tear: each increment exists whole or not at all, and a failure (a full disk) costs only the
+/// increment at hand. HDF5 itself takes 2.1 kB of an increment's file, 1.1 kB once merged.
 ///
-/// Numbers are kept to the bit, uncompressed: deflation with shuffled bytes saves about a tenth of a
-/// velocity field, for more time than the disk needs.
+/// Numbers are kept to the bit and not deflated: with shuffled bytes that saved 14 % of a smooth velocity
+/// field, at 60 MB/s.
 ///
 /// State is replicated, so one rank writes and every rank may read. Nothing here communicates.
 namespace retroforge
@@ -42,8 +42,8 @@ namespace retroforge
     /// be repeated.
     void write(const IncrementRecord &increment);
 
-    /// Merges all into DIR/record.h5, the last thing a writer does. Needs as much space as the record once
-    /// more; on Error the increments stay as they were.
+    /// Merges all into DIR/record.h5, the last thing a writer does. Needs the size of the record once
+    /// more on disk, and in memory; on Error the increments stay as they were.
     void finish();
 
     unsigned int n_increments() const { return n_increments_; }

@@ -15,7 +15,7 @@ namespace retroforge
   struct LinearSolverParameters
   {
     std::string  method         = "auto";
-    unsigned int multigrid_from = 12000;
+    unsigned int multigrid_from = 2500;
     unsigned int max_iterations = 600;
     unsigned int restart        = 120;
 

@@ -10,9 +10,9 @@ from case_tools import energy, figure, gradient, run  # noqa: E402
 
 BUILD, CASE = sys.argv[1], os.path.join(HERE, "case.prm")
 TIGHT = {"Newton/tolerance": 1e-12, "Adjoint/tolerance": 1e-14}
-SHORT = {"Billet/element size": 7, "Press/stroke": 2, "Press/increments": 3}
+SHORT = {"Billet/element size": 8, "Press/stroke": 1.4, "Press/increments": 2}
 # The tangent runs once per parameter whatever the differences: as few of those as can be asked for.
-CHECK = {"Check/steps": "1e-5", "Check/free differences": "false", "Check/taylor halvings": 3}
+CHECK = {"Check/steps": "1e-5", "Check/free differences": "false", "Check/taylor halvings": 2}
 
 
 def defect(a, b):
@@ -20,14 +20,19 @@ def defect(a, b):
 
 
 def compare_ranks(name, settings):
-    """Worst change of energy and of any gradient between one rank and more."""
-    results = [run(BUILD, "gradient", CASE, settings, ranks=n)[0] for n in (1, 2, 3)]
-    one = gradient(results[0])
-    changes = {p: max(defect(gradient(other)[p], one[p]) for other in results[1:]) for p in one}
-    for parameter, change in changes.items():
-        print(f"{name:8} {parameter:24} {one[parameter]:18.12g}   changes by {change:.2e}")
-    figure(f"energy_change_{name}", max(defect(energy(other), energy(results[0])) for other in results[1:]))
-    figure(f"gradient_change_{name}", max(changes.values()))
+    """Change of the energy and worst change of a gradient from one rank to two and three."""
+    one, _ = run(BUILD, "gradient", CASE, settings)
+    g = gradient(one)
+    for n in (2, 3):
+        other, printed = run(BUILD, "gradient", CASE, settings, ranks=n, may_fail=True)
+        if other is None:
+            print(f"{n} ranks failed:\n{printed[-2000:]}")
+            continue
+        changes = {parameter: defect(gradient(other)[parameter], g[parameter]) for parameter in g}
+        for parameter, change in changes.items():
+            print(f"{name:8} {n} ranks {parameter:24} {g[parameter]:18.12g}   changes by {change:.2e}")
+        figure(f"energy_change_{name}_{n}", defect(energy(other), energy(one)))
+        figure(f"gradient_change_{name}_{n}", max(changes.values()))
 
 
 def adjoint_against_tangent(settings):
@@ -47,18 +52,24 @@ def adjoint_against_tangent(settings):
     return worst
 
 
-def quick():
+def tight():
     compare_ranks("tight", TIGHT)
+
+
+def default():
     compare_ranks("default", {})
 
 
-def slow():
-    soft = adjoint_against_tangent({"Contact/penetration": 1e-4})
-    figure("adjoint_tangent_soft_penalty", max(soft.values()))
-    stiff = adjoint_against_tangent({})
-    figure("adjoint_tangent_default_penalty_rho", stiff.pop("contact/rho"))
-    figure("adjoint_tangent_default_penalty", max(stiff.values()))
+def soft():
+    worst = adjoint_against_tangent({"Contact/penetration": 1e-4})
+    figure("adjoint_tangent_soft", max(worst.values()))
+
+
+def stiff():
+    worst = adjoint_against_tangent({})
+    figure("adjoint_tangent_stiff_rho", worst.pop("contact/rho"))
+    figure("adjoint_tangent_stiff", max(worst.values()))
 
 
 if __name__ == "__main__":
-    {"quick": quick, "slow": slow}[sys.argv[2]]()
+    {"tight": tight, "default": default, "soft": soft, "stiff": stiff}[sys.argv[2]]()

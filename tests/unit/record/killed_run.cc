@@ -4,6 +4,7 @@
 // be read and holds all increments it had reported as written.
 #include "record_test_tools.h"
 
+#include <chrono>
 #include <csignal>
 
 #include <sys/wait.h>
@@ -28,6 +29,18 @@ void write_runs(const std::string &folder, const RecordHeader &header, const int
     }
     writer.finish();
   }
+}
+
+/// Duration of one run, start to finish [microseconds].
+unsigned int time_of_run(const std::string &folder, const RecordHeader &header)
+{
+  const auto   start = std::chrono::steady_clock::now();
+  RecordWriter writer(folder, header);
+  for (unsigned int i = 0; i < 15; ++i)
+    writer.write(sample_increment(header, i));
+  writer.finish();
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start)
+    .count();
 }
 
 /// Number of increments the child had written, 255 if it was starting.
@@ -73,10 +86,11 @@ int main()
   const std::string  folder = fresh_folder("killed_run_data");
   const RecordHeader header = sample_header(brick(4, 4, 5));
   std::mt19937       random(7);
+  const unsigned int period = time_of_run(folder, header);
   unsigned int       n_good = 0, n_resumed = 0;
   for (unsigned int attempt = 0; attempt < 40; ++attempt)
   {
-    const unsigned int told = kill_after(random() % 60000, folder, header);
+    const unsigned int told = kill_after(random() % (period + period / 4), folder, header);
     try
     {
       n_good += survived(folder, header, told == 255 ? 0 : told);

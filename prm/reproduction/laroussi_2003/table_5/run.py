@@ -14,7 +14,7 @@ import case_tools  # noqa: E402
 import check_tools  # noqa: E402
 
 LAWS = {"sharp": {"Contact/law": "sharp", "Contact/approach": 1}, "smooth": {}}
-COARSE = {"Billet/element size": 15, "Press/increments": 5, "Check/steps": "1e-3, 1e-4, 1e-5, 1e-6"}
+COARSE = {"Billet/element size": 15, "Press/increments": 8, "Check/steps": "1e-3, 1e-4, 1e-5, 1e-6"}
 
 
 def measure(build, stroke, law, settings, label):
@@ -36,7 +36,7 @@ def main():
     build = sys.argv[1]
     if sys.argv[2] == "quick":
         for law in LAWS:
-            measure(build, 8, law, COARSE, f"coarse_{law}")
+            measure(build, 16, law, COARSE, f"coarse_{law}")
     else:
         measure(build, int(sys.argv[2]), sys.argv[3], {}, f"{sys.argv[2]}_{sys.argv[3]}")
 

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+// Proves: files that are whole but not a usable record are refused, each with its reason: missing, foreign,
+// of another format or run, with arrays of wrong kind or shape, with indices of nodes, dies or patches that
+// do not exist.
+#include "record_test_tools.h"
+
+#include <deal.II/base/exceptions.h>
+
+using namespace retroforge;
+namespace fs = std::filesystem;
+
+const RecordHeader header    = sample_header(brick(2, 2, 3));
+const std::string  folder    = "bad_records_data";
+const std::string  start     = folder + "/record/header.h5";
+const std::string  increment = folder + "/record/increment_000001.h5";
+
+void fresh_record()
+{
+  fresh_folder(folder);
+  RecordWriter writer(folder, header);
+  for (unsigned int i = 0; i < 3; ++i)
+    writer.write(sample_increment(header, i));
+}
+
+void read_all()
+{
+  const RecordReader reader(folder);
+  for (unsigned int i = 0; i < reader.n_increments(); ++i)
+    reader.read(i);
+  std::cout << "  " << reader.n_increments() << " increments, ";
+}
+
+/// Changes a group of a fresh record's file and reads the record.
+template <typename Change>
+void show_changed(const std::string &title,
+                  const std::string &file,
+                  const std::string &group,
+                  const Change      &change)
+{
+  fresh_record();
+  {
+    const hdf5::Handle handle(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, file);
+    change(hdf5::open_group(handle, group));
+  }
+  show_error(title, read_all);
+}
+
+template <typename Number>
+void replace(const hid_t                 group,
+             const std::string          &name,
+             const std::vector<hsize_t> &shape,
+             const std::vector<Number>  &values)
+{
+  hdf5::check(H5Ldelete(group, name.c_str(), H5P_DEFAULT), name);
+  hdf5::write_array(group, name, shape, values.data());
+}
+
+template <typename Number>
+void replace_attribute(const hid_t group, const std::string &name, const Number value)
+{
+  hdf5::check(H5Adelete(group, name.c_str()), name);
+  hdf5::write_attribute(group, name, &value);
+}
+
+void show_bad_files()
+{
+  show_error("no such folder", []() { RecordReader("no/such/folder"); });
+  fresh_record();
+  write_bytes(start, "set K = 1\n");
+  show_error("not HDF5", read_all);
+  fresh_record();
+  write_bytes(increment, "");
+  show_error("empty", read_all);
+  fresh_record();
+  const std::string whole = bytes_of(increment);
+  write_bytes(increment, whole.substr(0, whole.size() - 100));
+  show_error("cut off", read_all);
+  show_error("a segment taken for a record", []() { RecordReader reader(start); });
+  fresh_record();
+  fs::remove(increment);
+  show_error("one missing: those before it count", read_all);
+  fresh_record();
+  fs::copy_file(folder + "/record/increment_000000.h5", increment, fs::copy_options::overwrite_existing);
+  show_error("increment of another number", read_all);
+  {
+    fresh_folder(folder + "_2");
+    RecordWriter other(folder + "_2", sample_header(header.mesh, "set K = 2\n"));
+    for (unsigned int i = 0; i < 2; ++i)
+      other.write(sample_increment(header, i));
+    fs::copy_file(folder + "_2/record/increment_000001.h5", increment, fs::copy_options::overwrite_existing);
+  }
+  show_error("increment of another run", read_all);
+}
+
+void show_bad_headers()
+{
+  show_changed("other format", start, "header", [](const hid_t g) { replace_attribute(g, "format", 7u); });
+  show_changed(
+    "format is no integer", start, "header", [](const hid_t g) { replace_attribute(g, "format", 1.); });
+  show_changed("cells of five nodes", start, "header", [](const hid_t g) {
+    replace(g, "cells", {2, 5}, std::vector<unsigned int>(10));
+  });
+  show_changed("no cells", start, "header", [](const hid_t g) { H5Ldelete(g, "cells", H5P_DEFAULT); });
+  show_changed("node that is not there", start, "header", [](const hid_t g) {
+    replace(g, "cells", {1, 4}, std::vector<unsigned int>{0, 1, 2, 12});
+  });
+  show_changed("too few positions", start, "header", [](const hid_t g) {
+    replace(g, "X_0", {11, 3}, std::vector<double>(33));
+  });
+  show_changed(
+    "patch missing", start, "header", [](const hid_t g) { replace_attribute(g, "n_patches", 3u); });
+  show_changed("fewer patches than faces use", start, "header", [](const hid_t g) {
+    replace_attribute(g, "n_patches", 1u);
+  });
+  show_changed("parameters are numbers", start, "header", [](const hid_t g) {
+    replace(g, "parameters", {1}, std::vector<double>(1));
+  });
+}
+
+void show_bad_increments()
+{
+  const auto show = [](const std::string &title, const auto &change) {
+    show_changed(title, increment, "increment_000001", change);
+  };
+  show("velocity of other node count", [](const hid_t g) {
+    replace(g, "V", {2, 11, 3}, std::vector<double>(66));
+  });
+  show("velocity of integers", [](const hid_t g) {
+    replace(g, "V", {2, 12, 3}, std::vector<unsigned int>(72));
+  });
+  show("one pressure, two velocities", [](const hid_t g) {
+    replace(g, "P", {1, 12}, std::vector<double>(12));
+  });
+  show("pair of a node that is not there", [](const hid_t g) {
+    replace(g, "pairs", {4, 2}, std::vector<unsigned int>{0, 0, 1, 0, 12, 0, 3, 0});
+  });
+  show("pair of a die that is not there", [](const hid_t g) {
+    replace(g, "pairs", {4, 2}, std::vector<unsigned int>{0, 0, 1, 0, 2, 2, 3, 0});
+  });
+  show("more pairs than flags", [](const hid_t g) {
+    replace(g, "pairs", {5, 2}, std::vector<unsigned int>(10));
+  });
+  show("flag of 2", [](const hid_t g) {
+    replace(g, "touching", {4}, std::vector<unsigned char>{0, 1, 2, 0});
+  });
+  show("huge array, never written", [](const hid_t g) {
+    const hsize_t      shape[] = {hsize_t(1) << 40, 12, 3};
+    const hdf5::Handle space(H5Screate_simple(3, shape, nullptr), H5Sclose, "V");
+    H5Ldelete(g, "V", H5P_DEFAULT);
+    const hdf5::Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "V");
+    const hsize_t      chunk[] = {1, 12, 3};
+    H5Pset_chunk(layout, 3, chunk);
+    const hdf5::Handle array(
+      H5Dcreate2(g, "V", H5T_IEEE_F64LE, space, H5P_DEFAULT, layout, H5P_DEFAULT), H5Dclose, "V");
+  });
+}
+
+void show_bad_writing()
+{
+  fresh_folder(folder);
+  write_bytes(folder + "/file", "");
+  show_error("folder below a file", []() { RecordWriter(folder + "/file/run", header); });
+  show_error("resume without record", []() { RecordWriter::resume(folder); });
+  fresh_record();
+  RecordWriter::resume(folder).finish();
+  show_error("resume a finished run", []() { RecordWriter::resume(folder); });
+
+  RecordWriter    writer(folder, header);
+  IncrementRecord bad = sample_increment(header, 0);
+  bad.solves[1].active.pop_back();
+  try
+  {
+    writer.write(bad);
+  }
+  catch (const dealii::ExceptionBase &)
+  {
+    std::cout << "sizes that disagree are not written: " << yes(RecordReader(folder).n_increments() == 0)
+              << '\n';
+  }
+}
+
+int main()
+{
+  show_bad_files();
+  show_bad_headers();
+  show_bad_increments();
+  show_bad_writing();
+}
