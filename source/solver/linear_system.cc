@@ -550,6 +550,22 @@ namespace retroforge
     first_rate_ = 0.;
   }
 
+  void LinearSystem::polish_penalised()
+  {
+    const Partition                   &partition = scene_.partition;
+    TrilinosWrappers::MPI::BlockVector r(x_);
+    matrix_.residual(r, x_, rhs_);
+    const double *residual = r.block(0).trilinos_vector()[0];
+    double       *velocity = x_.block(0).trilinos_vector()[0];
+    for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
+      for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
+        if (scale_[3 * k + i] < 0.1)
+        {
+          const unsigned int local = k - partition.node_begin;
+          velocity[3 * local + i] += residual[3 * local + i] / A_->entry(local, i, diagonal_[local])[i];
+        }
+  }
+
   unsigned int LinearSystem::solve_iteratively(const double                      tolerance,
                                                const std::vector<Field<double>> &guesses)
   {
@@ -579,6 +595,7 @@ namespace retroforge
       try
       {
         krylov.solve(matrix_, x_, rhs_, *preconditioner_);
+        polish_penalised();
         total += control.last_step();
         const double rate = control.last_step() / decades;
         if (fresh)

@@ -9,36 +9,38 @@ namespace retroforge
   {
     using namespace dealii::Patterns;
     prm.enter_subsection("Newton");
-    prm.add_parameter("tolerance",
-                      tolerance,
-                      "Residual at which the equilibrium counts as solved, relative to the nodal forces. Gradients are "
-                      "exact to about this. Units: none.",
-                      Double(1e-14, 1e-2));
-    prm.add_parameter("forcing",
-                      forcing,
-                      "Largest relative tolerance of a linear solve; it falls with the square of the residual's fall. "
-                      "Units: none.",
-                      Double(1e-14, 0.5));
-    prm.add_parameter("max iterations", max_iterations, "Newton steps before giving up. Units: none.", Integer(1));
+    prm.add_parameter(
+      "tolerance",
+      tolerance,
+      "Residual at which the equilibrium counts as solved, relative to the nodal forces. Gradients are "
+      "exact to about this. Units: none.",
+      Double(1e-14, 1e-2));
+    prm.add_parameter(
+      "forcing",
+      forcing,
+      "Largest relative tolerance of a linear solve; it falls with the square of the residual's fall. "
+      "Units: none.",
+      Double(1e-14, 0.5));
+    prm.add_parameter(
+      "max iterations", max_iterations, "Newton steps before giving up. Units: none.", Integer(1));
     prm.leave_subsection();
   }
 
   Newton::Newton(const Scene &scene, const NewtonParameters &parameters, LinearSystem &system)
-    : scene_(scene)
-    , parameters_(parameters)
-    , system_(system)
-  {}
+      : scene_(scene), parameters_(parameters), system_(system)
+  {
+  }
 
   double Newton::relative_residual(const Stage<double> &stage,
                                    const Field<double> &W,
                                    const ActiveSet     &frozen,
                                    Field<double>       &r)
   {
-    r                      = stage.residual(W, frozen);
-    const auto norm        = system_.residual_norm(r);
-    const auto scale       = residual_scale(stage, W);
-    double     bubble2     = 0.;
-    const auto &partition  = scene_.partition;
+    r                     = stage.residual(W, frozen);
+    const auto  norm      = system_.residual_norm(r);
+    const auto  scale     = residual_scale(stage, W);
+    double      bubble2   = 0.;
+    const auto &partition = scene_.partition;
     for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
       bubble2 += r.beta[c].norm_square();
     const double momentum = std::sqrt(norm.first * norm.first + partition.sum(bubble2));
@@ -59,10 +61,10 @@ namespace retroforge
     return partition.sum(sum);
   }
 
-  void Newton::line_search(const Stage<double> &stage,
-                           Field<double>       &W,
-                           const Field<double> &step,
-                           const ActiveSet     &frozen)
+  double Newton::line_search(const Stage<double> &stage,
+                             Field<double>       &W,
+                             const Field<double> &step,
+                             const ActiveSet     &frozen)
   {
     // The pressure takes its full step: it is the multiplier of the functional's constraint.
     for (NodeIndex k = 0; k < W.P.size(); ++k)
@@ -77,34 +79,38 @@ namespace retroforge
     const double start = slope_at(0.);
     double       a     = 1.;
     if (start < 0.)
+    {
+      // Bracketed secant for the root of a monotone function; a rough root is enough.
+      double low = 0., low_slope = start, high = -1., high_slope = 0.;
+      for (unsigned int trial = 0; trial < 12; ++trial)
       {
-        // Bracketed secant for the root of a monotone function; a rough root is enough.
-        double low = 0., low_slope = start, high = -1., high_slope = 0.;
-        for (unsigned int trial = 0; trial < 12; ++trial)
-          {
-            const double s = slope_at(a);
-            if (std::abs(s) <= 0.8 * std::abs(start))
-              break;
-            if (s > 0.)
-              {
-                high       = a;
-                high_slope = s;
-              }
-            else
-              {
-                low       = a;
-                low_slope = s;
-              }
-            if (high < 0.)
-              break; // still descending at the full step: take it
-            const double root = low - low_slope * (high - low) / (high_slope - low_slope);
-            a                 = std::min(std::max(root, low + 0.1 * (high - low)), high - 0.1 * (high - low));
-          }
+        const double s = slope_at(a);
+        if (std::abs(s) <= 0.8 * std::abs(start))
+          break;
+        if (s > 0.)
+        {
+          high       = a;
+          high_slope = s;
+        }
+        else
+        {
+          low       = a;
+          low_slope = s;
+        }
+        if (high < 0.)
+          break; // still descending at the full step: take it
+        const double root = low - low_slope * (high - low) / (high_slope - low_slope);
+        a                 = std::min(std::max(root, low + 0.1 * (high - low)), high - 0.1 * (high - low));
       }
+    }
     W.add(a, velocity_step);
+    return a;
   }
 
-  void Newton::initial_guess(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen, NewtonStatistics &statistics)
+  void Newton::initial_guess(const Stage<double> &stage,
+                             Field<double>       &W,
+                             const ActiveSet     &frozen,
+                             NewtonStatistics    &statistics)
   {
     // A strain rate typical of the press: the fastest die over the billet's size.
     double volume = 0., speed = 0.;
@@ -126,60 +132,67 @@ namespace retroforge
         active.push_back(projection.delta <= speed * stage.contact.tau);
     Field<double> step;
     for (unsigned int pass = 0; pass < 3; ++pass)
-      {
-        Field<double> r = linear.residual(W, active);
-        Field<double> rhs(scene_.mesh);
-        rhs.add(-1., r);
-        system_.assemble(linear, W, active);
-        statistics.krylov += system_.solve(rhs, 1e-4, step);
-        ++statistics.iterations;
-        W.add(1., step);
-        if (!frozen.empty() || linear.decide_active(W) == active)
-          break;
-        active = linear.decide_active(W);
-      }
+    {
+      Field<double> r = linear.residual(W, active);
+      Field<double> rhs(scene_.mesh);
+      rhs.add(-1., r);
+      system_.assemble(linear, W, active);
+      statistics.krylov += system_.solve(rhs, 1e-4, step);
+      ++statistics.iterations;
+      W.add(1., step);
+      if (!frozen.empty() || linear.decide_active(W) == active)
+        break;
+      active = linear.decide_active(W);
+    }
   }
 
   NewtonStatistics Newton::solve(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen)
   {
     NewtonStatistics statistics;
-    const bool       from_rest = std::all_of(W.V.begin(), W.V.end(), [](const Vec3 &v) { return v.norm_square() == 0.; });
+    const bool       from_rest =
+      std::all_of(W.V.begin(), W.V.end(), [](const Vec3 &v) { return v.norm_square() == 0.; });
     if (from_rest && stage.physics.law.m != 1.)
       initial_guess(stage, W, frozen, statistics);
     Field<double> r, step;
-    double        last = 1.;
+    double        last = 1., largest_forcing = parameters_.forcing;
     for (unsigned int iteration = 0; iteration < parameters_.max_iterations; ++iteration)
+    {
+      ActiveSet start = frozen;
+      if (from_rest && iteration == 0 && frozen.empty() && stage.physics.law.m == 1.)
+        for (const auto &projection : stage.contact.projections)
+          start.push_back(projection.delta <= 0.);
+      // The first matrix makes the frames and scales that residuals are measured in.
+      if (iteration == 0)
+        system_.assemble(stage, W, start);
+      statistics.residual = relative_residual(stage, W, start, r);
+      if (start == frozen && statistics.residual <= parameters_.tolerance)
       {
-        ActiveSet start = frozen;
-        if (from_rest && iteration == 0 && frozen.empty() && stage.physics.law.m == 1.)
-          for (const auto &projection : stage.contact.projections)
-            start.push_back(projection.delta <= 0.);
-        // The first matrix makes the frames and scales that residuals are measured in.
-        if (iteration == 0)
-          system_.assemble(stage, W, start);
-        statistics.residual = relative_residual(stage, W, start, r);
-        if (start == frozen && statistics.residual <= parameters_.tolerance)
-          {
-            recover_bubbles(stage, W);
-            return statistics;
-          }
-        if (iteration > 0)
-          system_.assemble(stage, W, start);
-        const bool   linear = stage.physics.law.m == 1.;
-        const double goal   = 0.3 * parameters_.tolerance / std::max(statistics.residual, parameters_.tolerance);
-        double       forcing =
-          linear ? goal : std::max(goal, std::min(parameters_.forcing, std::pow(statistics.residual / last, 2)));
-        forcing = std::min(0.5, std::max(1e-12, forcing));
-        Field<double> rhs(scene_.mesh);
-        rhs.add(-1., r);
-        statistics.krylov += system_.solve(rhs, forcing, step);
-        ++statistics.iterations;
-        if (start == frozen && statistics.residual > 1e-6)
-          line_search(stage, W, step, frozen);
-        else
-          W.add(1., step);
-        last = statistics.residual;
+        recover_bubbles(stage, W);
+        return statistics;
       }
+      if (iteration > 0)
+        system_.assemble(stage, W, start);
+      const bool   linear = stage.physics.law.m == 1.;
+      const double goal = 0.1 * parameters_.tolerance / std::max(statistics.residual, parameters_.tolerance);
+      double       forcing =
+        linear ? goal : std::max(goal, std::min(largest_forcing, std::pow(statistics.residual / last, 2)));
+      forcing = std::min(0.5, std::max(1e-12, forcing));
+      Field<double> rhs(scene_.mesh);
+      rhs.add(-1., r);
+      statistics.krylov += system_.solve(rhs, forcing, step);
+      ++statistics.iterations;
+      if (start == frozen && statistics.residual > 1e-6)
+      {
+        // A step that had to be cut was a poor direction: where dies are stiff, the next one is solved for
+        // better.
+        const bool whole = line_search(stage, W, step, frozen) == 1.;
+        largest_forcing  = whole ? std::min(parameters_.forcing, 10. * largest_forcing)
+                                 : std::max(1e-6, 0.1 * largest_forcing);
+      }
+      else
+        W.add(1., step);
+      last = statistics.residual;
+    }
     throw Error("Newton",
                 "the equilibrium was not reached in " + std::to_string(parameters_.max_iterations) +
                   " iterations (residual " + std::to_string(statistics.residual) + ")",

@@ -90,8 +90,12 @@ namespace retroforge
     /// Sets x_ to the combination of the guesses with the least residual, and returns its norm.
     double       start_from(const std::vector<Field<double>> &guesses);
     unsigned int solve_iteratively(double tolerance, const std::vector<Field<double>> &guesses);
-    void         solve_directly();
-    bool         direct() const { return parameters_.method == "direct"; }
+    /// Solves the rows of penalised components exactly, the others held: an error there that the norm hardly
+    /// sees would decide which nodes a die pushes, because a contact force is the penalty times a small
+    /// difference.
+    void polish_penalised();
+    void solve_directly();
+    bool direct() const { return parameters_.method == "direct"; }
 
     const Scene                  &scene_;
     const LinearSolverParameters &parameters_;

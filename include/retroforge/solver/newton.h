@@ -22,8 +22,8 @@ namespace retroforge
     double       residual   = 0.; ///< relative, at the end
   };
 
-  /// Solves the equilibrium of a stage for W by Newton's method, with a line search on the power functional: the step
-  /// length is a root of its slope along the step, monotone because the functional is convex in V.
+  /// Solves the equilibrium of a stage for W by Newton's method, with a line search on the power functional:
+  /// the step length is a root of its slope along the step, monotone because the functional is convex in V.
   class Newton
   {
   public:
@@ -34,11 +34,21 @@ namespace retroforge
     NewtonStatistics solve(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen);
 
     /// The velocity field of a Newtonian metal under the same dies, as a start from nothing.
-    void initial_guess(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen, NewtonStatistics &statistics);
+    void initial_guess(const Stage<double> &stage,
+                       Field<double>       &W,
+                       const ActiveSet     &frozen,
+                       NewtonStatistics    &statistics);
 
   private:
-    double relative_residual(const Stage<double> &stage, const Field<double> &W, const ActiveSet &frozen, Field<double> &r);
-    void   line_search(const Stage<double> &stage, Field<double> &W, const Field<double> &step, const ActiveSet &frozen);
+    double relative_residual(const Stage<double> &stage,
+                             const Field<double> &W,
+                             const ActiveSet     &frozen,
+                             Field<double>       &r);
+    /// Advances W and returns the part of the velocity step that was taken.
+    double line_search(const Stage<double> &stage,
+                       Field<double>       &W,
+                       const Field<double> &step,
+                       const ActiveSet     &frozen);
     double slope(const Field<double> &r, const Field<double> &step) const;
 
     const Scene            &scene_;

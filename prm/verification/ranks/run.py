@@ -10,7 +10,7 @@ from case_tools import energy, figure, gradient, run  # noqa: E402
 
 BUILD, CASE = sys.argv[1], os.path.join(HERE, "case.prm")
 TIGHT = {"Newton/tolerance": 1e-12, "Adjoint/tolerance": 1e-14}
-SHORT = {"Billet/element size": 8, "Press/stroke": 1.4, "Press/increments": 2}
+SHORT = {"Billet/element size": 7, "Press/stroke": 2, "Press/increments": 3}
 # The tangent runs once per parameter whatever the differences: as few of those as can be asked for.
 CHECK = {"Check/steps": "1e-5", "Check/free differences": "false", "Check/taylor halvings": 2}
 
