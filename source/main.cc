@@ -5,7 +5,9 @@
 #include <retroforge/core/version.h>
 #include <retroforge/simulation.h>
 
+#include <chrono>
 #include <iostream>
+#include <thread>
 
 namespace
 {
@@ -38,10 +40,13 @@ int main(int argc, char **argv)
     }
   catch (const std::exception &problem)
     {
-      // An error of all ranks is told once; an error of one must not leave the others waiting.
-      if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-        std::cerr << "retroforge: " << problem.what() << std::endl;
-      if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+      // An error of all ranks is told once: the first speaks at once and ends the others. One that only another rank
+      // met is told by that rank, a moment later.
+      const bool alone = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
+      if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
+        std::this_thread::sleep_for(std::chrono::seconds(2));
+      std::cerr << "retroforge: " << problem.what() << std::endl;
+      if (!alone)
         MPI_Abort(MPI_COMM_WORLD, 1);
       return 1;
     }

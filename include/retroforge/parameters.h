@@ -13,7 +13,7 @@ namespace retroforge
     std::string law           = "smooth";
     double      approach      = 1.;
     double      ramp_width    = 1.;
-    double      penetration   = 1e-6;
+    double      penetration   = 3e-7;
     double      penalty       = 0.;
     double      slip_fraction = 1e-2;
 

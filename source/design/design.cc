@@ -43,7 +43,17 @@ namespace retroforge
     , width_(billet.shape == "cylinder" ? 2. * billet.radius : billet.size[0])
   {
     for (const std::string &name : names)
-      parameters_.push_back(make(name));
+      {
+        const DesignParameter parameter = make(name);
+        for (const DesignParameter &other : parameters_)
+          if (other.kind == parameter.kind &&
+              (other.die == parameter.die || other.die == invalid_index || parameter.die == invalid_index))
+            throw Error("Design/parameters",
+                        "'" + name + "' and '" + other.name + "' set the same number",
+                        "parameters must be independent",
+                        "leave one of them out");
+        parameters_.push_back(parameter);
+      }
   }
 
   std::vector<std::string> Design::available() const

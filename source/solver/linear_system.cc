@@ -8,7 +8,10 @@
 #include <deal.II/lac/solver_gmres.h>
 #include <deal.II/lac/trilinos_solver.h>
 
+#include <Epetra_CrsGraph.h>
 #include <Epetra_CrsMatrix.h>
+#include <Epetra_Map.h>
+#include <Epetra_MpiComm.h>
 
 namespace retroforge
 {
@@ -131,22 +134,60 @@ namespace retroforge
     IndexSet           velocity(3 * n), pressure(n);
     velocity.add_range(3 * partition.node_begin, 3 * partition.node_end);
     pressure.add_range(partition.node_begin, partition.node_end);
-    const auto make =
+    // Columns are ordered alike in all blocks: owned nodes, then the others, both ascending. Left to itself,
+    // Trilinos orders the others of each block in its own way.
+    std::vector<NodeIndex> column_nodes, ghosts;
+    std::vector<bool>      seen(n, false);
+    for (NodeIndex a = partition.node_begin; a < partition.node_end; ++a)
+    {
+      column_nodes.push_back(a);
+      for (const NodeIndex b : scene_.topology.neighbours[a])
+        if (!partition.owns(b) && !seen[b])
+        {
+          seen[b] = true;
+          ghosts.push_back(b);
+        }
+    }
+    std::sort(ghosts.begin(), ghosts.end());
+    column_nodes.insert(column_nodes.end(), ghosts.begin(), ghosts.end());
+    std::vector<int> local_of(n, -1);
+    for (unsigned int l = 0; l < column_nodes.size(); ++l)
+      local_of[column_nodes[l]] = l;
+    const Epetra_MpiComm epetra_comm(partition.comm);
+    const auto           map_of = [&](const unsigned int width, const unsigned int n_nodes) {
+      std::vector<int> ids;
+      for (unsigned int l = 0; l < n_nodes; ++l)
+        for (unsigned int i = 0; i < width; ++i)
+          ids.push_back(width * column_nodes[l] + i);
+      return Epetra_Map(-1, ids.size(), ids.data(), 0, epetra_comm);
+    };
+    const unsigned int n_owned = partition.node_end - partition.node_begin;
+    const auto         make =
       [&](TrilinosWrappers::SparseMatrix &matrix, const unsigned int rows, const unsigned int columns) {
-        const IndexSet &row_set    = rows == 3 ? velocity : pressure,
-                       &column_set = columns == 3 ? velocity : pressure;
-        DynamicSparsityPattern               pattern(rows * n, columns * n, row_set);
-        std::vector<types::global_dof_index> entries;
-        for (NodeIndex a = partition.node_begin; a < partition.node_end; ++a)
+        const Epetra_Map row_map = map_of(rows, n_owned), domain_map = map_of(columns, n_owned),
+                         column_map = map_of(columns, column_nodes.size());
+        std::vector<int> lengths;
+        for (unsigned int a = 0; a < n_owned; ++a)
+          lengths.insert(lengths.end(),
+                         rows,
+                         columns * scene_.topology.neighbours[a + partition.node_begin].size());
+        Epetra_CrsGraph  graph(Copy, row_map, column_map, lengths.data(), true);
+        std::vector<int> entries;
+        for (unsigned int a = 0; a < n_owned; ++a)
         {
           entries.clear();
-          for (const NodeIndex b : scene_.topology.neighbours[a])
+          for (const NodeIndex b : scene_.topology.neighbours[a + partition.node_begin])
             for (unsigned int j = 0; j < columns; ++j)
-              entries.push_back(columns * b + j);
+              entries.push_back(columns * local_of[b] + j);
+          std::sort(entries.begin(), entries.end());
           for (unsigned int i = 0; i < rows; ++i)
-            pattern.add_entries(rows * a + i, entries.begin(), entries.end(), true);
+            graph.InsertMyIndices(rows * a + i, entries.size(), entries.data());
         }
-        matrix.reinit(row_set, column_set, pattern, partition.comm);
+        graph.FillComplete(domain_map, row_map);
+        graph.OptimizeStorage();
+        Epetra_CrsMatrix values(Copy, graph);
+        values.FillComplete(domain_map, row_map);
+        matrix.reinit(values, false);
       };
     matrix_.reinit(2, 2);
     make(matrix_.block(0, 0), 3, 3);

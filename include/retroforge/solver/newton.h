@@ -9,7 +9,7 @@ namespace retroforge
   struct NewtonParameters
   {
     double       tolerance      = 1e-8;
-    double       forcing        = 1e-2;
+    double       forcing        = 1e-3;
     unsigned int max_iterations = 60;
 
     void add_parameters(dealii::ParameterHandler &prm);
