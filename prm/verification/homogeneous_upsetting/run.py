@@ -13,7 +13,7 @@ from recurrence import continuous, discrete  # noqa: E402
 
 BUILD = sys.argv[1]
 QUARTER, HEIGHT, STROKE = 2500. / 4., 50., 10.
-DEFAULT, LIMIT = 1e-6, 1e-9
+DEFAULT, LIMIT = 3e-7, 1e-9
 
 
 def solve(m, penetration=None, scheme="midpoint", increments=15, **settings):
@@ -71,8 +71,9 @@ def measure_law(m, scheme):
     runs = {10. ** -k: compare(m, scheme, 10. ** -k) for k in range(4, 10)}
     table = [(p, abs(E)) for p, (E, _) in runs.items()]
     print(f"{scheme}, m = {m}:", " ".join(f"{p:.0e}: {e:.3e}" for p, e in table))
-    # The force feels the rounding of rho times the gap, so its limit is extrapolated from two soft penalties.
-    force = [(10. * fine - coarse) / 9. for coarse, fine in zip(runs[1e-4][1], runs[1e-5][1])]
+    # The force feels the rounding of rho times the gap, so its limit is extrapolated from three soft penalties.
+    force = [(100. * (10. * fine - middle) - (10. * middle - coarse)) / 9. / 99.
+             for coarse, middle, fine in zip(*(runs[10. ** -k][1] for k in (4, 5, 6)))]
     figure(f"penalty_exponent_defect_{scheme}_m{m}", abs(penalty_law(table) - 1.))
     figure(f"energy_error_limit_{scheme}_m{m}", table[-1][1])
     figure(f"force_error_limit_{scheme}_m{m}", max(map(abs, force)))

@@ -70,7 +70,8 @@ def main():
             line = scan(build, size, increments, settings, RANGE, points)
             rms, largest, energy, _ = evaluate(line)
             bias = energy / references[size] - 1.0
-            print(f"| {int(line['nodes'][0])} | {increments} | {name} | {rms:.2%} | {largest:.2%} | {bias:+.2%} |", flush=True)
+            print(f"| {int(line['nodes'][0])} | {increments} | {name} | {rms:.2%} | {largest:.2%} | {bias:+.2%} |",
+                  flush=True)
             if (size, increments) == (MIDDLE, 18):
                 lines[name] = line
                 label = name.replace(" ", "_").replace(",", "")
