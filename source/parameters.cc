@@ -29,6 +29,14 @@ namespace retroforge
       "smooth the objective and bias the energy. Units: none.",
       Double(1.));
     prm.add_parameter(
+      "layer",
+      layer,
+      "Bends the speed at which a gap may close, so that the force on an arriving node sets in gradually: "
+      "smooths "
+      "the objective at less bias than `approach' does. 0.4 is moderate, 0.3 strong; 0 for none. In units of "
+      "approach times the increment's stroke. Units: none.",
+      Double(0.));
+    prm.add_parameter(
       "ramp width",
       ramp_width,
       "Gap over which friction sets in, in units of approach times the increment's stroke. Units: none.",
@@ -230,12 +238,15 @@ namespace retroforge
   StepModel Parameters::step_model() const
   {
     StepModel    model;
-    const double step       = press.stroke / press.increments;
-    model.scheme            = press.scheme == "euler" ? Scheme::euler : Scheme::midpoint;
-    model.approach          = contact.approach;
-    model.ramp.sharp        = contact.law == "sharp";
-    model.ramp.width        = contact.ramp_width * contact.approach * step;
-    model.reach             = 3. * std::max(1., contact.ramp_width) * contact.approach * step;
+    const double step = press.stroke / press.increments;
+    model.scheme      = press.scheme == "euler" ? Scheme::euler : Scheme::midpoint;
+    model.approach    = contact.approach;
+    model.layer       = contact.layer * contact.approach * step;
+    model.ramp.sharp  = contact.law == "sharp";
+    model.ramp.width  = contact.ramp_width * contact.approach * step;
+    // Where a node at rest meets the approach speed.
+    const double arrival = contact.layer == 0. ? 1. : contact.layer * std::sinh(1. / contact.layer);
+    model.reach          = std::max({3., 3. * contact.ramp_width, 1.5 * arrival}) * contact.approach * step;
     model.adjoint_tolerance = adjoint.tolerance;
     model.shape_derivatives = adjoint.shape_derivatives();
     return model;

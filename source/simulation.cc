@@ -207,7 +207,8 @@ namespace retroforge
                                                   event.record.pairs,
                                                   model_.ramp,
                                                   model_.approach * event.record.step / process_.speed(),
-                                                  event.X_before);
+                                                  event.X_before,
+                                                  model_.layer);
     const Stage<double> stage(scene_, physics, contact, position);
     for (unsigned int p = 0; p < event.record.pairs.size(); ++p)
       {

@@ -56,8 +56,9 @@ namespace retroforge
       const double un = node.u * node.n, dv_n = dv_bar * node.n;
       bar.u += dv_bar - dv_n * node.n + h_bar * node.n;
       bar.n += -un * dv_bar - dv_n * node.u + h_bar * node.u;
-      bar.delta += -h_bar / node.tau;
-      bar.tau += h_bar * node.delta / (node.tau * node.tau);
+      const double s = node.layer == 0. ? 0. : node.delta / node.layer;
+      bar.delta += -h_bar / (node.tau * std::sqrt(1. + s * s));
+      bar.tau += h_bar * approach_speed(node.delta, node.tau, node.layer) / node.tau;
     }
   } // namespace
 
@@ -108,11 +109,13 @@ namespace retroforge
                                       const std::vector<ContactPair>      &pairs,
                                       const FrictionRamp                  &ramp,
                                       const Number                        &tau,
-                                      const NodalVectors<Number>          &X)
+                                      const NodalVectors<Number>          &X,
+                                      const double                         layer)
   {
     ContactSet<Number> contact;
     contact.pairs = pairs;
     contact.tau   = tau;
+    contact.layer = layer;
     std::map<std::pair<unsigned int, NodeIndex>, unsigned int> index; // (die, node) -> pair
     for (const ContactPair &pair : pairs)
       {
@@ -324,7 +327,8 @@ namespace retroforge
                                                const std::vector<ContactPair> &,                        \
                                                const FrictionRamp &,                                    \
                                                const Number &,                                          \
-                                               const NodalVectors<Number> &);                           \
+                                               const NodalVectors<Number> &,                            \
+                                               double);                                                 \
   template ContactAreas<Number> contact_areas(const TetMesh &,                                          \
                                               const Topology &,                                         \
                                               const ContactSet<Number> &,                               \

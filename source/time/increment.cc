@@ -122,7 +122,8 @@ namespace retroforge
                             record.pairs,
                             model_.ramp,
                             model_.approach * dt,
-                            X);
+                            X,
+                            model_.layer);
   }
 
   bool Increment::escaped(const Stage<double> &stage, const Field<double> &W) const
@@ -137,7 +138,8 @@ namespace retroforge
         {
           const auto &die        = stage.physics.dies[d];
           const auto  projection = scene_.dies[d].project(stage.X[k], die.displacement);
-          if ((W.V[k] - die.velocity) * projection.n > projection.delta / stage.contact.tau)
+          if ((W.V[k] - die.velocity) * projection.n >
+              approach_speed(projection.delta, stage.contact.tau, stage.contact.layer))
             return true;
         }
     return false;
@@ -319,7 +321,8 @@ namespace retroforge
                                                       record.pairs,
                                                       model_.ramp,
                                                       Dual(model_.approach * dt),
-                                                      X);
+                                                      X,
+                                                      model_.layer);
     const Physics<double>    physics_value = values_of(physics);
     const ContactSet<double> contact_value = contact_set(physics_value, values_of(X), record, dt.val());
     NodalVectors<Dual>       position      = X;

@@ -10,7 +10,7 @@
 
 /// Unilateral contact and Norton friction, lumped at the nodes of the surface.
 ///
-/// For node k against a die:  u = V_k - v_die,  h = u·n - delta/tau,  dv = u - (u·n) n,  and the force on the residual is
+/// For node k against a die:  u = V_k - v_die,  h = u·n - a(delta),  a = delta/tau or, with a layer l, l/tau asinh(delta/l),  dv = u - (u·n) n,  and the force on the residual is
 ///   rho S [h]^+ n  +  S^f alpha K (|dv|^2 + v0^2)^((m-1)/2) dv.       @cite Laroussi2003, Eq. (21), (40)-(49)
 /// S is a third of the areas of the surface faces at k; S^f a third of those whose three nodes touch the die, each face
 /// weighted by the product of its nodes' ramps w(delta).
@@ -64,7 +64,8 @@ namespace retroforge
     std::vector<Projection<Number>> projections; ///< of each pair, at X_i
     std::vector<Number>             ramps;       ///< w(delta) of each pair
     std::vector<Face>               friction_faces;
-    Number                          tau = 1.; ///< approach time [s]
+    Number                          tau   = 1.; ///< approach time [s]
+    double                          layer = 0.; ///< of the approach speed [mm]; 0: none
   };
 
   /// S and S^f [mm^2] of each pair.
@@ -111,7 +112,8 @@ namespace retroforge
                                       const std::vector<ContactPair>      &pairs,
                                       const FrictionRamp                  &ramp,
                                       const Number                        &tau,
-                                      const NodalVectors<Number>          &X);
+                                      const NodalVectors<Number>          &X,
+                                      double                               layer = 0.);
 
   /// Pull-back of make_contact_set: adds to X_bar and to the dies' displacements.
   void reverse_contact_set(const std::vector<Die>   &dies,
@@ -144,13 +146,31 @@ namespace retroforge
     Vector3<Number> n;
     Number          delta, tau, S, Sf;
     Number          alpha;
-    bool            active; ///< counts as h > 0
+    bool            active;     ///< counts as h > 0
+    double          layer = 0.; ///< [mm], of the approach speed
   };
+
+  /// Speed at which a gap may close: delta/tau, so that what is in reach arrives within tau; with a layer l
+  ///   l/tau asinh(delta/l),
+  /// the same near the die, but flatter where a free node meets it. The force then sets in gradually, and the energy is
+  /// smoother in the design, at less delay than a longer tau costs.
+  template <typename Number>
+  Number approach_speed(const Number &delta, const Number &tau, const double layer)
+  {
+    using std::log;
+    using std::sqrt;
+    if (layer == 0.)
+      return delta / tau;
+    const Number s = delta / layer;
+    if (value_of(s) < 0.)
+      return -layer / tau * log(Number(sqrt(Number(1. + s * s)) - s));
+    return layer / tau * log(Number(sqrt(Number(1. + s * s)) + s));
+  }
 
   template <typename Number>
   Number approach_excess(const ContactNode<Number> &node)
   {
-    return node.u * node.n - node.delta / node.tau;
+    return node.u * node.n - approach_speed(node.delta, node.tau, node.layer);
   }
 
   template <typename Number>

@@ -19,6 +19,7 @@ namespace retroforge
   {
     Scheme           scheme   = Scheme::midpoint;
     double           approach = 1.; ///< approach time in increments: tau = approach * dt
+    double           layer    = 0.; ///< of the approach speed [mm]
     FrictionRamp     ramp;
     double           reach             = 0.;    ///< nodes nearer than this to a die are watched [mm]
     double           adjoint_tolerance = 1e-10; ///< of the adjoint and tangent linear systems

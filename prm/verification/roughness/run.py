@@ -18,6 +18,7 @@ import case_tools  # noqa: E402
 
 RANGE = 0.3  # mm, 1 % of 30
 LAWS = {f"approach {k}": {"Contact/approach": k} for k in (1, 2, 4, 8)}
+LAWS.update({f"layer {l}": {"Contact/layer": l} for l in (0.5, 0.4, 0.3)})
 DEFAULT = "approach 1"
 COARSE, MIDDLE, FINE = 10, 7, 5.5  # element sizes [mm]: about 100, 200 and 350 nodes
 GRID = [(MIDDLE, 18, 40), (COARSE, 18, 12), (FINE, 18, 12), (COARSE, 36, 12), (COARSE, 72, 12)]

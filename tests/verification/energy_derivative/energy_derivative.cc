@@ -3,9 +3,11 @@
 
 // d(energy)/dV of a cube of 50 mm between flat dies with friction, m = 0.139, in its equilibrium:
 //
-//   energy_derivative accuracy SIZE    the program's derivative against automatic differentiation, and differences inside
+//   energy_derivative accuracy SIZE    the program's derivative against automatic differentiation, and
+//   differences inside
 //                                      the elements over their perturbation
-//   energy_derivative time SIZE...     seconds of one local sweep, and of a global perturbation of every component for
+//   energy_derivative time SIZE...     seconds of one local sweep, and of a global perturbation of every
+//   component for
 //                                      meshes below 500 nodes
 //
 // SIZE is the element size in mm. Prints one line per result, for scripts to read.
@@ -52,15 +54,19 @@ namespace
         , model(parameters.step_model())
         , process(parameters.process(50.))
         , physics(process.at_stroke(0.))
-        , contact(make_contact_set(
-            scene.mesh,
-            scene.topology,
-            scene.dies,
-            physics.dies,
-            find_contact_pairs(scene.topology, scene.dies, physics.dies, scene.mesh.X, model.ramp, model.reach),
-            model.ramp,
-            parameters.press.stroke / parameters.press.increments / process.speed(),
-            scene.mesh.X))
+        , contact(make_contact_set(scene.mesh,
+                                   scene.topology,
+                                   scene.dies,
+                                   physics.dies,
+                                   find_contact_pairs(scene.topology,
+                                                      scene.dies,
+                                                      physics.dies,
+                                                      scene.mesh.X,
+                                                      model.ramp,
+                                                      model.reach),
+                                   model.ramp,
+                                   parameters.press.stroke / parameters.press.increments / process.speed(),
+                                   scene.mesh.X))
         , stage(scene, physics, contact, scene.mesh.X)
         , W(scene.mesh)
     {
@@ -98,7 +104,10 @@ namespace
     ActiveSet          active;
   };
 
-  NortonHoff<Dual> dual(const NortonHoff<double> &law) { return {Dual(law.K), Dual(law.m), Dual(law.e0)}; }
+  NortonHoff<Dual> dual(const NortonHoff<double> &law)
+  {
+    return {Dual(law.K), Dual(law.m), Dual(law.e0)};
+  }
 
   Vector3<Dual> dual(const Vec3 &v)
   {
@@ -110,12 +119,18 @@ namespace
 
   ContactNode<Dual> dual(const ContactNode<double> &node)
   {
-    return {dual(node.u), dual(node.n),    Dual(node.delta), Dual(node.tau), Dual(node.S),
-            Dual(node.Sf), Dual(node.alpha), node.active};
+    return {dual(node.u),
+            dual(node.n),
+            Dual(node.delta),
+            Dual(node.tau),
+            Dual(node.S),
+            Dual(node.Sf),
+            Dual(node.alpha),
+            node.active};
   }
 
-  /// Runs over all cells and contact nodes; `cell(geometry, w, a, i)` and `node(contact node, i)` are the derivatives of one of
-  /// them in one velocity component.
+  /// Runs over all cells and contact nodes; `cell(geometry, w, a, i)` and `node(contact node, i)` are the
+  /// derivatives of one of them in one velocity component.
   template <typename OfCell, typename OfNode>
   NodalVectors<double> gather(const Equilibrium &e, const OfCell &cell, const OfNode &node)
   {
@@ -138,7 +153,10 @@ namespace
     const ContactLaw<Dual> contact{Dual(e.physics.contact.rho), Dual(e.physics.contact.v0)};
     return gather(
       e,
-      [&](const CellGeometry<double> &geometry, const CellValues<double> &w, const unsigned int a, const unsigned int i) {
+      [&](const CellGeometry<double> &geometry,
+          const CellValues<double>   &w,
+          const unsigned int          a,
+          const unsigned int          i) {
         CellGeometry<Dual> g;
         CellValues<Dual>   x;
         g.volume = Dual(geometry.volume);
@@ -153,7 +171,7 @@ namespace
         return cell_dissipation(g, x, law).dx(0);
       },
       [&](const ContactNode<double> &node, const unsigned int i) {
-        ContactNode<Dual> x       = dual(node);
+        ContactNode<Dual> x    = dual(node);
         x.u[i].fastAccessDx(0) = 1.;
         return friction_power(x, law, contact).dx(0);
       });
@@ -164,7 +182,10 @@ namespace
   {
     return gather(
       e,
-      [&](const CellGeometry<double> &geometry, CellValues<double> w, const unsigned int a, const unsigned int i) {
+      [&](const CellGeometry<double> &geometry,
+          CellValues<double>          w,
+          const unsigned int          a,
+          const unsigned int          i) {
         const double here = cell_dissipation(geometry, w, e.physics.law);
         w.V[a][i] += step;
         return (cell_dissipation(geometry, w, e.physics.law) - here) / step;
