@@ -18,12 +18,12 @@ namespace
     else if (command.version)
       std::cout << "Retroforge " << retroforge::version << ' ' << retroforge::commit << '\n';
     else
-      {
-        dealii::ParameterHandler prm;
-        retroforge::Parameters   parameters;
-        parameters.add_parameters(prm, {"lower", "upper"});
-        retroforge::print_parameters(prm, std::cout);
-      }
+    {
+      dealii::ParameterHandler prm;
+      retroforge::Parameters   parameters;
+      parameters.add_parameters(prm, {"lower", "upper"});
+      retroforge::print_parameters(prm, std::cout);
+    }
     return 0;
   }
 } // namespace
@@ -32,22 +32,22 @@ int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   try
-    {
-      const auto command = retroforge::CommandLine::parse(argc, argv);
-      if (command.help || command.version || command.print_parameters)
-        return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0 ? answer(command) : 0;
-      return retroforge::Simulation(command, MPI_COMM_WORLD).run();
-    }
+  {
+    const auto command = retroforge::CommandLine::parse(argc, argv);
+    if (command.help || command.version || command.print_parameters)
+      return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0 ? answer(command) : 0;
+    return retroforge::Simulation(command, MPI_COMM_WORLD).run();
+  }
   catch (const std::exception &problem)
-    {
-      // An error of all ranks is told once: the first speaks at once and ends the others. One that only another rank
-      // met is told by that rank, a moment later.
-      const bool alone = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
-      if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
-        std::this_thread::sleep_for(std::chrono::seconds(2));
-      std::cerr << "retroforge: " << problem.what() << std::endl;
-      if (!alone)
-        MPI_Abort(MPI_COMM_WORLD, 1);
-      return 1;
-    }
+  {
+    // An error of all ranks is told once: the first speaks at once and ends the others. One that only another
+    // rank met is told by that rank, a moment later.
+    const bool alone = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
+    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
+      std::this_thread::sleep_for(std::chrono::seconds(2));
+    std::cerr << "retroforge: " << problem.what() << std::endl;
+    if (!alone)
+      MPI_Abort(MPI_COMM_WORLD, 1);
+    return 1;
+  }
 }

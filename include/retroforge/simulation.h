@@ -14,8 +14,8 @@ namespace retroforge
 {
   class RecordWriter;
 
-  /// The program: a case forged forwards, differentiated backwards, and checked. Members stand in the order in which
-  /// data flows through them.
+  /// The program: a case forged forwards, differentiated backwards, and checked. Members stand in the order
+  /// in which data flows through them.
   class Simulation
   {
   public:

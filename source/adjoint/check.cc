@@ -12,13 +12,15 @@ namespace retroforge
   {
     using namespace dealii::Patterns;
     prm.enter_subsection("Check");
-    prm.add_parameter("steps",
-                      steps,
-                      "Steps of the finite differences, relative to the parameter's value or the billet's size. "
-                      "Units: none.");
-    prm.add_parameter("free differences",
-                      free,
-                      "Also run with everything decided anew: shows the jumps that decisions make. Units: none.");
+    prm.add_parameter(
+      "steps",
+      steps,
+      "Steps of the finite differences, relative to the parameter's value or the billet's size. "
+      "Units: none.");
+    prm.add_parameter(
+      "free differences",
+      free,
+      "Also run with everything decided anew: shows the jumps that decisions make. Units: none.");
     prm.add_parameter("taylor start",
                       taylor_start,
                       "Largest relative step of the Taylor test. Units: none.",
@@ -32,7 +34,8 @@ namespace retroforge
                       tangent_bar,
                       "Relative difference allowed between adjoint and direct method. Units: none.",
                       Double(0.));
-    prm.add_parameter("taylor bar", taylor_bar, "Least order of the Taylor remainder. Units: none.", Double(0.));
+    prm.add_parameter(
+      "taylor bar", taylor_bar, "Least order of the Taylor remainder. Units: none.", Double(0.));
     prm.leave_subsection();
   }
 
@@ -53,9 +56,9 @@ namespace retroforge
     /// The objective along one direction: t -> Phi(mu + t mu_dot, shift_dot t).
     struct Line
     {
-      const std::vector<double>  &mu;
-      std::vector<double>         mu_dot;
-      NodalVectors<double>        shift_dot;
+      const std::vector<double> &mu;
+      std::vector<double>        mu_dot;
+      NodalVectors<double>       shift_dot;
 
       double operator()(const decltype(ObjectiveOracle::free) &objective, const double t) const
       {
@@ -66,27 +69,32 @@ namespace retroforge
       }
     };
 
-    CheckRow check_line(const CheckParameters &parameters, const Line &line, const double value, const double scale, const ObjectiveOracle &oracle, CheckRow row)
+    CheckRow check_line(const CheckParameters &parameters,
+                        const Line            &line,
+                        const double           value,
+                        const double           scale,
+                        const ObjectiveOracle &oracle,
+                        CheckRow               row)
     {
       row.tangent = oracle.tangent(line.mu_dot, line.shift_dot);
       for (const double step : parameters.steps)
-        {
-          const double  h    = step * scale;
-          const double  plus = line(oracle.replayed, h), minus = line(oracle.replayed, -h);
-          DifferenceRow d{step, (plus - minus) / (2. * h), (plus - value) / h, (value - minus) / h, NAN};
-          if (parameters.free)
-            d.free_central = (line(oracle.free, h) - line(oracle.free, -h)) / (2. * h);
-          row.steps.push_back(d);
-        }
+      {
+        const double  h    = step * scale;
+        const double  plus = line(oracle.replayed, h), minus = line(oracle.replayed, -h);
+        DifferenceRow d{step, (plus - minus) / (2. * h), (plus - value) / h, (value - minus) / h, NAN};
+        if (parameters.free)
+          d.free_central = (line(oracle.free, h) - line(oracle.free, -h)) / (2. * h);
+        row.steps.push_back(d);
+      }
       double last = 0.;
       for (unsigned int i = 0; i <= parameters.taylor_halvings; ++i)
-        {
-          const double h         = parameters.taylor_start * scale * std::pow(0.5, i);
-          const double remainder = std::abs(line(oracle.replayed, h) - value - h * row.adjoint);
-          if (i > 0)
-            row.taylor_orders.push_back(std::log2(last / remainder));
-          last = remainder;
-        }
+      {
+        const double h         = parameters.taylor_start * scale * std::pow(0.5, i);
+        const double remainder = std::abs(line(oracle.replayed, h) - value - h * row.adjoint);
+        if (i > 0)
+          row.taylor_orders.push_back(std::log2(last / remainder));
+        last = remainder;
+      }
       // A remainder at rounding has no order: the objective is linear in this parameter.
       const bool linear = last <= 1e-9 * std::abs(parameters.taylor_start * scale * row.adjoint);
       row.passed        = row.tangent_error() <= parameters.tangent_bar &&
@@ -130,27 +138,27 @@ namespace retroforge
     std::vector<CheckRow>      rows;
     const NodalVectors<double> still(X_0_bar.size());
     for (std::size_t j = 0; j < mu.size(); ++j)
-      {
-        std::vector<double> mu_dot(mu.size(), 0.);
-        mu_dot[j]             = 1.;
-        const auto &parameter = design.parameters()[j];
-        rows.push_back(check_line(parameters,
-                                  {mu, mu_dot, still},
-                                  value,
-                                  parameter.scale,
-                                  oracle,
-                                  {parameter.name, parameter.unit, gradient[j], 0., {}, {}, false}));
-      }
+    {
+      std::vector<double> mu_dot(mu.size(), 0.);
+      mu_dot[j]             = 1.;
+      const auto &parameter = design.parameters()[j];
+      rows.push_back(check_line(parameters,
+                                {mu, mu_dot, still},
+                                value,
+                                parameter.scale,
+                                oracle,
+                                {parameter.name, parameter.unit, gradient[j], 0., {}, {}, false}));
+    }
     std::mt19937                           generator(1);
     std::uniform_real_distribution<double> uniform(-1., 1.);
     NodalVectors<double>                   direction(X_0_bar.size());
     double                                 slope = 0.;
     for (std::size_t k = 0; k < direction.size(); ++k)
       for (unsigned int i = 0; i < 3; ++i)
-        {
-          direction[k][i] = uniform(generator);
-          slope += direction[k][i] * X_0_bar[k][i];
-        }
+      {
+        direction[k][i] = uniform(generator);
+        slope += direction[k][i] * X_0_bar[k][i];
+      }
     CheckParameters small = parameters;
     for (double &step : small.steps)
       step *= 0.1;
@@ -166,37 +174,39 @@ namespace retroforge
 
   void print(const std::vector<CheckRow> &rows, std::ostream &out)
   {
-    out << "\n  derivative of the energy          adjoint        adjoint/tangent-1  step     replayed   forward    free       "
+    out << "\n  derivative of the energy          adjoint        adjoint/tangent-1  step     replayed   "
+           "forward    free       "
            "Taylor orders\n"
         << std::scientific;
     for (const CheckRow &row : rows)
       for (std::size_t i = 0; i < std::max<std::size_t>(1, row.steps.size()); ++i)
+      {
+        if (i == 0)
+          out << "  " << std::left << std::setw(28) << row.parameter << std::right << std::setprecision(9)
+              << std::setw(17) << row.adjoint << std::setprecision(1) << std::setw(15) << row.tangent_error()
+              << "    ";
+        else
+          out << std::string(66, ' ');
+        if (i < row.steps.size())
         {
-          if (i == 0)
-            out << "  " << std::left << std::setw(28) << row.parameter << std::right << std::setprecision(9)
-                << std::setw(17) << row.adjoint << std::setprecision(1) << std::setw(15) << row.tangent_error() << "    ";
+          const auto &d = row.steps[i];
+          out << std::setprecision(0) << std::setw(10) << d.step << std::setprecision(1) << std::setw(11)
+              << relative(d.replayed_central, row.adjoint) << std::setw(11)
+              << relative(d.replayed_forward, row.adjoint) << std::setw(11);
+          if (std::isnan(d.free_central))
+            out << "-";
           else
-            out << std::string(66, ' ');
-          if (i < row.steps.size())
-            {
-              const auto &d = row.steps[i];
-              out << std::setprecision(0) << std::setw(10) << d.step << std::setprecision(1) << std::setw(11)
-                  << relative(d.replayed_central, row.adjoint) << std::setw(11)
-                  << relative(d.replayed_forward, row.adjoint) << std::setw(11);
-              if (std::isnan(d.free_central))
-                out << "-";
-              else
-                out << relative(d.free_central, row.adjoint);
-            }
-          if (i == 0)
-            {
-              out << std::fixed << std::setprecision(2) << "  ";
-              for (const double order : row.taylor_orders)
-                out << ' ' << order;
-              out << (row.passed ? "  passed" : "  FAILED") << std::scientific;
-            }
-          out << '\n';
+            out << relative(d.free_central, row.adjoint);
         }
+        if (i == 0)
+        {
+          out << std::fixed << std::setprecision(2) << "  ";
+          for (const double order : row.taylor_orders)
+            out << ' ' << order;
+          out << (row.passed ? "  passed" : "  FAILED") << std::scientific;
+        }
+        out << '\n';
+      }
     out << std::defaultfloat << std::setprecision(6);
   }
 } // namespace retroforge

@@ -14,13 +14,13 @@ namespace retroforge
     AdjointResult        result{NodalVectors<double>(X_N.size()), ProcessBar(scene.dies.size())};
     NodalVectors<double> X = X_N;
     for (unsigned int i = n; i-- > 0;)
-      {
-        const IncrementRecord &record = source(i);
-        const double           dt     = record.step / process.speed();
-        for (std::size_t k = 0; k < X.size(); ++k)
-          X[k] -= dt * record.solves.back().V[k];
-        increment.reverse(process, X, record, 1., result.X_0, result.process);
-      }
+    {
+      const IncrementRecord &record = source(i);
+      const double           dt     = record.step / process.speed();
+      for (std::size_t k = 0; k < X.size(); ++k)
+        X[k] -= dt * record.solves.back().V[k];
+      increment.reverse(process, X, record, 1., result.X_0, result.process);
+    }
     result.process.sum(scene.partition.comm);
     return result;
   }
@@ -36,11 +36,11 @@ namespace retroforge
     for (unsigned int i = 0; i < n; ++i)
       X = increment.tangent(process, X, source(i), energy);
     for (Dual *part : {&energy.deformation, &energy.friction})
-      {
-        const double value = scene.partition.sum(part->val()), dot = scene.partition.sum(part->dx(0));
-        *part                 = Dual(value);
-        part->fastAccessDx(0) = dot;
-      }
+    {
+      const double value = scene.partition.sum(part->val()), dot = scene.partition.sum(part->dx(0));
+      *part                 = Dual(value);
+      part->fastAccessDx(0) = dot;
+    }
     return energy;
   }
 } // namespace retroforge

@@ -15,9 +15,7 @@ namespace retroforge
 
     /// Friction force / dv = S^f alpha K r^((m-1)/2),  r = |dv|^2 + v0^2.
     template <typename Number>
-    Number friction_factor(const ContactNode<Number> &node,
-                           const NortonHoff<Number>  &law,
-                           const Number              &r)
+    Number friction_factor(const ContactNode<Number> &node, const NortonHoff<Number> &law, const Number &r)
     {
       return node.Sf * node.alpha * law.K * power(r, Number(0.5 * (law.m - 1.)));
     }
@@ -51,7 +49,10 @@ namespace retroforge
     }
 
     /// The common last step of the two reverse sweeps over a node: from (dv_bar, h_bar) to u, n, delta, tau.
-    void reverse_kinematics(const ContactNode<double> &node, const Vec3 &dv_bar, const double h_bar, ContactNodeBar &bar)
+    void reverse_kinematics(const ContactNode<double> &node,
+                            const Vec3                &dv_bar,
+                            const double               h_bar,
+                            ContactNodeBar            &bar)
     {
       const double un = node.u * node.n, dv_n = dv_bar * node.n;
       bar.u += dv_bar - dv_n * node.n + h_bar * node.n;
@@ -93,11 +94,11 @@ namespace retroforge
     for (unsigned int d = 0; d < dies.size(); ++d)
       for (NodeIndex k = 0; k < X.size(); ++k)
         if (topology.is_on_surface(k))
-          {
-            const double delta = dies[d].project(X[k], states[d].displacement).delta;
-            if (delta <= reach)
-              pairs.push_back({k, d, delta <= ramp.width});
-          }
+        {
+          const double delta = dies[d].project(X[k], states[d].displacement).delta;
+          if (delta <= reach)
+            pairs.push_back({k, d, delta <= ramp.width});
+        }
     return pairs;
   }
 
@@ -118,31 +119,31 @@ namespace retroforge
     contact.layer = layer;
     std::map<std::pair<unsigned int, NodeIndex>, unsigned int> index; // (die, node) -> pair
     for (const ContactPair &pair : pairs)
-      {
-        index[{pair.die, pair.node}] = contact.projections.size();
-        contact.projections.push_back(dies[pair.die].project(X[pair.node], states[pair.die].displacement));
-        contact.ramps.push_back(ramp(contact.projections.back().delta, pair.touching));
-      }
+    {
+      index[{pair.die, pair.node}] = contact.projections.size();
+      contact.projections.push_back(dies[pair.die].project(X[pair.node], states[pair.die].displacement));
+      contact.ramps.push_back(ramp(contact.projections.back().delta, pair.touching));
+    }
     // A face is visited from its first pair of each die.
     for (unsigned int p = 0; p < pairs.size(); ++p)
       if (value_of(states[pairs[p].die].friction) != 0. && value_of(contact.ramps[p]) > 0.)
         for (const unsigned int f : topology.surface_faces[pairs[p].node])
+        {
+          typename ContactSet<Number>::Face face{f, {}, Number(1.)};
+          bool                              whole = true;
+          for (unsigned int c = 0; c < 3 && whole; ++c)
           {
-            typename ContactSet<Number>::Face face{f, {}, Number(1.)};
-            bool                              whole = true;
-            for (unsigned int c = 0; c < 3 && whole; ++c)
-              {
-                const auto found = index.find({pairs[p].die, mesh.faces[f].nodes[c]});
-                whole            = found != index.end() && found->second >= p;
-                if (!whole)
-                  break;
-                face.points[c] = found->second;
-                face.weight *= contact.ramps[found->second];
-                whole = value_of(contact.ramps[found->second]) > 0.;
-              }
-            if (whole)
-              contact.friction_faces.push_back(face);
+            const auto found = index.find({pairs[p].die, mesh.faces[f].nodes[c]});
+            whole            = found != index.end() && found->second >= p;
+            if (!whole)
+              break;
+            face.points[c] = found->second;
+            face.weight *= contact.ramps[found->second];
+            whole = value_of(contact.ramps[found->second]) > 0.;
           }
+          if (whole)
+            contact.friction_faces.push_back(face);
+        }
     return contact;
   }
 
@@ -154,14 +155,12 @@ namespace retroforge
                            ContactSensitivity       &sensitivity)
   {
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-      {
-        const ContactPair &pair = contact.pairs[p];
-        const double delta_bar  = bar.delta[p] + bar.ramp[p] * ramp.derivative(contact.projections[p].delta);
-        dies[pair.die].reverse_project(delta_bar,
-                                       bar.n[p],
-                                       X_bar[pair.node],
-                                       sensitivity.dies[pair.die].displacement);
-      }
+    {
+      const ContactPair &pair = contact.pairs[p];
+      const double delta_bar  = bar.delta[p] + bar.ramp[p] * ramp.derivative(contact.projections[p].delta);
+      dies[pair.die].reverse_project(
+        delta_bar, bar.n[p], X_bar[pair.node], sensitivity.dies[pair.die].displacement);
+    }
   }
 
   template <typename Number>
@@ -177,11 +176,11 @@ namespace retroforge
       for (const unsigned int f : topology.surface_faces[contact.pairs[p].node])
         areas.S[p] += face_area(mesh.faces[f], X) / 3.;
     for (const auto &face : contact.friction_faces)
-      {
-        const Number third = face.weight * face_area(mesh.faces[face.face], X) / 3.;
-        for (const unsigned int p : face.points)
-          areas.Sf[p] += third;
-      }
+    {
+      const Number third = face.weight * face_area(mesh.faces[face.face], X) / 3.;
+      for (const unsigned int p : face.points)
+        areas.Sf[p] += third;
+    }
     return areas;
   }
 
@@ -198,44 +197,50 @@ namespace retroforge
         for (const unsigned int f : topology.surface_faces[contact.pairs[p].node])
           reverse_face_area(mesh.faces[f], X, areas_bar.S[p] / 3., X_bar);
     for (const auto &face : contact.friction_faces)
-      {
-        const double third_bar =
-          (areas_bar.Sf[face.points[0]] + areas_bar.Sf[face.points[1]] + areas_bar.Sf[face.points[2]]) / 3.;
-        reverse_face_area(mesh.faces[face.face], X, third_bar * face.weight, X_bar);
-        const double weight_bar = third_bar * face_area(mesh.faces[face.face], X);
-        for (unsigned int c = 0; c < 3; ++c)
-          bar.ramp[face.points[c]] +=
-            weight_bar * contact.ramps[face.points[(c + 1) % 3]] * contact.ramps[face.points[(c + 2) % 3]];
-      }
+    {
+      const double third_bar =
+        (areas_bar.Sf[face.points[0]] + areas_bar.Sf[face.points[1]] + areas_bar.Sf[face.points[2]]) / 3.;
+      reverse_face_area(mesh.faces[face.face], X, third_bar * face.weight, X_bar);
+      const double weight_bar = third_bar * face_area(mesh.faces[face.face], X);
+      for (unsigned int c = 0; c < 3; ++c)
+        bar.ramp[face.points[c]] +=
+          weight_bar * contact.ramps[face.points[(c + 1) % 3]] * contact.ramps[face.points[(c + 2) % 3]];
+    }
   }
 
   template <typename Number>
-  Vector3<Number> contact_force(const ContactNode<Number> &node, const NortonHoff<Number> &law, const ContactLaw<Number> &contact)
+  Vector3<Number> contact_force(const ContactNode<Number> &node,
+                                const NortonHoff<Number>  &law,
+                                const ContactLaw<Number>  &contact)
   {
     Vector3<Number> force;
     if (node.active)
       force += node.n * Number(contact.rho * node.S * approach_excess(node));
     if (value_of(node.Sf) * value_of(node.alpha) != 0.)
-      {
-        const Vector3<Number> dv = slip(node);
-        force += dv * friction_factor(node, law, Number(dv * dv + contact.v0 * contact.v0));
-      }
+    {
+      const Vector3<Number> dv = slip(node);
+      force += dv * friction_factor(node, law, Number(dv * dv + contact.v0 * contact.v0));
+    }
     return force;
   }
 
   template <typename Number>
-  Number friction_power(const ContactNode<Number> &node, const NortonHoff<Number> &law, const ContactLaw<Number> &contact)
+  Number friction_power(const ContactNode<Number> &node,
+                        const NortonHoff<Number>  &law,
+                        const ContactLaw<Number>  &contact)
   {
     if (value_of(node.Sf) * value_of(node.alpha) == 0.)
       return Number(0.);
-    const Vector3<Number> dv = slip(node);
+    const Vector3<Number> dv  = slip(node);
     const Number          dv2 = dv * dv;
     return friction_factor(node, law, Number(dv2 + contact.v0 * contact.v0)) * dv2;
   }
 
-  double contact_potential(const ContactNode<double> &node, const NortonHoff<double> &law, const ContactLaw<double> &contact)
+  double contact_potential(const ContactNode<double> &node,
+                           const NortonHoff<double>  &law,
+                           const ContactLaw<double>  &contact)
   {
-    const double h = node.active ? approach_excess(node) : 0.;
+    const double h  = node.active ? approach_excess(node) : 0.;
     const Vec3   dv = slip(node);
     const double r  = dv * dv + contact.v0 * contact.v0;
     return 0.5 * contact.rho * node.S * h * h +
@@ -250,16 +255,16 @@ namespace retroforge
     if (node.active)
       tangent += contact.rho * node.S * outer_product(node.n, node.n);
     if (has_friction(node))
-      {
-        const Vec3   dv     = slip(node);
-        const double r      = dv * dv + contact.v0 * contact.v0;
-        const double factor = friction_factor(node, law, r);
-        tangent -= factor * outer_product(node.n, node.n);
-        for (unsigned int i = 0; i < 3; ++i)
-          tangent[i][i] += factor;
-        if (law.m != 1.)
-          tangent += factor * (law.m - 1.) / r * outer_product(dv, dv);
-      }
+    {
+      const Vec3   dv     = slip(node);
+      const double r      = dv * dv + contact.v0 * contact.v0;
+      const double factor = friction_factor(node, law, r);
+      tangent -= factor * outer_product(node.n, node.n);
+      for (unsigned int i = 0; i < 3; ++i)
+        tangent[i][i] += factor;
+      if (law.m != 1.)
+        tangent += factor * (law.m - 1.) / r * outer_product(dv, dv);
+    }
     return tangent;
   }
 
@@ -271,27 +276,27 @@ namespace retroforge
     ContactNodeBar bar;
     double         h_bar = 0.;
     if (node.active)
-      {
-        const double h = approach_excess(node), lambda_n = lambda * node.n;
-        h_bar   = contact.rho * node.S * lambda_n;
-        bar.S   = contact.rho * h * lambda_n;
-        bar.rho = node.S * h * lambda_n;
-        bar.n   = contact.rho * node.S * h * lambda;
-      }
+    {
+      const double h = approach_excess(node), lambda_n = lambda * node.n;
+      h_bar   = contact.rho * node.S * lambda_n;
+      bar.S   = contact.rho * h * lambda_n;
+      bar.rho = node.S * h * lambda_n;
+      bar.n   = contact.rho * node.S * h * lambda;
+    }
     Vec3 dv_bar;
     if (has_friction(node))
-      {
-        const Vec3   dv     = slip(node);
-        const double r      = dv * dv + contact.v0 * contact.v0;
-        const double factor = friction_factor(node, law, r), product = lambda * dv;
-        const double slope  = law.m == 1. ? 0. : (law.m - 1.) / r;
-        bar.Sf              = factor * product / node.Sf;
-        bar.alpha           = factor * product / node.alpha;
-        bar.K               = factor * product / law.K;
-        bar.m               = factor * product * 0.5 * log_or_zero(r);
-        bar.v0              = factor * product * slope * contact.v0;
-        dv_bar              = factor * (lambda + slope * product * dv);
-      }
+    {
+      const Vec3   dv     = slip(node);
+      const double r      = dv * dv + contact.v0 * contact.v0;
+      const double factor = friction_factor(node, law, r), product = lambda * dv;
+      const double slope = law.m == 1. ? 0. : (law.m - 1.) / r;
+      bar.Sf             = factor * product / node.Sf;
+      bar.alpha          = factor * product / node.alpha;
+      bar.K              = factor * product / law.K;
+      bar.m              = factor * product * 0.5 * log_or_zero(r);
+      bar.v0             = factor * product * slope * contact.v0;
+      dv_bar             = factor * (lambda + slope * product * dv);
+    }
     reverse_kinematics(node, dv_bar, h_bar, bar);
     return bar;
   }
@@ -318,27 +323,23 @@ namespace retroforge
     return bar;
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                                                  \
-  template Number             FrictionRamp::operator()(const Number &, bool) const;                     \
-  template ContactSet<Number> make_contact_set(const TetMesh &,                                         \
-                                               const Topology &,                                        \
-                                               const std::vector<Die> &,                                \
-                                               const std::vector<DieState<Number>> &,                   \
-                                               const std::vector<ContactPair> &,                        \
-                                               const FrictionRamp &,                                    \
-                                               const Number &,                                          \
-                                               const NodalVectors<Number> &,                            \
-                                               double);                                                 \
-  template ContactAreas<Number> contact_areas(const TetMesh &,                                          \
-                                              const Topology &,                                         \
-                                              const ContactSet<Number> &,                               \
-                                              const NodalVectors<Number> &);                            \
-  template Vector3<Number>      contact_force(const ContactNode<Number> &,                              \
-                                         const NortonHoff<Number> &,                                    \
-                                         const ContactLaw<Number> &);                                   \
-  template Number               friction_power(const ContactNode<Number> &,                             \
-                                 const NortonHoff<Number> &,                                            \
-                                 const ContactLaw<Number> &);
+#define RETROFORGE_INSTANTIATE(Number)                                                            \
+  template Number FrictionRamp::operator()(const Number &, bool) const;                           \
+  template ContactSet<Number>   make_contact_set(const TetMesh &,                                 \
+                                                 const Topology &,                                \
+                                                 const std::vector<Die> &,                        \
+                                                 const std::vector<DieState<Number>> &,           \
+                                                 const std::vector<ContactPair> &,                \
+                                                 const FrictionRamp &,                            \
+                                                 const Number &,                                  \
+                                                 const NodalVectors<Number> &,                    \
+                                                 double);                                         \
+  template ContactAreas<Number> contact_areas(                                                    \
+    const TetMesh &, const Topology &, const ContactSet<Number> &, const NodalVectors<Number> &); \
+  template Vector3<Number> contact_force(                                                         \
+    const ContactNode<Number> &, const NortonHoff<Number> &, const ContactLaw<Number> &);         \
+  template Number friction_power(                                                                 \
+    const ContactNode<Number> &, const NortonHoff<Number> &, const ContactLaw<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE

@@ -92,8 +92,8 @@ namespace retroforge
       return pattern.description(Patterns::PatternBase::Text);
     }
 
-    /// From deal.II's description of a pattern. Lists of lists are told from their text: made a pattern again, deal.II
-    /// 9.4 mistakes the inner list's separator and length for the outer one's.
+    /// From deal.II's description of a pattern. Lists of lists are told from their text: made a pattern
+    /// again, deal.II 9.4 mistakes the inner list's separator and length for the outer one's.
     std::string in_plain_words(const std::string &description)
     {
       if (description.rfind("[List of <[List", 0) == 0)

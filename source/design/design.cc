@@ -33,27 +33,27 @@ namespace retroforge
                  const std::vector<DieParameters> &dies,
                  const Process<double>            &nominal_process,
                  const NodalVectors<double>       &nominal_positions)
-    : billet_(billet)
-    , dies_(dies)
-    , process_(nominal_process)
-    , X_(nominal_positions)
-    , rotation_(dealii::Physics::Transformations::Rotations::rotation_matrix_3d(
-        billet.rotation_axis / billet.rotation_axis.norm(),
-        billet.rotation_angle * dealii::numbers::PI / 180.))
-    , width_(billet.shape == "cylinder" ? 2. * billet.radius : billet.size[0])
+      : billet_(billet)
+      , dies_(dies)
+      , process_(nominal_process)
+      , X_(nominal_positions)
+      , rotation_(dealii::Physics::Transformations::Rotations::rotation_matrix_3d(
+          billet.rotation_axis / billet.rotation_axis.norm(),
+          billet.rotation_angle * dealii::numbers::PI / 180.))
+      , width_(billet.shape == "cylinder" ? 2. * billet.radius : billet.size[0])
   {
     for (const std::string &name : names)
-      {
-        const DesignParameter parameter = make(name);
-        for (const DesignParameter &other : parameters_)
-          if (other.kind == parameter.kind &&
-              (other.die == parameter.die || other.die == invalid_index || parameter.die == invalid_index))
-            throw Error("Design/parameters",
-                        "'" + name + "' and '" + other.name + "' set the same number",
-                        "parameters must be independent",
-                        "leave one of them out");
-        parameters_.push_back(parameter);
-      }
+    {
+      const DesignParameter parameter = make(name);
+      for (const DesignParameter &other : parameters_)
+        if (other.kind == parameter.kind &&
+            (other.die == parameter.die || other.die == invalid_index || parameter.die == invalid_index))
+          throw Error("Design/parameters",
+                      "'" + name + "' and '" + other.name + "' set the same number",
+                      "parameters must be independent",
+                      "leave one of them out");
+      parameters_.push_back(parameter);
+    }
   }
 
   std::vector<std::string> Design::available() const
@@ -67,14 +67,14 @@ namespace retroforge
       names.push_back("billet/radius");
     bool friction = false;
     for (const auto &die : dies_)
-      {
-        friction |= die.friction > 0.;
-        if (die.friction > 0.)
-          names.push_back("die " + die.name + "/friction");
-        if (die.velocity.norm() > 0.)
-          names.push_back("die " + die.name + "/speed");
-        names.push_back("die " + die.name + "/offset");
-      }
+    {
+      friction |= die.friction > 0.;
+      if (die.friction > 0.)
+        names.push_back("die " + die.name + "/friction");
+      if (die.velocity.norm() > 0.)
+        names.push_back("die " + die.name + "/speed");
+      names.push_back("die " + die.name + "/offset");
+    }
     if (friction)
       names.insert(names.end(), {"dies/friction", "contact/v0"});
     return names;
@@ -84,13 +84,13 @@ namespace retroforge
   {
     const auto known = available();
     if (std::find(known.begin(), known.end(), name) == known.end())
-      {
-        const std::string near = nearest_name(name, known, 6);
-        throw Error("Design/parameters",
-                    "'" + name + "' is not a parameter of this scene",
-                    "it offers " + join(known),
-                    near.empty() ? "name some of these" : "did you mean '" + near + "'?");
-      }
+    {
+      const std::string near = nearest_name(name, known, 6);
+      throw Error("Design/parameters",
+                  "'" + name + "' is not a parameter of this scene",
+                  "it offers " + join(known),
+                  near.empty() ? "name some of these" : "did you mean '" + near + "'?");
+    }
     if (name == "material/K")
       return {name, "MPa s^m", Kind::consistency, invalid_index, process_.law.K, process_.law.K};
     if (name == "material/m")
@@ -106,30 +106,30 @@ namespace retroforge
     if (name == "billet/radius")
       return {name, "mm", Kind::radius, invalid_index, billet_.radius, billet_.radius};
     if (name == "dies/friction")
-      {
-        double alpha = 0.;
-        for (const auto &die : dies_)
-          if (die.friction > 0.)
-            {
-              if (alpha > 0. && alpha != die.friction)
-                throw Error("Design/parameters",
-                            "'dies/friction' stands for all dies with friction, but their coefficients differ",
-                            "one number must describe them all",
-                            "name each die, as in 'die " + die.name + "/friction'");
-              alpha = die.friction;
-            }
-        return {name, "mm^(-m)", Kind::friction, invalid_index, alpha, alpha};
-      }
+    {
+      double alpha = 0.;
+      for (const auto &die : dies_)
+        if (die.friction > 0.)
+        {
+          if (alpha > 0. && alpha != die.friction)
+            throw Error("Design/parameters",
+                        "'dies/friction' stands for all dies with friction, but their coefficients differ",
+                        "one number must describe them all",
+                        "name each die, as in 'die " + die.name + "/friction'");
+          alpha = die.friction;
+        }
+      return {name, "mm^(-m)", Kind::friction, invalid_index, alpha, alpha};
+    }
     for (unsigned int d = 0; d < dies_.size(); ++d)
-      {
-        const double friction = dies_[d].friction, speed = dies_[d].velocity.norm();
-        if (name == "die " + dies_[d].name + "/friction")
-          return {name, "mm^(-m)", Kind::friction, d, friction, friction};
-        if (name == "die " + dies_[d].name + "/speed")
-          return {name, "mm/s", Kind::speed, d, speed, speed};
-        if (name == "die " + dies_[d].name + "/offset")
-          return {name, "mm", Kind::offset, d, 0., width_};
-      }
+    {
+      const double friction = dies_[d].friction, speed = dies_[d].velocity.norm();
+      if (name == "die " + dies_[d].name + "/friction")
+        return {name, "mm^(-m)", Kind::friction, d, friction, friction};
+      if (name == "die " + dies_[d].name + "/speed")
+        return {name, "mm/s", Kind::speed, d, speed, speed};
+      if (name == "die " + dies_[d].name + "/offset")
+        return {name, "mm", Kind::offset, d, 0., width_};
+    }
     throw Error("Design/parameters", name, "unknown", "see the list of parameters");
   }
 
@@ -152,14 +152,14 @@ namespace retroforge
         factor *= mu[j] / parameters_[j].nominal;
     NodalVectors<Number> X(X_.size());
     for (std::size_t k = 0; k < X.size(); ++k)
-      {
-        // In the billet's own axes, x and y grow from the axis through the centre of the base.
-        Vec3 own = transpose(rotation_) * (X_[k] - billet_.translation) - billet_.base_centre;
-        own[2]   = 0.;
-        const Vec3 across = rotation_ * own;
-        for (unsigned int i = 0; i < 3; ++i)
-          X[k][i] = X_[k][i] + (factor - 1.) * across[i];
-      }
+    {
+      // In the billet's own axes, x and y grow from the axis through the centre of the base.
+      Vec3 own          = transpose(rotation_) * (X_[k] - billet_.translation) - billet_.base_centre;
+      own[2]            = 0.;
+      const Vec3 across = rotation_ * own;
+      for (unsigned int i = 0; i < 3; ++i)
+        X[k][i] = X_[k][i] + (factor - 1.) * across[i];
+    }
     return X;
   }
 
@@ -171,55 +171,55 @@ namespace retroforge
                             {},
                             process_.leading_die};
     for (const auto &die : process_.dies)
+    {
+      DieState<Number> state;
+      for (unsigned int i = 0; i < 3; ++i)
       {
-        DieState<Number> state;
-        for (unsigned int i = 0; i < 3; ++i)
-          {
-            state.velocity[i]     = Number(die.velocity[i]);
-            state.displacement[i] = Number(die.displacement[i]);
-          }
-        state.friction = Number(die.friction);
-        process.dies.push_back(state);
+        state.velocity[i]     = Number(die.velocity[i]);
+        state.displacement[i] = Number(die.displacement[i]);
       }
+      state.friction = Number(die.friction);
+      process.dies.push_back(state);
+    }
     for (unsigned int j = 0; j < parameters_.size(); ++j)
+    {
+      const DesignParameter &parameter = parameters_[j];
+      switch (parameter.kind)
       {
-        const DesignParameter &parameter = parameters_[j];
-        switch (parameter.kind)
-          {
-            case Kind::consistency:
-              process.law.K = mu[j];
-              break;
-            case Kind::sensitivity:
-              process.law.m = mu[j];
-              break;
-            case Kind::strain_rate:
-              process.law.e0 = mu[j];
-              break;
-            case Kind::penalty:
-              process.contact.rho = mu[j];
-              break;
-            case Kind::slip:
-              process.contact.v0 = mu[j];
-              break;
-            case Kind::friction:
-              for (unsigned int d = 0; d < dies_.size(); ++d)
-                if (d == parameter.die || (parameter.die == invalid_index && dies_[d].friction > 0.))
-                  process.dies[d].friction = mu[j];
-              break;
-            case Kind::speed:
-              for (unsigned int i = 0; i < 3; ++i)
-                process.dies[parameter.die].velocity[i] =
-                  dies_[parameter.die].velocity[i] / parameter.nominal * mu[j];
-              break;
-            case Kind::offset:
-              for (unsigned int i = 0; i < 3; ++i)
-                process.dies[parameter.die].displacement[i] += dies_[parameter.die].facing[i] * mu[j];
-              break;
-            case Kind::stretch:
-            case Kind::radius:
-              break;
-          }
+        case Kind::consistency:
+          process.law.K = mu[j];
+          break;
+        case Kind::sensitivity:
+          process.law.m = mu[j];
+          break;
+        case Kind::strain_rate:
+          process.law.e0 = mu[j];
+          break;
+        case Kind::penalty:
+          process.contact.rho = mu[j];
+          break;
+        case Kind::slip:
+          process.contact.v0 = mu[j];
+          break;
+        case Kind::friction:
+          for (unsigned int d = 0; d < dies_.size(); ++d)
+            if (d == parameter.die || (parameter.die == invalid_index && dies_[d].friction > 0.))
+              process.dies[d].friction = mu[j];
+          break;
+        case Kind::speed:
+          for (unsigned int i = 0; i < 3; ++i)
+            process.dies[parameter.die].velocity[i] =
+              dies_[parameter.die].velocity[i] / parameter.nominal * mu[j];
+          break;
+        case Kind::offset:
+          for (unsigned int i = 0; i < 3; ++i)
+            process.dies[parameter.die].displacement[i] += dies_[parameter.die].facing[i] * mu[j];
+          break;
+        case Kind::stretch:
+        case Kind::radius:
+          break;
       }
+    }
     return process;
   }
 
@@ -234,24 +234,24 @@ namespace retroforge
   {
     std::vector<double> gradient;
     for (unsigned int j = 0; j < parameters_.size(); ++j)
+    {
+      const auto direction = along(mu, j);
+      const auto X         = positions(direction);
+      const auto p         = process(direction);
+      double     sum       = bar.K * p.law.K.dx(0) + bar.m * p.law.m.dx(0) + bar.e0 * p.law.e0.dx(0) +
+                   bar.rho * p.contact.rho.dx(0) + bar.v0 * p.contact.v0.dx(0);
+      for (std::size_t k = 0; k < X.size(); ++k)
+        for (unsigned int i = 0; i < 3; ++i)
+          sum += X_0_bar[k][i] * X[k][i].dx(0);
+      for (unsigned int d = 0; d < p.dies.size(); ++d)
       {
-        const auto    direction = along(mu, j);
-        const auto    X         = positions(direction);
-        const auto    p         = process(direction);
-        double        sum = bar.K * p.law.K.dx(0) + bar.m * p.law.m.dx(0) + bar.e0 * p.law.e0.dx(0) +
-                     bar.rho * p.contact.rho.dx(0) + bar.v0 * p.contact.v0.dx(0);
-        for (std::size_t k = 0; k < X.size(); ++k)
-          for (unsigned int i = 0; i < 3; ++i)
-            sum += X_0_bar[k][i] * X[k][i].dx(0);
-        for (unsigned int d = 0; d < p.dies.size(); ++d)
-          {
-            sum += bar.dies[d].friction * p.dies[d].friction.dx(0);
-            for (unsigned int i = 0; i < 3; ++i)
-              sum += bar.dies[d].velocity[i] * p.dies[d].velocity[i].dx(0) +
-                     bar.dies[d].displacement[i] * p.dies[d].displacement[i].dx(0);
-          }
-        gradient.push_back(sum);
+        sum += bar.dies[d].friction * p.dies[d].friction.dx(0);
+        for (unsigned int i = 0; i < 3; ++i)
+          sum += bar.dies[d].velocity[i] * p.dies[d].velocity[i].dx(0) +
+                 bar.dies[d].displacement[i] * p.dies[d].displacement[i].dx(0);
       }
+      gradient.push_back(sum);
+    }
     return gradient;
   }
 } // namespace retroforge

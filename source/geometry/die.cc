@@ -9,15 +9,17 @@ namespace retroforge
   {
     prm.enter_subsection("Die " + name);
     prm.add_parameter("point", point, "A point of the working face at the start of the run. Units: mm.");
-    prm.add_parameter("facing",
-                      facing,
-                      "Normal of the working face, pointing from the die to the workpiece; of any length. Units: none.");
+    prm.add_parameter(
+      "facing",
+      facing,
+      "Normal of the working face, pointing from the die to the workpiece; of any length. Units: none.");
     prm.add_parameter("velocity", velocity, "Velocity of the die, constant. Units: mm/s.");
-    prm.add_parameter("friction",
-                      friction,
-                      "alpha of the Norton friction law tau = -alpha K |dv|^(m-1) dv; 0 is a frictionless die. "
-                      "Units: mm^(-m).",
-                      dealii::Patterns::Double(0.));
+    prm.add_parameter(
+      "friction",
+      friction,
+      "alpha of the Norton friction law tau = -alpha K |dv|^(m-1) dv; 0 is a frictionless die. "
+      "Units: mm^(-m).",
+      dealii::Patterns::Double(0.));
     prm.leave_subsection();
   }
 

@@ -13,15 +13,17 @@ namespace retroforge
                       consistency,
                       "K of the Norton-Hoff law s = 2K (sqrt3 e)^(m-1) eps. Units: MPa s^m.",
                       Double(1e-300));
-    prm.add_parameter("strain rate sensitivity",
-                      sensitivity,
-                      "m of the Norton-Hoff law: 1 is a Newtonian fluid, hot steel is near 0.14. Units: none.",
-                      Double(1e-3, 1.));
-    prm.add_parameter("regularising strain rate",
-                      minimal_strain_rate,
-                      "e0 in e^2 -> e^2 + e0^2: keeps the viscosity finite where the metal is still. Part of the "
-                      "model. Zero only for m = 1. Units: 1/s.",
-                      Double(0.));
+    prm.add_parameter(
+      "strain rate sensitivity",
+      sensitivity,
+      "m of the Norton-Hoff law: 1 is a Newtonian fluid, hot steel is near 0.14. Units: none.",
+      Double(1e-3, 1.));
+    prm.add_parameter(
+      "regularising strain rate",
+      minimal_strain_rate,
+      "e0 in e^2 -> e^2 + e0^2: keeps the viscosity finite where the metal is still. Part of the "
+      "model. Zero only for m = 1. Units: 1/s.",
+      Double(0.));
     prm.leave_subsection();
   }
 

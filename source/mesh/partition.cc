@@ -8,20 +8,21 @@
 
 namespace retroforge
 {
-  Partition::Partition(const TetMesh &mesh, MPI_Comm comm)
-    : comm(comm)
+  Partition::Partition(const TetMesh &mesh, MPI_Comm comm) : comm(comm)
   {
-    const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
-    const unsigned int rank    = dealii::Utilities::MPI::this_mpi_process(comm);
-    const auto smallest = [&](const CellIndex c) { return *std::min_element(mesh.cells[c].begin(), mesh.cells[c].end()); };
-    CellIndex  cell     = 0;
+    const unsigned int n_ranks  = dealii::Utilities::MPI::n_mpi_processes(comm);
+    const unsigned int rank     = dealii::Utilities::MPI::this_mpi_process(comm);
+    const auto         smallest = [&](const CellIndex c) {
+      return *std::min_element(mesh.cells[c].begin(), mesh.cells[c].end());
+    };
+    CellIndex cell = 0;
     for (unsigned int r = 0; r <= n_ranks; ++r)
-      {
-        node_ranges_.push_back(static_cast<std::uint64_t>(mesh.n_nodes()) * r / n_ranks);
-        while (cell < mesh.n_cells() && smallest(cell) < node_ranges_.back())
-          ++cell;
-        cell_ranges_.push_back(cell);
-      }
+    {
+      node_ranges_.push_back(static_cast<std::uint64_t>(mesh.n_nodes()) * r / n_ranks);
+      while (cell < mesh.n_cells() && smallest(cell) < node_ranges_.back())
+        ++cell;
+      cell_ranges_.push_back(cell);
+    }
     node_begin = node_ranges_[rank];
     node_end   = node_ranges_[rank + 1];
     cell_begin = cell_ranges_[rank];
@@ -31,18 +32,21 @@ namespace retroforge
         visited_cells.push_back(c);
   }
 
-  void Partition::gather_ranges(double *values, const unsigned int width, const std::vector<unsigned int> &begin) const
+  void Partition::gather_ranges(double                          *values,
+                                const unsigned int               width,
+                                const std::vector<unsigned int> &begin) const
   {
     const unsigned int n_ranks = begin.size() - 1;
     if (n_ranks == 1)
       return;
     std::vector<int> counts(n_ranks), offsets(n_ranks);
     for (unsigned int r = 0; r < n_ranks; ++r)
-      {
-        counts[r]  = width * (begin[r + 1] - begin[r]);
-        offsets[r] = width * begin[r];
-      }
-    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values, counts.data(), offsets.data(), MPI_DOUBLE, comm);
+    {
+      counts[r]  = width * (begin[r + 1] - begin[r]);
+      offsets[r] = width * begin[r];
+    }
+    MPI_Allgatherv(
+      MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values, counts.data(), offsets.data(), MPI_DOUBLE, comm);
   }
 
   void Partition::gather_nodes(double *values, const unsigned int width) const

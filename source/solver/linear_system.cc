@@ -168,9 +168,8 @@ namespace retroforge
                          column_map = map_of(columns, column_nodes.size());
         std::vector<int> lengths;
         for (unsigned int a = 0; a < n_owned; ++a)
-          lengths.insert(lengths.end(),
-                         rows,
-                         columns * scene_.topology.neighbours[a + partition.node_begin].size());
+          lengths.insert(
+            lengths.end(), rows, columns * scene_.topology.neighbours[a + partition.node_begin].size());
         Epetra_CrsGraph  graph(Copy, row_map, column_map, lengths.data(), true);
         std::vector<int> entries;
         for (unsigned int a = 0; a < n_owned; ++a)

@@ -37,21 +37,20 @@ namespace retroforge
                                  const Matrix        &S,
                                  const bool           multigrid,
                                  std::vector<double> &near_kernel)
-    : B_(B)
-    , momentum_(A.locally_owned_range_indices(), A.get_mpi_communicator())
+      : B_(B), momentum_(A.locally_owned_range_indices(), A.get_mpi_communicator())
   {
     if (multigrid)
-      {
-        auto amg = std::make_unique<PreconditionAMG>();
-        amg->initialize(A, multigrid_parameters(near_kernel));
-        A_ = std::move(amg);
-      }
+    {
+      auto amg = std::make_unique<PreconditionAMG>();
+      amg->initialize(A, multigrid_parameters(near_kernel));
+      A_ = std::move(amg);
+    }
     else
-      {
-        auto ilu = std::make_unique<PreconditionILU>();
-        ilu->initialize(A);
-        A_ = std::move(ilu);
-      }
+    {
+      auto ilu = std::make_unique<PreconditionILU>();
+      ilu->initialize(A);
+      A_ = std::move(ilu);
+    }
     S_.initialize(S);
   }
 

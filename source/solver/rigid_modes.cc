@@ -7,7 +7,8 @@
 
 namespace retroforge
 {
-  unsigned int n_free_rigid_modes(const Scene &scene, const Physics<double> &physics, const NodalVectors<double> &X)
+  unsigned int
+  n_free_rigid_modes(const Scene &scene, const Physics<double> &physics, const NodalVectors<double> &X)
   {
     Vec3 centre;
     for (const Vec3 &x : X)
@@ -24,10 +25,10 @@ namespace retroforge
       const Vec3            moment = cross(arm, direction);
       std::array<double, 6> row;
       for (unsigned int i = 0; i < 3; ++i)
-        {
-          row[i]     = direction[i];
-          row[i + 3] = moment[i];
-        }
+      {
+        row[i]     = direction[i];
+        row[i + 3] = moment[i];
+      }
       for (unsigned int i = 0; i < 6; ++i)
         for (unsigned int j = 0; j < 6; ++j)
           gram(i, j) += row[i] * row[j];
@@ -37,27 +38,27 @@ namespace retroforge
       for (const Vec3 &direction : scene.topology.fixed_directions[k])
         resist(k, direction);
     for (unsigned int d = 0; d < scene.dies.size(); ++d)
-      {
-        double nearest = std::numeric_limits<double>::max();
-        for (NodeIndex k = 0; k < X.size(); ++k)
-          if (scene.topology.is_on_surface(k))
-            nearest = std::min(nearest, scene.dies[d].project(X[k], physics.dies[d].displacement).delta);
-        for (NodeIndex k = 0; k < X.size(); ++k)
-          if (scene.topology.is_on_surface(k))
+    {
+      double nearest = std::numeric_limits<double>::max();
+      for (NodeIndex k = 0; k < X.size(); ++k)
+        if (scene.topology.is_on_surface(k))
+          nearest = std::min(nearest, scene.dies[d].project(X[k], physics.dies[d].displacement).delta);
+      for (NodeIndex k = 0; k < X.size(); ++k)
+        if (scene.topology.is_on_surface(k))
+        {
+          const auto projection = scene.dies[d].project(X[k], physics.dies[d].displacement);
+          if (projection.delta > nearest + 0.05 * size)
+            continue;
+          resist(k, projection.n);
+          if (physics.dies[d].friction > 0.)
+            for (unsigned int i = 0; i < 3; ++i)
             {
-              const auto projection = scene.dies[d].project(X[k], physics.dies[d].displacement);
-              if (projection.delta > nearest + 0.05 * size)
-                continue;
-              resist(k, projection.n);
-              if (physics.dies[d].friction > 0.)
-                for (unsigned int i = 0; i < 3; ++i)
-                  {
-                    Vec3 unit;
-                    unit[i] = 1.;
-                    resist(k, unit);
-                  }
+              Vec3 unit;
+              unit[i] = 1.;
+              resist(k, unit);
             }
-      }
+        }
+    }
     if (n_resisting == 0.)
       return 6;
     gram.compute_eigenvalues();

@@ -40,13 +40,13 @@ namespace retroforge
     const double speed     = process.speed();
     double       speed_bar = -(bar.dt + approach * bar.contact.tau) * step.step / (speed * speed);
     for (unsigned int d = 0; d < dies.size(); ++d)
-      {
-        const DieState<double> &die = bar.contact.dies[d];
-        dies[d].velocity += die.velocity + step.stroke / speed * die.displacement;
-        dies[d].displacement += die.displacement;
-        dies[d].friction += die.friction;
-        speed_bar -= die.displacement * process.dies[d].velocity * step.stroke / (speed * speed);
-      }
+    {
+      const DieState<double> &die = bar.contact.dies[d];
+      dies[d].velocity += die.velocity + step.stroke / speed * die.displacement;
+      dies[d].displacement += die.displacement;
+      dies[d].friction += die.friction;
+      speed_bar -= die.displacement * process.dies[d].velocity * step.stroke / (speed * speed);
+    }
     dies[process.leading_die].velocity += speed_bar / speed * process.dies[process.leading_die].velocity;
   }
 
@@ -54,23 +54,23 @@ namespace retroforge
   {
     std::vector<double> all = {K, m, e0, rho, v0};
     for (const auto &die : dies)
-      {
-        for (unsigned int i = 0; i < 3; ++i)
-          all.insert(all.end(), {die.velocity[i], die.displacement[i]});
-        all.push_back(die.friction);
-      }
+    {
+      for (unsigned int i = 0; i < 3; ++i)
+        all.insert(all.end(), {die.velocity[i], die.displacement[i]});
+      all.push_back(die.friction);
+    }
     dealii::Utilities::MPI::sum(all, comm, all);
     auto next = all.begin();
     for (double *x : {&K, &m, &e0, &rho, &v0})
       *x = *next++;
     for (auto &die : dies)
+    {
+      for (unsigned int i = 0; i < 3; ++i)
       {
-        for (unsigned int i = 0; i < 3; ++i)
-          {
-            die.velocity[i]     = *next++;
-            die.displacement[i] = *next++;
-          }
-        die.friction = *next++;
+        die.velocity[i]     = *next++;
+        die.displacement[i] = *next++;
       }
+      die.friction = *next++;
+    }
   }
 } // namespace retroforge

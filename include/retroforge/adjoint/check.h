@@ -9,13 +9,13 @@ namespace retroforge
 {
   struct CheckParameters
   {
-    std::vector<double> steps        = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
-    bool                free         = true;
-    double              taylor_start = 1e-2;
+    std::vector<double> steps           = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
+    bool                free            = true;
+    double              taylor_start    = 1e-2;
     unsigned int        taylor_halvings = 4;
-    double              replayed_bar = 1e-6;
-    double              tangent_bar  = 1e-10;
-    double              taylor_bar   = 1.95;
+    double              replayed_bar    = 1e-6;
+    double              tangent_bar     = 1e-10;
+    double              taylor_bar      = 1.95;
 
     void add_parameters(dealii::ParameterHandler &prm);
   };
@@ -48,7 +48,8 @@ namespace retroforge
     bool                       passed;
 
     double tangent_error() const;
-    /// Smallest error of the replayed central differences, and the decades of step over which it stays below the bar.
+    /// Smallest error of the replayed central differences, and the decades of step over which it stays below
+    /// the bar.
     double best_replayed_error() const;
     double best_free_error() const;
   };

@@ -22,8 +22,8 @@ namespace retroforge
                               unsigned int                n,
                               const Forging::Source      &source);
 
-  /// The direct method: derivative of the energy along one direction of (X_0, process), by the same kernels run forward
-  /// on dual numbers.
+  /// The direct method: derivative of the energy along one direction of (X_0, process), by the same kernels
+  /// run forward on dual numbers.
   Energy<Dual> tangent_sweep(Increment             &increment,
                              const Scene           &scene,
                              const Process<Dual>   &process,

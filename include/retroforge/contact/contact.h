@@ -10,13 +10,15 @@
 
 /// Unilateral contact and Norton friction, lumped at the nodes of the surface.
 ///
-/// For node k against a die:  u = V_k - v_die,  h = u·n - a(delta),  a = delta/tau or, with a layer l, l/tau asinh(delta/l),  dv = u - (u·n) n,  and the force on the residual is
-///   rho S [h]^+ n  +  S^f alpha K (|dv|^2 + v0^2)^((m-1)/2) dv.       @cite Laroussi2003, Eq. (21), (40)-(49)
-/// S is a third of the areas of the surface faces at k; S^f a third of those whose three nodes touch the die, each face
-/// weighted by the product of its nodes' ramps w(delta).
+/// For node k against a die:  u = V_k - v_die,  h = u·n - a(delta),  a = delta/tau or, with a layer l, l/tau
+/// asinh(delta/l),  dv = u - (u·n) n,  and the force on the residual is
+///   rho S [h]^+ n  +  S^f alpha K (|dv|^2 + v0^2)^((m-1)/2) dv.       @cite Laroussi2003, Eq. (21),
+///   (40)-(49)
+/// S is a third of the areas of the surface faces at k; S^f a third of those whose three nodes touch the die,
+/// each face weighted by the product of its nodes' ramps w(delta).
 ///
-/// What belongs to the increment (delta, n, w, tau) is found once at X_i and kept for all its stages: ContactSet.
-/// What belongs to a stage (S, S^f) is computed from the stage's positions: ContactAreas.
+/// What belongs to the increment (delta, n, w, tau) is found once at X_i and kept for all its stages:
+/// ContactSet. What belongs to a stage (S, S^f) is computed from the stage's positions: ContactAreas.
 namespace retroforge
 {
   /// The numbers of the contact and friction laws.
@@ -28,8 +30,8 @@ namespace retroforge
   };
 
   /// w(delta): 1 where the node touches, 0 where it is out of reach.
-  /// Smooth: 1 - 10t^3 + 15t^4 - 6t^5 with t = delta/width on [0, 1], twice differentiable, because nodes in contact
-  /// stand exactly at delta = 0. Sharp: 1 for delta <= width.
+  /// Smooth: 1 - 10t^3 + 15t^4 - 6t^5 with t = delta/width on [0, 1], twice differentiable, because nodes in
+  /// contact stand exactly at delta = 0. Sharp: 1 for delta <= width.
   struct FrictionRamp
   {
     double width = 0.; ///< [mm]
@@ -82,17 +84,14 @@ namespace retroforge
     std::vector<DieState<double>> dies; ///< velocity, displacement and friction of each
   };
 
-  /// Derivatives in the increment's data: what ContactSet depends on is filled in later, by reverse_contact_set.
+  /// Derivatives in the increment's data: what ContactSet depends on is filled in later, by
+  /// reverse_contact_set.
   struct ContactSetBar
   {
     std::vector<double> delta, ramp;
     std::vector<Vec3>   n;
 
-    explicit ContactSetBar(const std::size_t n_pairs)
-      : delta(n_pairs, 0.)
-      , ramp(n_pairs, 0.)
-      , n(n_pairs)
-    {}
+    explicit ContactSetBar(const std::size_t n_pairs) : delta(n_pairs, 0.), ramp(n_pairs, 0.), n(n_pairs) {}
   };
 
   /// The nodes within `reach` of a die, at positions X. Deterministic order: by die, then node.
@@ -152,8 +151,8 @@ namespace retroforge
 
   /// Speed at which a gap may close: delta/tau, so that what is in reach arrives within tau; with a layer l
   ///   l/tau asinh(delta/l),
-  /// the same near the die, but flatter where a free node meets it. The force then sets in gradually, and the energy is
-  /// smoother in the design, at less delay than a longer tau costs.
+  /// the same near the die, but flatter where a free node meets it. The force then sets in gradually, and the
+  /// energy is smoother in the design, at less delay than a longer tau costs.
   template <typename Number>
   Number approach_speed(const Number &delta, const Number &tau, const double layer)
   {
@@ -174,14 +173,20 @@ namespace retroforge
   }
 
   template <typename Number>
-  Vector3<Number> contact_force(const ContactNode<Number> &node, const NortonHoff<Number> &law, const ContactLaw<Number> &contact);
+  Vector3<Number> contact_force(const ContactNode<Number> &node,
+                                const NortonHoff<Number>  &law,
+                                const ContactLaw<Number>  &contact);
 
   /// tau·dv S^f: power lost in friction [mJ/s], as the residual has it.
   template <typename Number>
-  Number friction_power(const ContactNode<Number> &node, const NortonHoff<Number> &law, const ContactLaw<Number> &contact);
+  Number friction_power(const ContactNode<Number> &node,
+                        const NortonHoff<Number>  &law,
+                        const ContactLaw<Number>  &contact);
 
   /// Value of the potential whose gradient in V is contact_force.
-  double contact_potential(const ContactNode<double> &node, const NortonHoff<double> &law, const ContactLaw<double> &contact);
+  double contact_potential(const ContactNode<double> &node,
+                           const NortonHoff<double>  &law,
+                           const ContactLaw<double>  &contact);
 
   /// d contact_force / dV, symmetric.
   dealii::Tensor<2, 3> contact_tangent(const ContactNode<double> &node,

@@ -8,7 +8,8 @@
 
 #include <cmath>
 
-// deal.II's tensors know the dynamic forward-mode types of Sacado only; these lines teach them the fixed-size ones.
+// deal.II's tensors know the dynamic forward-mode types of Sacado only; these lines teach them the fixed-size
+// ones.
 namespace dealii
 {
   template <int N>
@@ -50,8 +51,8 @@ namespace retroforge
     return Sacado::ScalarValue<Number>::eval(x);
   }
 
-  /// base^exponent for base >= 0, without the NaN derivatives of pow at base = 0:  0^0 = 1 and 0^(positive) = 0,
-  /// both with zero derivative. A zero base with a negative exponent is infinite, as it should be.
+  /// base^exponent for base >= 0, without the NaN derivatives of pow at base = 0:  0^0 = 1 and 0^(positive) =
+  /// 0, both with zero derivative. A zero base with a negative exponent is infinite, as it should be.
   template <typename Number>
   Number power(const Number &base, const Number &exponent)
   {

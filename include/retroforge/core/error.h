@@ -17,7 +17,8 @@ namespace retroforge
           const std::string &what,
           const std::string &rule,
           const std::string &remedy)
-      : std::runtime_error(where + ": " + what + "; " + rule + "; " + remedy)
-    {}
+        : std::runtime_error(where + ": " + what + "; " + rule + "; " + remedy)
+    {
+    }
   };
 } // namespace retroforge

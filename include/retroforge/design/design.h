@@ -12,16 +12,16 @@ namespace retroforge
   {
     enum class Kind
     {
-      consistency,    ///< material/K
-      sensitivity,    ///< material/m
-      strain_rate,    ///< material/e0
-      penalty,        ///< contact/rho
-      slip,           ///< contact/v0
-      friction,       ///< of one die, or of all that have friction
-      speed,          ///< of one die, along its velocity
-      offset,         ///< of one die, along its facing direction
-      stretch,        ///< billet/stretch: mu of x, y -> (1 + 2 mu/a)  (113)
-      radius          ///< billet/radius: x, y -> radius/nominal  (116)-(117)
+      consistency, ///< material/K
+      sensitivity, ///< material/m
+      strain_rate, ///< material/e0
+      penalty,     ///< contact/rho
+      slip,        ///< contact/v0
+      friction,    ///< of one die, or of all that have friction
+      speed,       ///< of one die, along its velocity
+      offset,      ///< of one die, along its facing direction
+      stretch,     ///< billet/stretch: mu of x, y -> (1 + 2 mu/a)  (113)
+      radius       ///< billet/radius: x, y -> radius/nominal  (116)-(117)
     };
 
     std::string  name;
@@ -32,8 +32,8 @@ namespace retroforge
     double       scale   = 1.; ///< a length or size that steps are relative to
   };
 
-  /// The map from parameter values to the initial positions and the process, and its derivative: both are code
-  /// templated on the number type.
+  /// The map from parameter values to the initial positions and the process, and its derivative: both are
+  /// code templated on the number type.
   class Design
   {
   public:

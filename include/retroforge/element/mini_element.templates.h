@@ -12,17 +12,19 @@ namespace retroforge
   {
     Four<std::array<Number, 6>> eps;
 
-    SubStrainRates(const CellGeometry<Number> &geometry, const Four<Vector3<Number>> &V, const Vector3<Number> &beta)
+    SubStrainRates(const CellGeometry<Number>  &geometry,
+                   const Four<Vector3<Number>> &V,
+                   const Vector3<Number>       &beta)
     {
       std::array<Number, 6> linear;
       linear.fill(Number(0.));
       for (unsigned int c = 0; c < 4; ++c)
         add_dyad(V[c], geometry.g[c], linear);
       for (unsigned int a = 0; a < 4; ++a)
-        {
-          eps[a] = linear;
-          add_dyad(Vector3<Number>(beta * Number(4.)), geometry.g[a], eps[a]);
-        }
+      {
+        eps[a] = linear;
+        add_dyad(Vector3<Number>(beta * Number(4.)), geometry.g[a], eps[a]);
+      }
     }
 
     static void add_dyad(const Vector3<Number> &v, const Vector3<Number> &g, std::array<Number, 6> &e)
@@ -122,24 +124,24 @@ namespace retroforge
     std::array<Number, 6> stress_sum;
     stress_sum.fill(Number(0.));
     for (unsigned int a = 0; a < 4; ++a)
+    {
+      const Number factor =
+        quarter * law.stress_factor(law.q(double_contraction(rates.eps[a], rates.eps[a])));
+      std::array<Number, 6> s;
+      for (unsigned int k = 0; k < 6; ++k)
       {
-        const Number factor =
-          quarter * law.stress_factor(law.q(double_contraction(rates.eps[a], rates.eps[a])));
-        std::array<Number, 6> s;
-        for (unsigned int k = 0; k < 6; ++k)
-          {
-            s[k] = factor * rates.eps[a][k];
-            stress_sum[k] += s[k];
-          }
-        r.beta += times(s, geometry.g[a]) * Number(4.);
+        s[k] = factor * rates.eps[a][k];
+        stress_sum[k] += s[k];
       }
+      r.beta += times(s, geometry.g[a]) * Number(4.);
+    }
     const Number p_sum = quarter * (w.P[0] + w.P[1] + w.P[2] + w.P[3]);
     const Number trace = divergence(geometry, w.V);
     for (unsigned int c = 0; c < 4; ++c)
-      {
-        r.V[c] = times(stress_sum, geometry.g[c]) - geometry.g[c] * p_sum;
-        r.P[c] = quarter * (w.beta * geometry.g[c] - trace);
-      }
+    {
+      r.V[c] = times(stress_sum, geometry.g[c]) - geometry.g[c] * p_sum;
+      r.P[c] = quarter * (w.beta * geometry.g[c] - trace);
+    }
     return r;
   }
 
@@ -151,10 +153,10 @@ namespace retroforge
     const SubStrainRates<Number> rates(geometry, w.V, w.beta);
     Number                       power(0.);
     for (const auto &eps : rates.eps)
-      {
-        const Number eps2 = double_contraction(eps, eps);
-        power += law.stress_factor(law.q(eps2)) * eps2;
-      }
+    {
+      const Number eps2 = double_contraction(eps, eps);
+      power += law.stress_factor(law.q(eps2)) * eps2;
+    }
     return 0.25 * geometry.volume * power;
   }
 } // namespace retroforge

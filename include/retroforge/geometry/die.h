@@ -33,10 +33,9 @@ namespace retroforge
   public:
     /// @param facing  unit normal of the working face, from the die towards the workpiece
     Die(std::string name, const Vec3 &point, const Vec3 &facing)
-      : name(std::move(name))
-      , point_(point)
-      , into_(-facing)
-    {}
+        : name(std::move(name)), point_(point), into_(-facing)
+    {
+    }
 
     /// Closest feature seen from X:  delta = n·(point + displacement - X).
     template <typename Number>
@@ -45,16 +44,17 @@ namespace retroforge
       Projection<Number> projection;
       projection.delta = Number(0.);
       for (unsigned int i = 0; i < 3; ++i)
-        {
-          projection.n[i] = Number(into_[i]);
-          projection.delta += into_[i] * (point_[i] + displacement[i] - X[i]);
-        }
+      {
+        projection.n[i] = Number(into_[i]);
+        projection.delta += into_[i] * (point_[i] + displacement[i] - X[i]);
+      }
       return projection;
     }
 
-    /// Adds the pull-back of project to X_bar and displacement_bar. The normal of a plane depends on neither, so that
-    /// its derivative n_bar goes nowhere.
-    void reverse_project(const double delta_bar, const Vec3 & /*n_bar*/, Vec3 &X_bar, Vec3 &displacement_bar) const
+    /// Adds the pull-back of project to X_bar and displacement_bar. The normal of a plane depends on neither,
+    /// so that its derivative n_bar goes nowhere.
+    void
+    reverse_project(const double delta_bar, const Vec3 & /*n_bar*/, Vec3 &X_bar, Vec3 &displacement_bar) const
     {
       X_bar -= delta_bar * into_;
       displacement_bar += delta_bar * into_;
@@ -75,9 +75,7 @@ namespace retroforge
     Vec3        velocity;
     double      friction = 0.;
 
-    explicit DieParameters(std::string name)
-      : name(std::move(name))
-    {}
+    explicit DieParameters(std::string name) : name(std::move(name)) {}
 
     void add_parameters(dealii::ParameterHandler &prm);
     /// Normalises `facing`.

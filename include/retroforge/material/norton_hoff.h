@@ -13,9 +13,9 @@ namespace retroforge
   template <typename Number>
   struct NortonHoff
   {
-    Number K  = 1.;  ///< consistency [MPa s^m]
-    Number m  = 1.;  ///< strain-rate sensitivity, in (0, 1], dimensionless
-    Number e0 = 0.;  ///< strain rate of the regularisation [1/s]
+    Number K  = 1.; ///< consistency [MPa s^m]
+    Number m  = 1.; ///< strain-rate sensitivity, in (0, 1], dimensionless
+    Number e0 = 0.; ///< strain rate of the regularisation [1/s]
 
     /// q for  eps2 = eps:eps  [1/s^2].
     Number q(const Number &eps2) const { return 2. * eps2 + 3. * e0 * e0; }
@@ -29,8 +29,8 @@ namespace retroforge
 
   struct MaterialParameters
   {
-    double consistency        = 1.693;
-    double sensitivity        = 0.139;
+    double consistency         = 1.693;
+    double sensitivity         = 0.139;
     double minimal_strain_rate = 1e-3;
 
     void add_parameters(dealii::ParameterHandler &prm);

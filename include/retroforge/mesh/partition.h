@@ -9,9 +9,9 @@
 namespace retroforge
 {
   /// Who works on what. Positions and unknowns are known to every rank; the matrix and the work are divided:
-  /// each rank owns a contiguous range of nodes, and of cells (by their smallest node). A rank visits every cell that
-  /// touches one of its nodes and keeps what falls on its own nodes, so that sums are formed in the same order on any
-  /// number of ranks.
+  /// each rank owns a contiguous range of nodes, and of cells (by their smallest node). A rank visits every
+  /// cell that touches one of its nodes and keeps what falls on its own nodes, so that sums are formed in the
+  /// same order on any number of ranks.
   class Partition
   {
   public:

@@ -21,7 +21,7 @@ namespace retroforge
     double                   step   = 0.; ///< [mm]
     unsigned int             cuts   = 0;  ///< times the step was halved
     std::vector<ContactPair> pairs;
-    std::vector<SolveRecord> solves; ///< one per stage of the scheme
+    std::vector<SolveRecord> solves;                                        ///< one per stage of the scheme
     double                   deformation_energy = 0., friction_energy = 0.; ///< of this increment [mJ]
   };
 } // namespace retroforge

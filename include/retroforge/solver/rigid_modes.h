@@ -6,8 +6,9 @@
 
 namespace retroforge
 {
-  /// Number of rigid motions (of six) that neither symmetry planes, nor the dies' normals, nor friction resist, judged
-  /// with every die brought to its nearest nodes. Where it is not zero, velocities are not unique and the adjoint has no
-  /// solution.
-  unsigned int n_free_rigid_modes(const Scene &scene, const Physics<double> &physics, const NodalVectors<double> &X);
+  /// Number of rigid motions (of six) that neither symmetry planes, nor the dies' normals, nor friction
+  /// resist, judged with every die brought to its nearest nodes. Where it is not zero, velocities are not
+  /// unique and the adjoint has no solution.
+  unsigned int
+  n_free_rigid_modes(const Scene &scene, const Physics<double> &physics, const NodalVectors<double> &X);
 } // namespace retroforge

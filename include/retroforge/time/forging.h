@@ -9,12 +9,12 @@ namespace retroforge
   struct PressParameters
   {
     std::string  leading_die;
-    double       stroke           = 10.;
-    unsigned int increments       = 20;
-    std::string  scheme           = "midpoint";
-    double       smallest_volume  = 0.2;
-    double       largest_move     = 0.5;
-    unsigned int max_cuts         = 8;
+    double       stroke          = 10.;
+    unsigned int increments      = 20;
+    std::string  scheme          = "midpoint";
+    double       smallest_volume = 0.2;
+    double       largest_move    = 0.5;
+    unsigned int max_cuts        = 8;
 
     void add_parameters(dealii::ParameterHandler &prm);
     void check() const;
@@ -41,8 +41,8 @@ namespace retroforge
     unsigned int         increments = 0, cuts = 0, newton = 0, krylov = 0;
   };
 
-  /// The time loop: increments of equal stroke, halved while an element would invert or a node would cross too much of
-  /// an edge. In a replay the recorded increments are obeyed instead.
+  /// The time loop: increments of equal stroke, halved while an element would invert or a node would cross
+  /// too much of an edge. In a replay the recorded increments are obeyed instead.
   class Forging
   {
   public:

@@ -63,7 +63,7 @@ namespace
     p.contact.penetration          = 1e-2;
     p.contact.slip_fraction        = 0.1;
     p.newton.tolerance             = 1e-13;
-    p.adjoint.tolerance = 1e-13;
+    p.adjoint.tolerance            = 1e-13;
     p.linear_solver.method         = "direct";
     return p;
   }
