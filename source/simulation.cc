@@ -36,11 +36,16 @@ namespace retroforge
     /// "check" solves all systems as well as they can be, or differences would measure the solvers.
     Parameters read(const CommandLine &command, std::string &echo)
     {
+      if (command.resume)
+        throw Error("--resume",
+                    "this version cannot go on with a run",
+                    "its record can be read, differentiated and replayed, but not continued",
+                    "run the case anew, without --resume");
       Parameters parameters = Parameters::read(command.case_file, command.overrides, echo);
       if (command.command == "check")
       {
         parameters.newton.tolerance  = std::min(parameters.newton.tolerance, 1e-12);
-        parameters.adjoint.tolerance = std::min(parameters.adjoint.tolerance, 1e-13);
+        parameters.adjoint.tolerance = std::min(parameters.adjoint.tolerance, 1e-14);
       }
       return parameters;
     }

@@ -171,7 +171,7 @@ namespace retroforge
     return R"(Retroforge simulates hot metal forging in 3D and computes exact gradients of its results.
 
 Usage:
-  retroforge COMMAND CASE.prm [--set Section/name=value]... [--output DIR] [--resume]
+  retroforge COMMAND CASE.prm [--set Section/name=value]... [--output DIR]
   mpirun -np N retroforge COMMAND CASE.prm ...
   retroforge --print-parameters | --version | --help
 
@@ -183,14 +183,13 @@ Commands:
 Options:
   --set Section/name=value   replace a parameter of the case; may be repeated, the last one counts
   --output DIR               folder of the results (default: CASE-results in the current folder)
-  --resume                   go on with an interrupted run from the record in its folder of results
   --print-parameters         write all parameters with their meaning; as a case file they are the defaults
   --version                  write version and commit
   --help                     write this text
 
 Examples:
   retroforge simulate upsetting.prm
-  retroforge gradient upsetting.prm --set Contact/Friction/coefficient=0.3 --output rough-dies
+  retroforge gradient upsetting.prm --set "Die upper/friction=0.4" --output rough-die
 )";
   }
 } // namespace retroforge

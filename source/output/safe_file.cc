@@ -21,7 +21,7 @@ namespace retroforge
         case ENOSPC:
         case EDQUOT:
         case EFBIG:
-          return "free space there, or choose another folder with --output DIR and go on with --resume";
+          return "free space there, or choose another folder with --output DIR";
         case ENOENT:
         case ENOTDIR:
           return "make the folder, or choose another one with --output DIR";

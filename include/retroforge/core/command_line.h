@@ -22,7 +22,7 @@ namespace retroforge
     /// Full path of a parameter (`Contact/Friction/coefficient`) and its new value, in the order given.
     std::vector<std::pair<std::string, std::string>> overrides;
 
-    bool resume = false; ///< go on from the record in output_directory
+    bool resume = false; ///< asked to go on from the record in output_directory; refused for now
 
     bool print_parameters = false; ///< write the annotated parameters and stop
     bool version          = false; ///< write version and commit and stop
