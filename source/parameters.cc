@@ -31,10 +31,9 @@ namespace retroforge
     prm.add_parameter(
       "layer",
       layer,
-      "Bends the speed at which a gap may close, so that the force on an arriving node sets in gradually: "
-      "smooths "
-      "the objective at less bias than `approach' does. 0.4 is moderate, 0.3 strong; 0 for none. In units of "
-      "approach times the increment's stroke. Units: none.",
+"Bends the speed at which a gap may close, so that the force on an arriving node sets in gradually: "
+      "smooths the objective at less bias than `approach' does. 0.5 is moderate, 0.3 strong; 0, or the sharp "
+      "law, for none. In units of approach times the increment's stroke. Units: none.",
       Double(0.));
     prm.add_parameter(
       "ramp width",
@@ -177,7 +176,6 @@ namespace retroforge
   {
     billet.check();
     material.check();
-    press.check();
     if (dies.empty())
       throw Error(
         "Dies/names", "names no die", "a billet is forged by at least one die", "set names = lower, upper");
@@ -216,6 +214,19 @@ namespace retroforge
                 "leave it empty for the first die that moves");
   }
 
+  double Parameters::height(const double size) const
+  {
+    return billet.shape == "box" ? billet.size[2] : billet.shape == "cylinder" ? billet.height : size;
+  }
+
+  Parameters &Parameters::settle(const double size)
+  {
+    const double smooth_step = 3e-3 * height(size);
+    if (press.increments == 0)
+      press.increments = std::max(1., std::ceil(press.stroke / smooth_step - 1e-9));
+    return *this;
+  }
+
   Process<double> Parameters::process(const double size) const
   {
     Process<double> process;
@@ -223,12 +234,9 @@ namespace retroforge
     process.leading_die = leading_die();
     for (const DieParameters &die : dies)
       process.dies.push_back(die.initial_state());
-    const double speed  = process.speed();
-    const double height = billet.shape == "box"        ? billet.size[2]
-                          : billet.shape == "cylinder" ? billet.height
-                                                       : size;
+    const double speed = process.speed();
     // Mean pressure of a frictionless upsetting.
-    const double rate     = speed / height;
+    const double rate     = speed / height(size);
     const double pressure = process.law.stress_factor(process.law.q(1.5 * rate * rate)) * 1.5 * rate;
     process.contact.rho   = contact.penalty > 0. ? contact.penalty : pressure / (contact.penetration * speed);
     process.contact.v0    = contact.slip_fraction * speed;
@@ -241,11 +249,12 @@ namespace retroforge
     const double step = press.stroke / press.increments;
     model.scheme      = press.scheme == "euler" ? Scheme::euler : Scheme::midpoint;
     model.approach    = contact.approach;
-    model.layer       = contact.layer * contact.approach * step;
     model.ramp.sharp  = contact.law == "sharp";
     model.ramp.width  = contact.ramp_width * contact.approach * step;
+    const double layer = model.ramp.sharp ? 0. : contact.layer;
+    model.layer        = layer * contact.approach * step;
     // Where a node at rest meets the approach speed.
-    const double arrival = contact.layer == 0. ? 1. : contact.layer * std::sinh(1. / contact.layer);
+    const double arrival = layer == 0. ? 1. : layer * std::sinh(1. / layer);
     model.reach          = std::max({3., 3. * contact.ramp_width, 1.5 * arrival}) * contact.approach * step;
     model.adjoint_tolerance = adjoint.tolerance;
     model.shape_derivatives = adjoint.shape_derivatives();

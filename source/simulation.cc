@@ -57,7 +57,7 @@ namespace retroforge
       , root_(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
       , parameters_(read(command, echo_))
       , scene_(make_billet(parameters_.billet, comm), make_dies(parameters_.dies), comm)
-      , nominal_(parameters_.process(mesh_size()))
+      , nominal_(parameters_.settle(mesh_size()).process(mesh_size()))
       , model_(parameters_.step_model())
       , design_(parameters_.design.names, parameters_.billet, parameters_.dies, nominal_, scene_.mesh.X)
       , system_(scene_, parameters_.linear_solver, timings_)

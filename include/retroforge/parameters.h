@@ -12,7 +12,7 @@ namespace retroforge
   {
     std::string law           = "smooth";
     double      approach      = 1.;
-    double      layer         = 0.;
+    double      layer         = 0.5;
     double      ramp_width    = 1.;
     double      penetration   = 3e-7;
     double      penalty       = 0.;
@@ -23,7 +23,7 @@ namespace retroforge
 
   struct AdjointParameters
   {
-    double      tolerance    = 1e-10;
+    double      tolerance    = 1e-6;
     std::string derivatives  = "exact";
     double      perturbation = 1e-6;
 
@@ -70,12 +70,18 @@ namespace retroforge
                            const std::vector<std::pair<std::string, std::string>> &overrides,
                            std::string                                            &echo);
 
-    /// The process as the file has it; automatic values are resolved here and fixed from then on.
+    /// Chooses the number of increments where it is left open.
     /// @param size  cube root of the mesh's volume [mm], for billets whose height is not a parameter
+    Parameters &settle(double size);
+
+    /// The process as the file has it; automatic values are resolved here and fixed from then on.
+    /// @param size  as for settle()
     Process<double> process(double size) const;
-    StepModel       step_model() const;
+    /// Of settled parameters.
+    StepModel step_model() const;
 
   private:
+    double       height(double size) const;
     void         check_all();
     unsigned int leading_die() const;
   };

@@ -106,7 +106,7 @@ namespace retroforge
 
   double CheckRow::tangent_error() const
   {
-    return relative(adjoint, tangent);
+    return std::abs(adjoint - tangent) / std::max({std::abs(adjoint), std::abs(tangent), magnitude, 1e-300});
   }
 
   double CheckRow::best_replayed_error() const
@@ -147,17 +147,19 @@ namespace retroforge
                                 value,
                                 parameter.scale,
                                 oracle,
-                                {parameter.name, parameter.unit, gradient[j], 0., {}, {}, false}));
+                                {parameter.name, parameter.unit, gradient[j], 0., {}, {}, false, 0.}));
     }
     std::mt19937                           generator(1);
     std::uniform_real_distribution<double> uniform(-1., 1.);
     NodalVectors<double>                   direction(X_0_bar.size());
-    double                                 slope = 0.;
+    double                                 slope = 0., slope2 = 0.;
     for (std::size_t k = 0; k < direction.size(); ++k)
       for (unsigned int i = 0; i < 3; ++i)
       {
-        direction[k][i] = uniform(generator);
-        slope += direction[k][i] * X_0_bar[k][i];
+        direction[k][i]   = uniform(generator);
+        const double term = direction[k][i] * X_0_bar[k][i];
+        slope += term;
+        slope2 += term * term;
       }
     CheckParameters small = parameters;
     for (double &step : small.steps)
@@ -168,7 +170,7 @@ namespace retroforge
                               value,
                               length,
                               oracle,
-                              {"X_0 (random direction)", "mm", slope, 0., {}, {}, false}));
+                              {"X_0 (random direction)", "mm", slope, 0., {}, {}, false, std::sqrt(slope2)}));
     return rows;
   }
 

@@ -266,14 +266,14 @@ namespace retroforge
       shape,
       "What the billet is: a box, a cylinder (both standing along z), or a mesh from a file. Units: none.",
       Selection("box|cylinder|file"));
-    prm.add_parameter("base centre", base_centre, "Centre of the base of box or cylinder. Units: length.");
-    prm.add_parameter("size", size, "Lengths of the whole box along x, y and z, before cuts. Units: length.");
-    prm.add_parameter("radius", radius, "Radius of the cylinder. Units: length.", Double(0));
+    prm.add_parameter("base centre", base_centre, "Centre of the base of box or cylinder. Units: mm.");
+    prm.add_parameter("size", size, "Lengths of the whole box along x, y and z, before cuts. Units: mm.");
+    prm.add_parameter("radius", radius, "Radius of the cylinder. Units: mm.", Double(0));
     prm.add_parameter(
-      "height", height, "Height of the whole cylinder, before cuts. Units: length.", Double(0));
+      "height", height, "Height of the whole cylinder, before cuts. Units: mm.", Double(0));
     prm.add_parameter("element size",
                       element_size,
-                      "Wanted length of the edges of the mesh of box or cylinder. Units: length.",
+                      "Wanted length of the edges of the mesh of box or cylinder. Units: mm.",
                       Double(0));
     prm.add_parameter(
       "symmetry planes",
@@ -284,7 +284,7 @@ namespace retroforge
       "symmetry point",
       symmetry_point,
       "Point all symmetry planes pass through: `base' for the centre of the base, `centre' for the "
-      "centre of the whole body, or three coordinates. Units: length.");
+      "centre of the whole body, or three coordinates. Units: mm.");
     prm.add_parameter("sector angle",
                       sector_angle,
                       "Angle of the sector of the cylinder that is kept, from the direction +x of its axis "
@@ -307,7 +307,7 @@ namespace retroforge
                       rotation_angle,
                       "Angle of this rotation, counter-clockwise seen against the axis. Units: degrees.");
     prm.add_parameter(
-      "translation", translation, "Displacement of the finished mesh, after the rotation. Units: length.");
+      "translation", translation, "Displacement of the finished mesh, after the rotation. Units: mm.");
     prm.leave_subsection();
   }
 

@@ -14,8 +14,9 @@ namespace retroforge
     prm.add_parameter("stroke", stroke, "Path of the leading die. Units: mm.", Double(1e-300));
     prm.add_parameter("increments",
                       increments,
-                      "Number of equal increments of stroke, before any is cut. Units: none.",
-                      Integer(1));
+                      "Number of equal increments of stroke, before any is cut; 0 for steps of 0.3 % of the "
+                      "billet's height, with which the energy is smooth in the design. Units: none.",
+                      Integer(0));
     prm.add_parameter(
       "scheme",
       scheme,
@@ -37,8 +38,6 @@ namespace retroforge
       "max cuts", max_cuts, "Times an increment may be halved before the run stops. Units: none.");
     prm.leave_subsection();
   }
-
-  void PressParameters::check() const {}
 
   Forging::Forging(const Scene &scene, const PressParameters &press, Increment &increment)
       : scene_(scene), press_(press), increment_(increment)

@@ -46,7 +46,10 @@ namespace retroforge
     std::vector<DifferenceRow> steps;
     std::vector<double>        taylor_orders; ///< of the replayed remainder, one per halving
     bool                       passed;
+    double                     magnitude = 0.; ///< of the derivative but for cancellation, or 0
 
+    /// Against the larger of the derivative and its magnitude: in a direction along which the derivative
+    /// cancels, rounding does not.
     double tangent_error() const;
     /// Smallest error of the replayed central differences, and the decades of step over which it stays below
     /// the bar.

@@ -10,14 +10,13 @@ namespace retroforge
   {
     std::string  leading_die;
     double       stroke          = 10.;
-    unsigned int increments      = 20;
+    unsigned int increments      = 0;
     std::string  scheme          = "midpoint";
     double       smallest_volume = 0.2;
     double       largest_move    = 0.5;
     unsigned int max_cuts        = 8;
 
     void add_parameters(dealii::ParameterHandler &prm);
-    void check() const;
   };
 
   /// What is known at the end of an increment.

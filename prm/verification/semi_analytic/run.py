@@ -11,7 +11,7 @@ import case_tools  # noqa: E402
 
 CASE = os.path.join(HERE, "..", "..", "tutorial", "upsetting.prm")
 SETTINGS = {"Billet/element size": 5, "Press/stroke": 2, "Press/increments": 3, "Output/fields every": 0,
-            "Design/parameters": "billet/radius"}
+            "Design/parameters": "billet/radius", "Adjoint/tolerance": 1e-10}
 PERTURBATIONS = ("1e-2", "1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10")
 
 

@@ -8,6 +8,7 @@
 // - the reverse sweeps of force and friction power agree with forward differentiation in each of their 15
 // inputs:
 //   pressed or not, sliding or stuck (zero slip), Newtonian without regularisation, without friction area;
+// - the same within a layer, whose approach speed is smooth through zero and slower than delta/tau outside;
 // - gaps, ramps, areas under two tilted dies: <A x, y> = <x, A^T y> for A the forward derivative, where the
 // smooth ramp,
 //   the sharp one and the dies' displacements count;
@@ -60,6 +61,7 @@ NodeCase<Dual> vary(NodeCase<double> c, const unsigned int i)
   NodeCase<Dual> d;
   d.law.e0        = Dual(c.law.e0);
   d.node.active   = c.node.active;
+  d.node.layer    = c.node.layer;
   const auto from = c.inputs();
   const auto to   = d.inputs();
   for (unsigned int k = 0; k < n_inputs; ++k)
@@ -157,7 +159,12 @@ NodeCase<double> random_case(Random &random, const double m, const double v0)
 }
 
 double
-check_nodes(const std::string &title, const double m, const double v0, const bool sliding, const double Sf)
+check_nodes(const std::string &title,
+            const double       m,
+            const double       v0,
+            const bool         sliding,
+            const double       Sf,
+            const double       layer = 0.)
 {
   Random       random;
   Errors       errors;
@@ -168,6 +175,7 @@ check_nodes(const std::string &title, const double m, const double v0, const boo
     if (!sliding)
       c.node.u = random.scalar() * c.node.n;
     c.node.Sf     = Sf;
+    c.node.layer  = layer;
     c.node.active = approach_excess(c.node) > 0.;
     n_active += c.node.active;
     check_tangent(c, errors);
@@ -356,6 +364,21 @@ void check_ramp()
   errors.print(1e-12);
 }
 
+void check_layer()
+{
+  const double tau = 0.3, layer = 0.4, step = 1e-3;
+  Errors       errors;
+  const auto   slope = [&](const double delta) {
+    return approach_speed(Dual(1, 0, delta), Dual(tau), layer).dx(0) * tau;
+  };
+  errors.compare("slope 1/tau at the die", slope(0.), 1.);
+  errors.compare("smooth through zero", slope(-step), slope(step));
+  errors.compare("odd", approach_speed(-0.7, tau, layer), -approach_speed(0.7, tau, layer));
+  errors.compare("asinh", approach_speed(0.7, tau, layer), layer / tau * std::asinh(0.7 / layer));
+  std::cout << "layer" << std::endl;
+  errors.print(1e-12);
+}
+
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
@@ -367,6 +390,8 @@ int main(int argc, char **argv)
   }
   largest = std::max(largest, check_nodes("sliding, not regularised", 1., 0., true, 1.2));
   largest = std::max(largest, check_nodes("without friction area", 0.139, 0.1, true, 0.));
+
+  largest = std::max(largest, check_nodes("within a layer", 0.139, 0.1, true, 1.2, 0.4));
 
   // Exactly at rest against the die: zero to the power zero.
   Errors           at_rest;
@@ -392,5 +417,6 @@ int main(int argc, char **argv)
   largest = std::max(largest, check_meshes({0.9, false}));
   largest = std::max(largest, check_meshes({0.9, true}));
   check_ramp();
+  check_layer();
   std::cout << "FIGURE contact_derivative_error " << largest << std::endl;
 }

@@ -32,8 +32,8 @@ namespace
     explicit Scan(const Parameters &all)
         : parameters(all)
         , scene(make_billet(all.billet, MPI_COMM_WORLD), make_dies(all.dies), MPI_COMM_WORLD)
-        , nominal(all.process(all.billet.size[2]))
-        , model(all.step_model())
+        , nominal(parameters.settle(all.billet.size[2]).process(all.billet.size[2]))
+        , model(parameters.step_model())
         , design(all.design.names, all.billet, all.dies, nominal, scene.mesh.X)
         , system(scene, parameters.linear_solver, timings)
         , increment(scene, model, parameters.newton, system, timings)
@@ -66,7 +66,7 @@ namespace
       std::fflush(stdout);
     }
 
-    const Parameters parameters;
+    Parameters       parameters;
     Timings          timings;
     Scene            scene;
     Process<double>  nominal;
