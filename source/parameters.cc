@@ -125,6 +125,7 @@ namespace retroforge
     contact.add_parameters(prm);
     newton.add_parameters(prm);
     linear_solver.add_parameters(prm);
+    remeshing.add_parameters(prm);
     adjoint.add_parameters(prm);
     design.add_parameters(prm);
     check.add_parameters(prm);
@@ -176,6 +177,7 @@ namespace retroforge
   {
     billet.check();
     material.check();
+    remeshing.check();
     if (dies.empty())
       throw Error(
         "Dies/names", "names no die", "a billet is forged by at least one die", "set names = lower, upper");
@@ -259,5 +261,19 @@ namespace retroforge
     model.adjoint_tolerance = adjoint.tolerance;
     model.shape_derivatives = adjoint.shape_derivatives();
     return model;
+  }
+
+  double Parameters::edge_length(const TetMesh &mesh) const
+  {
+    if (remeshing.element_size > 0.)
+      return remeshing.element_size;
+    if (billet.shape != "file")
+      return billet.element_size;
+    double sum = 0.;
+    for (const auto &cell : mesh.cells)
+      for (unsigned int a = 0; a < 4; ++a)
+        for (unsigned int b = 0; b < a; ++b)
+          sum += (mesh.X[cell[a]] - mesh.X[cell[b]]).norm();
+    return sum / (6. * mesh.n_cells());
   }
 } // namespace retroforge

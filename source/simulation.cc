@@ -7,6 +7,7 @@
 #include <retroforge/output/safe_file.h>
 #include <retroforge/output/vtu_writer.h>
 #include <retroforge/record/record_file.h>
+#include <retroforge/resume.h>
 #include <retroforge/simulation.h>
 #include <retroforge/solver/rigid_modes.h>
 
@@ -36,11 +37,6 @@ namespace retroforge
     /// "check" solves all systems as well as they can be, or differences would measure the solvers.
     Parameters read(const CommandLine &command, std::string &echo)
     {
-      if (command.resume)
-        throw Error("--resume",
-                    "this version cannot go on with a run",
-                    "its record can be read, differentiated and replayed, but not continued",
-                    "run the case anew, without --resume");
       Parameters parameters = Parameters::read(command.case_file, command.overrides, echo);
       if (command.command == "check")
       {
@@ -56,13 +52,17 @@ namespace retroforge
       , comm_(comm)
       , root_(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
       , parameters_(read(command, echo_))
-      , scene_(make_billet(parameters_.billet, comm), make_dies(parameters_.dies), comm)
-      , nominal_(parameters_.settle(mesh_size()).process(mesh_size()))
-      , model_(parameters_.step_model())
-      , design_(parameters_.design.names, parameters_.billet, parameters_.dies, nominal_, scene_.mesh.X)
-      , system_(scene_, parameters_.linear_solver, timings_)
-      , increment_(scene_, model_, parameters_.newton, system_, timings_)
-      , forging_(scene_, parameters_.press, increment_)
+      , billet_(make_billet(parameters_.billet, comm))
+      , nominal_(parameters_.settle(billet_size()).process(billet_size()))
+      , model_{make_dies(parameters_.dies),
+               parameters_.step_model(),
+               parameters_.newton,
+               parameters_.linear_solver,
+               comm}
+      , design_(parameters_.design.names, parameters_.billet, parameters_.dies, nominal_, billet_.X)
+      , first_leg_(std::make_shared<Leg>(billet_, model_, timings_))
+      , remesher_(parameters_.remeshing, parameters_.edge_length(billet_), comm)
+      , forging_(model_, parameters_.press, remesher_, timings_)
       , mu_(design_.nominal())
       , process_(design_.process(mu_))
       , X_0_(design_.positions(mu_))
@@ -72,37 +72,37 @@ namespace retroforge
 
   Simulation::~Simulation() = default;
 
-  double Simulation::mesh_size() const
+  double Simulation::billet_size() const
   {
-    return std::cbrt(volume(scene_.mesh.cells, scene_.mesh.X));
+    return std::cbrt(volume(billet_.cells, billet_.X));
   }
 
   void Simulation::check_billet_against_dies() const
   {
     double nearest = std::numeric_limits<double>::max();
-    for (unsigned int d = 0; d < scene_.dies.size(); ++d)
+    for (unsigned int d = 0; d < model_.dies.size(); ++d)
     {
       double deepest = 0.;
-      for (NodeIndex k = 0; k < scene_.mesh.n_nodes(); ++k)
-        if (scene_.topology.is_on_surface(k))
+      for (NodeIndex k = 0; k < billet_.n_nodes(); ++k)
+        if (first_leg_->scene.topology.is_on_surface(k))
         {
-          const double delta = scene_.dies[d].project(X_0_[k], Vec3()).delta;
+          const double delta = model_.dies[d].project(X_0_[k], Vec3()).delta;
           nearest            = std::min(nearest, delta);
           deepest            = std::max(deepest, -delta);
         }
-      if (deepest > 1e-3 * mesh_size())
+      if (deepest > 1e-3 * billet_size())
         throw Error(
           "Die " + parameters_.dies[d].name,
           "the billet stands " + std::to_string(deepest) + " mm inside it",
           "a billet starts outside of all dies",
           "move the die's point, or the billet (Billet/translation), or turn the die's facing round");
     }
-    if (nearest > parameters_.press.stroke + mesh_size())
+    if (nearest > parameters_.press.stroke + billet_size())
       throw Error("Dies",
                   "none comes near the billet: the nearest is " + std::to_string(nearest) + " mm away",
                   "a die must be within the stroke of " + std::to_string(parameters_.press.stroke) + " mm",
                   "move the dies' points or the billet");
-    if (const unsigned int n = n_free_rigid_modes(scene_, process_.at_stroke(0.), X_0_); n > 0)
+    if (const unsigned int n = n_free_rigid_modes(first_leg_->scene, process_.at_stroke(0.), X_0_); n > 0)
       throw Error("Dies",
                   "the billet can slide or spin freely in " + std::to_string(n) + " rigid motion(s)",
                   "its velocity must be unique",
@@ -116,8 +116,8 @@ namespace retroforge
     {
       make_directory(command_.output_directory);
       write_file(command_.output_directory + "/parameters.prm", echo_);
-      std::cout << "Retroforge " << version << ' ' << commit << ", " << scene_.mesh.n_nodes() << " nodes, "
-                << scene_.mesh.n_cells() << " tetrahedra, " << dealii::Utilities::MPI::n_mpi_processes(comm_)
+      std::cout << "Retroforge " << version << ' ' << commit << ", " << billet_.n_nodes() << " nodes, "
+                << billet_.n_cells() << " tetrahedra, " << dealii::Utilities::MPI::n_mpi_processes(comm_)
                 << " rank(s), BLAS: " << blas_in_use() << std::endl;
     }
     bool passed = true;
@@ -132,28 +132,57 @@ namespace retroforge
 
   void Simulation::forge()
   {
+    ForgingState state = forging_.start(first_leg_, X_0_);
     if (root_)
     {
       history_ = std::make_unique<History>(command_.output_directory + "/history.csv");
       pvd_     = std::make_unique<PvdWriter>(command_.output_directory + "/fields.pvd");
-      if (parameters_.output.record)
-        record_ = std::make_unique<RecordWriter>(
-          command_.output_directory,
-          RecordHeader{
-            version, commit, echo_, static_cast<unsigned int>(scene_.dies.size()), scene_.mesh, X_0_});
       std::cout
         << "  inc   stroke      force        energy        volume   quality newton krylov   time left\n";
     }
-    forged_ = forging_.run(process_, X_0_, [&](const IncrementEvent &event) { watch(event); });
+    if (command_.resume)
+      resume(state);
+    else if (root_ && parameters_.output.record)
+      record_ = std::make_unique<RecordWriter>(
+        command_.output_directory,
+        RecordHeader{version, commit, echo_, static_cast<unsigned int>(model_.dies.size()), billet_, X_0_});
+    forging_.run(process_, state, [&](const IncrementEvent &event) {
+      if (record_)
+      {
+        const auto timing = timings_.scope("record");
+        record_->write(event.record);
+      }
+      watch(event);
+    });
+    forged_ = std::move(state);
     if (record_)
     {
       const auto timing = timings_.scope("record");
       record_->finish();
     }
     MPI_Barrier(comm_); // the record is complete before any rank reads it
-    summary_.linear_solves_forward = system_.n_solves;
-    summary_.newton_iterations     = forged_.newton;
-    summary_.krylov_iterations     = forged_.krylov;
+  }
+
+  void Simulation::resume(ForgingState &state)
+  {
+    const RecordReader record(command_.output_directory);
+    check_resumable(record.header(), echo_, billet_, X_0_, command_.output_directory);
+    const unsigned int n = record.n_increments();
+    IncrementRecord    increment;
+    forging_.restore(
+      process_,
+      n,
+      [&](const unsigned int i) -> const IncrementRecord & {
+        increment = record.read(i);
+        return increment;
+      },
+      state,
+      [&](const IncrementEvent &event) { watch(event); });
+    MPI_Barrier(comm_); // all have read before the writer removes what is torn
+    if (root_ && !record.finished())
+      record_ = std::make_unique<RecordWriter>(RecordWriter::resume(command_.output_directory));
+    if (root_)
+      std::cout << "  resumed after increment " << n << std::endl;
   }
 
   void Simulation::watch(const IncrementEvent &event)
@@ -161,64 +190,70 @@ namespace retroforge
     // A check reads the increments many times over; a gradient once, from the record.
     if (command_.command == "check" || (command_.command == "gradient" && !parameters_.output.record))
       records_.push_back(event.record);
-    const auto   timing  = timings_.scope("record");
-    const double quality = minimum_quality(scene_.mesh.cells, event.X);
-    const double size    = volume(scene_.mesh.cells, event.X);
+    const auto          timing = timings_.scope("output");
+    const ForgingState &state  = event.state;
+    const TetMesh      &mesh   = state.leg->scene.mesh;
     if (!root_)
       return;
-    if (record_)
-      record_->write(event.record);
+    const double quality = minimum_quality(mesh.cells, state.X);
+    const double size    = volume(mesh.cells, state.X);
     const auto  &leading = nominal_.dies[nominal_.leading_die];
     const double force =
-      event.report.forces[nominal_.leading_die] * leading.velocity / leading.velocity.norm();
-    const double stroke = event.record.stroke + event.record.step;
-    history_->add({event.index,
+      event.record.forces[nominal_.leading_die] * leading.velocity / leading.velocity.norm();
+    const double energy = state.energy.total();
+    history_->add({state.increments,
                    event.time,
-                   stroke,
+                   state.stroke,
                    force,
-                   event.energy,
+                   energy,
                    size,
                    quality,
-                   event.report.newton.iterations,
-                   event.report.newton.krylov});
-    const double left = timings_.seconds("total") * (parameters_.press.stroke - stroke) / stroke;
+                   event.record.newton,
+                   event.record.krylov});
+    if (event.record.remesh)
+      std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());
+    const double left = timings_.seconds("total") * (parameters_.press.stroke - state.stroke) / state.stroke;
     std::printf("%5u %8.4f %12.5g %13.7g %13.7g %8.4f %6u %6u %8.0f s\n",
-                event.index,
-                stroke,
+                state.increments,
+                state.stroke,
                 force,
-                event.energy,
+                energy,
                 size,
                 quality,
-                event.report.newton.iterations,
-                event.report.newton.krylov,
+                event.record.newton,
+                event.record.krylov,
                 left);
     std::fflush(stdout);
     const unsigned int every = parameters_.output.every;
-    if (every > 0 && (event.index % every == 0 || stroke >= parameters_.press.stroke * (1. - 1e-9)))
+    if (every > 0 &&
+        (state.increments % every == 0 || state.stroke >= parameters_.press.stroke * (1. - 1e-9)))
       write_fields(event);
   }
 
   void Simulation::write_fields(const IncrementEvent &event)
   {
-    const TetMesh &mesh = scene_.mesh;
-    ScalarField    pressure{"pressure", event.W.P},
+    const ForgingState  &run   = event.state;
+    const Scene         &scene = run.leg->scene;
+    const TetMesh       &mesh  = scene.mesh;
+    const Field<double> &W     = run.W;
+    ScalarField          pressure{"pressure", W.P},
       state{"contact_state", std::vector<double>(mesh.n_nodes(), 0.)},
       contact_pressure{"contact_pressure", std::vector<double>(mesh.n_nodes(), 0.)}, rate{"strain_rate", {}};
     const auto          physics  = process_.at_stroke(event.record.stroke);
-    const auto          position = increment_.stage_positions(process_, event.X_before, event.record);
+    const auto          position = run.leg->increment.stage_positions(process_, event.X_before, event.record);
     ContactSet<double>  contact  = make_contact_set(mesh,
-                                                  scene_.topology,
-                                                  scene_.dies,
+                                                  scene.topology,
+                                                  scene.dies,
                                                   physics.dies,
                                                   event.record.pairs,
-                                                  model_.ramp,
-                                                  model_.approach * event.record.step / process_.speed(),
+                                                  model_.step.ramp,
+                                                  model_.step.approach * event.record.step / process_.speed(),
                                                   event.X_before,
-                                                  model_.layer);
-    const Stage<double> stage(scene_, physics, contact, position);
+                                                  model_.step.layer);
+    const Stage<double> stage(scene, physics, contact, position);
     for (unsigned int p = 0; p < event.record.pairs.size(); ++p)
     {
-      const auto      node = stage.contact_node(p, event.W, event.record.solves.back().active);
+      const auto      node = stage.contact_node(p, W, event.record.solves.back().active);
       const NodeIndex k    = event.record.pairs[p].node;
       if (node.active)
       {
@@ -229,33 +264,32 @@ namespace retroforge
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
       const auto e =
-        cell_strain_rates(cell_geometry(positions_of_cell(mesh, position, c)), event.W.on_cell(mesh, c));
+        cell_strain_rates(cell_geometry(positions_of_cell(mesh, position, c)), W.on_cell(mesh, c));
       rate.values.push_back(0.25 * (e[0] + e[1] + e[2] + e[3]));
     }
-    if (event.index == parameters_.output.every)
+    if (pvd_->steps().empty())
     {
-      write_vtu(command_.output_directory + "/fields_000000.vtu", mesh, X_0_, {}, {}, {});
+      write_vtu(command_.output_directory + "/fields_000000.vtu", billet_, X_0_, {}, {}, {});
       pvd_->add(0., "fields_000000.vtu");
     }
     char name[32];
-    std::snprintf(name, sizeof name, "fields_%06u.vtu", event.index);
+    std::snprintf(name, sizeof name, "fields_%06u.vtu", run.increments);
     write_vtu(command_.output_directory + "/" + name,
               mesh,
-              event.X,
+              run.X,
               {pressure, state, contact_pressure},
-              {{"velocity", event.W.V}},
-              {rate});
+              {{"velocity", W.V}},
+              {rate, {"equivalent_strain", run.strain}});
     pvd_->add(event.time, name);
   }
 
   void Simulation::differentiate()
   {
-    const auto         timing = timings_.scope("adjoint");
-    const unsigned int before = system_.n_solves;
-    const auto result = adjoint_sweep(scene_, increment_, process_, forged_.X, forged_.increments, source());
+    const auto timing = timings_.scope("adjoint");
+    const auto result = adjoint_sweep(model_, first_leg_, process_, forged_, source(), timings_);
     X_0_bar_          = result.X_0;
     gradient_         = design_.pull_back(mu_, X_0_bar_, result.process);
-    summary_.linear_solves_adjoint = system_.n_solves - before;
+    summary_.linear_solves_adjoint = result.linear_solves;
     if (root_)
     {
       write_sensitivity();
@@ -272,7 +306,7 @@ namespace retroforge
   void Simulation::write_sensitivity()
   {
     write_vtu(
-      command_.output_directory + "/sensitivity.vtu", scene_.mesh, X_0_, {}, {{"denergy_dX0", X_0_bar_}}, {});
+      command_.output_directory + "/sensitivity.vtu", billet_, X_0_, {}, {{"denergy_dX0", X_0_bar_}}, {});
   }
 
   Forging::Source Simulation::source()
@@ -296,11 +330,14 @@ namespace retroforge
     ObjectiveOracle oracle;
     const auto      source = this->source();
     oracle.free            = [this](const std::vector<double> &mu, const NodalVectors<double> &shift) {
-      return forging_.run(design_.process(mu), sum(design_.positions(mu), shift), {}).energy.total();
+      ForgingState state = forging_.start(first_leg_, sum(design_.positions(mu), shift));
+      forging_.run(design_.process(mu), state, {});
+      return state.energy.total();
     };
     oracle.replayed = [this, source](const std::vector<double> &mu, const NodalVectors<double> &shift) {
-      return forging_.replay(design_.process(mu), sum(design_.positions(mu), shift), records_.size(), source)
-        .energy.total();
+      ForgingState state = forging_.start(first_leg_, sum(design_.positions(mu), shift));
+      forging_.replay(design_.process(mu), records_.size(), source, state);
+      return state.energy.total();
     };
     oracle.tangent = [this, source](const std::vector<double>  &mu_dot,
                                     const NodalVectors<double> &shift_dot) {
@@ -314,14 +351,16 @@ namespace retroforge
       for (std::size_t k = 0; k < X.size(); ++k)
         for (unsigned int i = 0; i < 3; ++i)
           X[k][i].fastAccessDx(0) += shift_dot[k][i];
-      return tangent_sweep(increment_, scene_, design_.process(mu), X, records_.size(), source).total().dx(0);
+      return tangent_sweep(model_, first_leg_, design_.process(mu), X, records_.size(), source, timings_)
+        .total()
+        .dx(0);
     };
     return oracle;
   }
 
   bool Simulation::check()
   {
-    const double size = mesh_size();
+    const double size = billet_size();
     checks_           = check_gradient(
       parameters_.check, design_, mu_, forged_.energy.total(), gradient_, X_0_bar_, size, oracle());
     if (root_)
@@ -336,12 +375,16 @@ namespace retroforge
     summary_.commit         = commit;
     summary_.blas           = blas_in_use();
     summary_.ranks          = dealii::Utilities::MPI::n_mpi_processes(comm_);
-    summary_.n_nodes        = scene_.mesh.n_nodes();
-    summary_.n_cells        = scene_.mesh.n_cells();
+    summary_.n_nodes        = billet_.n_nodes();
+    summary_.n_cells        = billet_.n_cells();
+    summary_.newton_iterations     = forged_.newton;
+    summary_.krylov_iterations     = forged_.krylov;
+    summary_.linear_solves_forward = forged_.linear_solves;
+    summary_.remeshings            = forged_.remeshed.size();
     summary_.increments     = forged_.increments;
     summary_.cuts           = forged_.cuts;
-    summary_.volume_initial = volume(scene_.mesh.cells, X_0_);
-    summary_.volume_final   = volume(scene_.mesh.cells, forged_.X);
+    summary_.volume_initial = volume(billet_.cells, X_0_);
+    summary_.volume_final   = volume(forged_.leg->scene.mesh.cells, forged_.X);
     summary_.wall_seconds   = timings_.all();
     summary_.objectives     = {
           {"energy",

@@ -61,6 +61,7 @@ namespace retroforge
     CheckParameters            check;
     OutputParameters           output;
     AdjointParameters          adjoint;
+    RemesherParameters         remeshing;
 
     /// Declares everything; the dies are those of the names given.
     void add_parameters(dealii::ParameterHandler &prm, const std::vector<std::string> &die_names);
@@ -79,6 +80,8 @@ namespace retroforge
     Process<double> process(double size) const;
     /// Of settled parameters.
     StepModel step_model() const;
+    /// Wanted length of the edges in remeshing [mm]; of a billet from a file, the mean length there is.
+    double edge_length(const TetMesh &billet) const;
 
   private:
     double       height(double size) const;

@@ -27,6 +27,8 @@ namespace retroforge
 
   private:
     void forge();
+    /// The state after the last increment of the record in the output folder, which the run goes on from.
+    void resume(ForgingState &state);
     void differentiate();
     bool check();
     void summarise();
@@ -35,7 +37,7 @@ namespace retroforge
     void   write_fields(const IncrementEvent &event);
     void   write_sensitivity();
     void   check_billet_against_dies() const;
-    double mesh_size() const;
+    double billet_size() const;
     /// The recorded increments, from memory or from the record's file.
     Forging::Source source();
     ObjectiveOracle oracle();
@@ -47,20 +49,20 @@ namespace retroforge
 
     std::string     echo_; ///< the parameters as understood
     Parameters      parameters_;
-    Scene           scene_;
+    const TetMesh   billet_;
     Process<double> nominal_;
-    StepModel       model_;
+    ForgingModel    model_;
     Design          design_;
 
-    LinearSystem system_;
-    Increment    increment_;
-    Forging      forging_;
+    std::shared_ptr<Leg> first_leg_;
+    Remesher             remesher_;
+    Forging              forging_;
 
     std::vector<double>          mu_;
     Process<double>              process_;
     NodalVectors<double>         X_0_;
     std::vector<IncrementRecord> records_;
-    ForgingResult                forged_;
+    ForgingState                 forged_;
     std::vector<double>          gradient_;
     NodalVectors<double>         X_0_bar_;
     std::vector<CheckRow>        checks_;

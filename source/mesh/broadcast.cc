@@ -73,7 +73,9 @@ namespace retroforge
     }
   } // namespace
 
-  TetMesh make_on_root(const std::function<TetMesh()> &make, MPI_Comm communicator)
+  TetMesh make_on_root(const std::function<TetMesh()> &make,
+                       MPI_Comm                        communicator,
+                       std::vector<NodeIndex>         *with_it)
   {
     TetMesh     mesh;
     std::string failure;
@@ -94,6 +96,8 @@ namespace retroforge
     if (!failure.empty())
       throw_error(failure);
     broadcast_mesh(mesh, communicator);
+    if (with_it)
+      broadcast_array(*with_it, communicator);
     return mesh;
   }
 } // namespace retroforge

@@ -237,6 +237,28 @@ namespace retroforge
       return cells_and_nodes(where, number);
     }
 
+    // A discrete surface with the given triangles, node tags from 1, and the volume it encloses.
+    void build_enclosed_volume(const NodalVectors<double>                  &X,
+                               const std::vector<std::array<NodeIndex, 3>> &triangles)
+    {
+      constexpr int       linear_triangle = 2;
+      const int           surface         = gmsh::model::addDiscreteEntity(2);
+      Tags                tags, nodes;
+      std::vector<double> coordinates;
+      for (NodeIndex node = 0; node < X.size(); ++node)
+      {
+        tags.push_back(node + 1);
+        coordinates.insert(coordinates.end(), X[node].begin_raw(), X[node].end_raw());
+      }
+      for (const auto &triangle : triangles)
+        for (const NodeIndex node : triangle)
+          nodes.push_back(node + 1);
+      gmsh::model::mesh::addNodes(2, surface, tags, coordinates);
+      gmsh::model::mesh::addElementsByType(surface, linear_triangle, {}, nodes);
+      gmsh::model::geo::addVolume({gmsh::model::geo::addSurfaceLoop({surface})});
+      gmsh::model::geo::synchronize();
+    }
+
     // Refuses what Gmsh would take for something else (it runs scripts, too).
     void check_is_msh(const std::string &file_name)
     {
@@ -394,6 +416,25 @@ namespace retroforge
         }
         return best;
       });
+  }
+
+  TetMesh fill_with_gmsh(const NodalVectors<double>                  &X,
+                         const std::vector<std::array<NodeIndex, 3>> &triangles,
+                         const std::function<double(const Vec3 &)>   &size,
+                         const std::string                           &where)
+  {
+    return within_gmsh(where, "check that the surface is closed and does not cross itself", [&]() {
+      gmsh::model::add("enclosed");
+      build_enclosed_volume(X, triangles);
+      gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
+      gmsh::option::setNumber("Mesh.OptimizeThreshold", attempts[0].threshold);
+      gmsh::model::mesh::setSizeCallback([&](int, int, const double x, const double y, const double z) {
+        return size(Vec3({x, y, z}));
+      });
+      gmsh::model::mesh::generate(3);
+      TagToNode number;
+      return cells_and_nodes(where, number);
+    });
   }
 
   TetMesh read_msh(const std::string &file_name, const std::vector<std::string> &symmetry_patches)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/mesh/boundary_location.h>
 #include <retroforge/mesh/cell_faces.h>
 #include <retroforge/mesh/patch_shapes.h>
 
@@ -73,15 +74,6 @@ namespace retroforge
       for (auto &face : mesh.faces)
         face.patch = number[face.patch];
       return kept;
-    }
-
-    std::vector<std::set<unsigned int>> patches_at_nodes(const TetMesh &mesh)
-    {
-      std::vector<std::set<unsigned int>> patches(mesh.n_nodes());
-      for (const auto &face : mesh.faces)
-        for (const NodeIndex node : face.nodes)
-          patches[node].insert(face.patch);
-      return patches;
     }
 
     // One Newton step onto all surfaces at once, the shortest one. Surfaces whose gradients depend

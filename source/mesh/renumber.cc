@@ -92,7 +92,7 @@ namespace retroforge
     }
   } // namespace
 
-  void renumber(TetMesh &mesh)
+  std::vector<NodeIndex> renumber(TetMesh &mesh)
   {
     const auto           number = reverse_cuthill_mckee(mesh);
     NodalVectors<double> X(mesh.n_nodes());
@@ -116,6 +116,7 @@ namespace retroforge
     std::sort(mesh.faces.begin(), mesh.faces.end(), [](const BoundaryFace &a, const BoundaryFace &b) {
       return std::tie(a.nodes, a.patch) < std::tie(b.nodes, b.patch);
     });
+    return number;
   }
 
   unsigned int bandwidth(const TetMesh &mesh)

@@ -104,6 +104,7 @@ namespace retroforge
     add_unless_empty(json, "parameters", list(parameters));
     json["increments"]            = number(increments);
     json["cuts"]                  = number(cuts);
+    json["remeshings"]            = number(remeshings);
     json["newton_iterations"]     = number(newton_iterations);
     json["krylov_iterations"]     = number(krylov_iterations);
     json["linear_solves_forward"] = number(linear_solves_forward);

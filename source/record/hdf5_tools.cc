@@ -277,6 +277,13 @@ namespace retroforge::hdf5
     return Handle(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, name);
   }
 
+  bool has_group(const hid_t parent, const std::string &name)
+  {
+    const htri_t exists = H5Lexists(parent, name.c_str(), H5P_DEFAULT);
+    check(exists, name);
+    return exists > 0;
+  }
+
   bool has_attribute(const hid_t object, const std::string &name)
   {
     const htri_t exists = H5Aexists(object, name.c_str());

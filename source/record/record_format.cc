@@ -13,7 +13,7 @@ namespace retroforge
 {
   namespace
   {
-    constexpr unsigned int format = 1;
+    constexpr unsigned int format = 2;
 
     static_assert(sizeof(Vec3) == 3 * sizeof(double),
                   "nodal vectors are read and written as arrays of numbers");
@@ -112,20 +112,58 @@ namespace retroforge
     }
 
     /// A record with sizes that disagree is a mistake of the program, found before it reaches the disk.
-    void check_increment(const IncrementRecord &increment, const RecordShape &shape)
+    unsigned int check_increment(const IncrementRecord &increment, const RecordShape &shape)
     {
+      const unsigned int n_nodes = increment.solves.empty() ? 0 : increment.solves[0].V.size();
+      AssertThrow(!increment.remesh || increment.remesh->mesh.n_nodes() == n_nodes,
+                  dealii::ExcMessage("a new mesh has not as many nodes as the solution on it"));
       for (const ContactPair &pair : increment.pairs)
-        AssertThrow(pair.node < shape.n_nodes && pair.die < shape.n_dies,
+        AssertThrow(pair.node < n_nodes && pair.die < shape.n_dies,
                     dealii::ExcMessage("a contact pair refers to a node or die that is not there"));
       for (const SolveRecord &solve : increment.solves)
       {
-        AssertThrow(solve.V.size() == shape.n_nodes,
-                    dealii::ExcDimensionMismatch(solve.V.size(), shape.n_nodes));
-        AssertThrow(solve.P.size() == shape.n_nodes,
-                    dealii::ExcDimensionMismatch(solve.P.size(), shape.n_nodes));
+        AssertThrow(solve.V.size() == n_nodes,
+                    dealii::ExcDimensionMismatch(solve.V.size(), n_nodes));
+        AssertThrow(solve.P.size() == n_nodes,
+                    dealii::ExcDimensionMismatch(solve.P.size(), n_nodes));
         AssertThrow(solve.active.size() == increment.pairs.size(),
                     dealii::ExcDimensionMismatch(solve.active.size(), increment.pairs.size()));
       }
+      return n_nodes;
+    }
+
+    void write_remesh(const hid_t parent, const RemeshRecord &remesh)
+    {
+      const hdf5::Handle      group = hdf5::create_group(parent, "remesh");
+      const TransferOperator &J     = remesh.transfer;
+      write_mesh(group, remesh.mesh);
+      write_vectors(group, "X_before", remesh.X_before);
+      hdf5::write_array(group, "begin", {J.begin.size()}, J.begin.data());
+      hdf5::write_array(group, "node", {J.node.size()}, J.node.data());
+      hdf5::write_array(group, "weight", {J.weight.size()}, J.weight.data());
+    }
+
+    std::shared_ptr<const RemeshRecord> read_remesh(const hid_t parent)
+    {
+      const hdf5::Handle group  = hdf5::open_group(parent, "remesh");
+      auto               remesh = std::make_shared<RemeshRecord>();
+      TransferOperator  &J      = remesh->transfer;
+      remesh->mesh              = read_mesh(group);
+      remesh->X_before          = read_vectors(group, "X_before", hdf5::any);
+      J.n_old                   = remesh->X_before.size();
+      J.begin                   = hdf5::read_array<unsigned int>(group, "begin", {remesh->mesh.X.size() + 1});
+      J.node                    = hdf5::read_array<unsigned int>(group, "node", {hdf5::any});
+      J.weight                  = hdf5::read_array<double>(group, "weight", {J.node.size()});
+      bool sound                = J.begin.front() == 0 && J.begin.back() == J.node.size();
+      for (std::size_t k = 0; k + 1 < J.begin.size(); ++k)
+        sound = sound && J.begin[k] <= J.begin[k + 1];
+      for (const NodeIndex k : J.node)
+        sound = sound && k < J.n_old;
+      if (!sound)
+        throw hdf5::Failure("the rows of a transfer between meshes do not fit these meshes");
+      check_mesh(remesh->mesh, "record");
+      J.set_offset(remesh->X_before, remesh->mesh.X);
+      return remesh;
     }
 
     void write_solves(const hid_t                     group,
@@ -170,7 +208,7 @@ namespace retroforge
       return flags;
     }
 
-    std::vector<ContactPair> read_pairs(const hid_t group, const RecordShape &shape)
+    std::vector<ContactPair> read_pairs(const hid_t group, const RecordShape &shape, const unsigned int n_nodes)
     {
       const auto               indices  = hdf5::read_array<unsigned int>(group, "pairs", {hdf5::any, 2});
       const auto               touching = read_flags(group, "touching", {indices.size() / 2});
@@ -178,10 +216,10 @@ namespace retroforge
       for (std::size_t i = 0; i < touching.size(); ++i)
       {
         pairs.push_back({indices[2 * i], indices[2 * i + 1], touching[i] != 0});
-        if (pairs[i].node >= shape.n_nodes || pairs[i].die >= shape.n_dies)
+        if (pairs[i].node >= n_nodes || pairs[i].die >= shape.n_dies)
           throw hdf5::Failure("contact pair " + std::to_string(i) + " is of node " +
                               std::to_string(pairs[i].node) + " and die " + std::to_string(pairs[i].die) +
-                              " where there are " + std::to_string(shape.n_nodes) + " nodes and " +
+                              " where there are " + std::to_string(n_nodes) + " nodes and " +
                               std::to_string(shape.n_dies) + " dies, counted from 0");
       }
       return pairs;
@@ -206,7 +244,7 @@ namespace retroforge
   } // namespace
 
   RecordShape::RecordShape(const RecordHeader &header)
-      : n_nodes(header.mesh.n_nodes()), n_dies(header.n_dies), run(0xcbf29ce484222325u)
+      : n_dies(header.n_dies), run(0xcbf29ce484222325u)
   {
     const TetMesh &mesh = header.mesh;
     add_to_fingerprint(run, header.parameters.data(), header.parameters.size());
@@ -258,7 +296,7 @@ namespace retroforge
                        const IncrementRecord &increment,
                        const RecordShape     &shape)
   {
-    check_increment(increment, shape);
+    const unsigned int n_nodes = check_increment(increment, shape);
     const hdf5::Handle group = hdf5::create_group(file, increment_name(i));
     hdf5::write_attribute(group, "run", &shape.run);
     hdf5::write_attribute(group, "stroke", &increment.stroke);
@@ -266,8 +304,15 @@ namespace retroforge
     hdf5::write_attribute(group, "cuts", &increment.cuts);
     hdf5::write_attribute(group, "deformation_energy", &increment.deformation_energy);
     hdf5::write_attribute(group, "friction_energy", &increment.friction_energy);
+    hdf5::write_attribute(group, "n_nodes", &n_nodes);
+    hdf5::write_attribute(group, "newton", &increment.newton);
+    hdf5::write_attribute(group, "krylov", &increment.krylov);
+    hdf5::write_attribute(group, "linear_solves", &increment.linear_solves);
+    write_vectors(group, "forces", increment.forces);
     write_pairs(group, increment.pairs);
-    write_solves(group, increment.solves, shape.n_nodes, increment.pairs.size());
+    write_solves(group, increment.solves, n_nodes, increment.pairs.size());
+    if (increment.remesh)
+      write_remesh(group, *increment.remesh);
   }
 
   IncrementRecord read_increment(const hid_t file, const unsigned int i, const RecordShape &shape)
@@ -281,8 +326,15 @@ namespace retroforge
     increment.cuts               = hdf5::read_attribute<unsigned int>(group, "cuts");
     increment.deformation_energy = hdf5::read_attribute<double>(group, "deformation_energy");
     increment.friction_energy    = hdf5::read_attribute<double>(group, "friction_energy");
-    increment.pairs              = read_pairs(group, shape);
-    increment.solves             = read_solves(group, shape.n_nodes, increment.pairs.size());
+    increment.newton             = hdf5::read_attribute<unsigned int>(group, "newton");
+    increment.krylov             = hdf5::read_attribute<unsigned int>(group, "krylov");
+    increment.linear_solves      = hdf5::read_attribute<unsigned int>(group, "linear_solves");
+    increment.forces             = read_vectors(group, "forces", hdf5::any);
+    const auto n_nodes           = hdf5::read_attribute<unsigned int>(group, "n_nodes");
+    increment.pairs              = read_pairs(group, shape, n_nodes);
+    increment.solves             = read_solves(group, n_nodes, increment.pairs.size());
+    if (hdf5::has_group(group, "remesh"))
+      increment.remesh = read_remesh(group);
     return increment;
   }
 } // namespace retroforge

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/element/strain_history.h>
+#include <retroforge/mesh/cell_to_node.h>
 #include <retroforge/time/forging.h>
 
 namespace retroforge
@@ -39,17 +41,32 @@ namespace retroforge
     prm.leave_subsection();
   }
 
-  Forging::Forging(const Scene &scene, const PressParameters &press, Increment &increment)
-      : scene_(scene), press_(press), increment_(increment)
+  Forging::Forging(const ForgingModel    &model,
+                   const PressParameters &press,
+                   const Remesher        &remesher,
+                   Timings               &timings)
+      : model_(model), press_(press), remesher_(remesher), timings_(timings)
   {
   }
 
-  bool Forging::acceptable(const NodalVectors<double> &X, const NodalVectors<double> &X_next) const
+  ForgingState Forging::start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0) const
   {
-    for (CellIndex c = 0; c < scene_.mesh.n_cells(); ++c)
+    ForgingState state;
+    state.X      = X_0;
+    state.W      = Field<double>(leg->scene.mesh);
+    state.strain = std::vector<double>(leg->scene.mesh.n_cells(), 0.);
+    state.leg    = std::move(leg);
+    return state;
+  }
+
+  bool Forging::acceptable(const Leg                  &leg,
+                           const NodalVectors<double> &X,
+                           const NodalVectors<double> &X_next) const
+  {
+    const TetMesh &mesh = leg.scene.mesh;
+    for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
-      const auto before = positions_of_cell(scene_.mesh, X, c),
-                 after  = positions_of_cell(scene_.mesh, X_next, c);
+      const auto before = positions_of_cell(mesh, X, c), after = positions_of_cell(mesh, X_next, c);
       if (!(cell_geometry(after).volume > press_.smallest_volume * cell_geometry(before).volume))
         return false;
       for (unsigned int a = 0; a < 4; ++a)
@@ -61,84 +78,144 @@ namespace retroforge
     return true;
   }
 
-  ForgingResult
-  Forging::run(const Process<double> &process, const NodalVectors<double> &X_0, const Watch &watch)
+  void Forging::change_mesh(const RemeshRecord &remesh, ForgingState &state) const
   {
-    ForgingResult   result;
-    IncrementReport report;
-    Field<double>   W(scene_.mesh);
-    result.X            = X_0;
-    const double whole  = press_.stroke / press_.increments;
-    double       stroke = 0.;
-    unsigned int depth  = 0; // the present increment is whole / 2^depth
-    while (stroke < press_.stroke - 1e-9 * whole)
-    {
-      IncrementRecord record;
-      record.stroke = stroke;
-      record.step   = std::min(whole / (1 << depth), press_.stroke - stroke);
-      NodalVectors<double> X_next;
-      Field<double>        solution = W;
-      for (;; record.step *= 0.5, ++record.cuts, ++depth)
-      {
-        if (record.cuts > press_.max_cuts)
-          throw Error("Press/increments",
-                      "an increment at stroke " + std::to_string(stroke) + " mm was halved " +
-                        std::to_string(press_.max_cuts) + " times and still inverts an element",
-                      "elements must keep a positive volume",
-                      "the mesh is too distorted to go on: shorten the stroke or use a finer mesh");
-        solution = W;
-        X_next   = increment_.forward(process, result.X, false, record, solution, report);
-        result.newton += report.newton.iterations;
-        result.krylov += report.newton.krylov;
-        if (acceptable(result.X, X_next))
-          break;
-      }
-      stroke += record.step;
-      W = std::move(solution);
-      result.energy.deformation += record.deformation_energy;
-      result.energy.friction += record.friction_energy;
-      ++result.increments;
-      result.cuts += record.cuts;
-      if (watch)
-        watch({result.increments,
-               record,
-               report,
-               result.X,
-               X_next,
-               W,
-               stroke / process.speed(),
-               result.energy.total()});
-      result.X = std::move(X_next);
-      // Back to longer steps once a whole number of them fits.
-      const double done = stroke / whole;
-      while (depth > 0 && std::abs(done * (1 << (depth - 1)) - std::round(done * (1 << (depth - 1)))) < 1e-9)
-        --depth;
-    }
-    return result;
+    const TransferOperator &J       = remesh.transfer;
+    const TetMesh          &old     = state.leg->scene.mesh;
+    std::vector<double>     at_node = J.apply(cell_to_node(old, state.X, state.strain));
+    Field<double>           W(remesh.mesh);
+    W.V          = J.apply(state.W.V);
+    W.P          = J.apply(state.W.P);
+    state.X      = J.positions(state.X);
+    state.strain = node_to_cell(remesh.mesh, at_node);
+    state.W      = std::move(W);
+    state.leg    = std::make_shared<Leg>(remesh.mesh, model_, timings_);
+    state.remeshed.push_back(state.increments);
   }
 
-  ForgingResult Forging::replay(const Process<double>      &process,
-                                const NodalVectors<double> &X_0,
-                                const unsigned int          n,
-                                const Source               &source)
+  void Forging::remesh(ForgingState &state, IncrementRecord &record) const
   {
-    ForgingResult   result;
-    IncrementReport report;
-    result.X = X_0;
+    const auto timing = timings_.scope("remeshing");
+    record.remesh     = remesher_.remesh(state.leg->scene.mesh, state.X);
+    change_mesh(*record.remesh, state);
+    state.X = record.remesh->mesh.X; // J X + c to the last bit
+  }
+
+  void Forging::finish_increment(const Process<double> &process,
+                                 const IncrementRecord &record,
+                                 NodalVectors<double>   X_next,
+                                 ForgingState          &state) const
+  {
+    const NodalVectors<double> position = state.leg->increment.stage_positions(process, state.X, record);
+    state.strain                        = accumulate_strain(
+      state.leg->scene.mesh, position, state.W, record.step / process.speed(), state.strain);
+    state.X = std::move(X_next);
+    state.stroke += record.step;
+    state.energy.deformation += record.deformation_energy;
+    state.energy.friction += record.friction_energy;
+    state.cuts += record.cuts;
+    state.newton += record.newton;
+    state.krylov += record.krylov;
+    state.linear_solves += record.linear_solves;
+    ++state.increments;
+    const double whole = press_.stroke / press_.increments, done = state.stroke / whole;
+    while (whole / (1 << state.depth) > record.step * (1. + 1e-9) && state.depth < 30)
+      ++state.depth;
+    // Back to longer steps once a whole number of them fits.
+    while (state.depth > 0 &&
+           std::abs(done * (1 << (state.depth - 1)) - std::round(done * (1 << (state.depth - 1)))) < 1e-9)
+      --state.depth;
+  }
+
+  void Forging::run(const Process<double> &process, ForgingState &state, const Watch &watch) const
+  {
+    const double      whole = press_.stroke / press_.increments;
+    std::vector<bool> frozen;
+    if (remesher_.enabled())
+      frozen = remesher_.frozen(state.leg->scene.mesh);
+    const auto since_remeshing = [&]() {
+      return state.increments - (state.remeshed.empty() ? 0 : state.remeshed.back());
+    };
+    while (state.stroke < press_.stroke - 1e-9 * whole)
+    {
+      IncrementRecord record;
+      const auto      renew = [&]() {
+        remesh(state, record);
+        frozen = remesher_.frozen(state.leg->scene.mesh);
+      };
+      if (remesher_.enabled() && remesher_.due(state.leg->scene.mesh, state.X, frozen, since_remeshing()))
+        renew();
+      record.stroke = state.stroke;
+      record.step   = std::min(whole / (1 << state.depth), press_.stroke - state.stroke);
+      NodalVectors<double> X_next;
+      Field<double>        solution;
+      for (;;)
+      {
+        solution = state.W;
+        X_next   = state.leg->increment.forward(process, state.X, false, record, solution);
+        if (acceptable(*state.leg, state.X, X_next))
+          break;
+        if (remesher_.enabled() && !record.remesh && since_remeshing() > 0)
+        {
+          renew();
+          continue;
+        }
+        record.step *= 0.5;
+        if (++record.cuts > press_.max_cuts)
+          throw Error("Press/increments",
+                      "an increment at stroke " + std::to_string(state.stroke) + " mm was halved " +
+                        std::to_string(press_.max_cuts) + " times and still inverts an element",
+                      "elements must keep a positive volume",
+                      remesher_.enabled() ? "shorten the stroke or use a finer mesh"
+                                          : "the mesh is too distorted to go on: set Remeshing/when = quality");
+      }
+      const NodalVectors<double> X_before = state.X;
+      state.W                             = std::move(solution);
+      finish_increment(process, record, std::move(X_next), state);
+      if (watch)
+        watch({record, X_before, state, state.stroke / process.speed()});
+    }
+  }
+
+  void Forging::restore(const Process<double> &process,
+                        const unsigned int     n,
+                        const Source          &source,
+                        ForgingState          &state,
+                        const Watch           &watch) const
+  {
+    for (unsigned int i = 0; i < n; ++i)
+    {
+      const IncrementRecord &record = source(i);
+      if (record.remesh)
+      {
+        change_mesh(*record.remesh, state);
+        state.X = record.remesh->mesh.X;
+      }
+      const NodalVectors<double> X_before = state.X;
+      state.W                             = state.leg->increment.last_field(process, state.X, record);
+      finish_increment(process, record, state.leg->increment.advance(process, state.X, record), state);
+      if (watch)
+        watch({record, X_before, state, state.stroke / process.speed()});
+    }
+  }
+
+  void Forging::replay(const Process<double> &process,
+                       const unsigned int     n,
+                       const Source          &source,
+                       ForgingState          &state) const
+  {
     for (unsigned int i = 0; i < n; ++i)
     {
       IncrementRecord record = source(i);
-      Field<double>   W(scene_.mesh);
-      W.V      = record.solves[0].V;
-      W.P      = record.solves[0].P;
-      result.X = increment_.forward(process, result.X, true, record, W, report);
-      result.energy.deformation += record.deformation_energy;
-      result.energy.friction += record.friction_energy;
-      result.newton += report.newton.iterations;
-      result.krylov += report.newton.krylov;
-      ++result.increments;
-      result.cuts += record.cuts;
+      record.newton = record.krylov = record.linear_solves = 0;
+      if (record.remesh)
+        change_mesh(*record.remesh, state);
+      state.W   = Field<double>(state.leg->scene.mesh);
+      state.W.V = record.solves[0].V;
+      state.W.P = record.solves[0].P;
+      NodalVectors<double> X_next =
+        state.leg->increment.forward(process, state.X, true, record, state.W);
+      finish_increment(process, record, std::move(X_next), state);
     }
-    return result;
   }
 } // namespace retroforge

@@ -149,14 +149,15 @@ namespace retroforge
                                           const NodalVectors<double> &X,
                                           const bool                  replay,
                                           IncrementRecord            &record,
-                                          Field<double>              &W,
-                                          IncrementReport            &report)
+                                          Field<double>              &W)
   {
     const Physics<double> physics = process.at_stroke(record.stroke);
     const double          dt      = record.step / process.speed();
     const bool            two     = model_.scheme == Scheme::midpoint;
     const auto frozen = [&](const unsigned int s) { return replay ? record.solves[s].active : ActiveSet(); };
     std::vector<SolveRecord> solves(two ? 2 : 1);
+    // A run that is resumed must not differ from one that was not.
+    system_.reset();
     for (double reach = model_.reach;; reach *= 2.)
     {
       if (!replay)
@@ -168,16 +169,15 @@ namespace retroforge
       Field<double>            trial    = W;
       NodalVectors<double>     position = X;
       bool                     repeat   = false;
-      report.newton                     = {};
+      const unsigned int       solves_before = system_.n_solves;
       for (unsigned int s = 0; s < solves.size() && !repeat; ++s)
       {
         if (s == 1)
           position = advanced(X, 0.5 * dt, trial.V);
         const Stage<double>    stage(scene_, physics, contact, position);
         const NewtonStatistics statistics = newton_.solve(stage, trial, frozen(s));
-        report.newton.iterations += statistics.iterations;
-        report.newton.krylov += statistics.krylov;
-        report.newton.residual = std::max(report.newton.residual, statistics.residual);
+        record.newton += statistics.iterations;
+        record.krylov += statistics.krylov;
         const ActiveSet active = replay ? frozen(s) : stage.decide_active(trial);
         repeat                 = !replay && escaped(stage, trial);
         solves[s]              = {trial.V, trial.P, active};
@@ -186,15 +186,40 @@ namespace retroforge
           const auto [deformation, friction] = stage.power(trial, active);
           record.deformation_energy          = dt * scene_.partition.sum(deformation);
           record.friction_energy             = dt * scene_.partition.sum(friction);
-          report.forces                      = die_forces(stage, trial, active);
+          record.forces                      = die_forces(stage, trial, active);
         }
       }
+      record.linear_solves += system_.n_solves - solves_before;
       if (repeat)
         continue;
       record.solves = std::move(solves);
-      W             = std::move(trial);
+      W             = recorded_field(Stage<double>(scene_, physics, contact, position), record.solves.back());
       return advanced(X, dt, W.V);
     }
+  }
+
+  NodalVectors<double> Increment::advance(const Process<double>      &process,
+                                          const NodalVectors<double> &X,
+                                          const IncrementRecord      &record) const
+  {
+    return advanced(X, record.step / process.speed(), record.solves.back().V);
+  }
+
+  Field<double> Increment::last_field(const Process<double>      &process,
+                                      const NodalVectors<double> &X,
+                                      const IncrementRecord      &record) const
+  {
+    const Physics<double>      physics = process.at_stroke(record.stroke);
+    const ContactSet<double>   none;
+    const NodalVectors<double> position = stage_positions(process, X, record);
+    return recorded_field(Stage<double>(scene_, physics, none, position), record.solves.back());
+  }
+
+  void Increment::forget()
+  {
+    system_.reset();
+    for (auto &lambdas : earlier_lambdas_)
+      lambdas.clear();
   }
 
   Field<double> Increment::recorded_field(const Stage<double> &stage, const SolveRecord &solve) const

@@ -12,5 +12,8 @@ namespace retroforge
 {
   /// Makes a mesh on rank 0 and gives it to all ranks. When `make` throws there, all ranks throw the same
   /// Error, so that none waits for the others. Collective.
-  TetMesh make_on_root(const std::function<TetMesh()> &make, MPI_Comm communicator);
+  /// @param with_it  a list that `make` fills and all ranks get too; may be null
+  TetMesh make_on_root(const std::function<TetMesh()> &make,
+                       MPI_Comm                        communicator,
+                       std::vector<NodeIndex>         *with_it = nullptr);
 } // namespace retroforge

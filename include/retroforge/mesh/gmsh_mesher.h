@@ -4,6 +4,7 @@
 
 #include <retroforge/mesh/patch_shapes.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,17 @@ namespace retroforge
   /// edge of the solid limits it). The same input gives the same mesh, bit for bit. Throws Error at `where`
   /// when the cuts leave nothing or Gmsh fails. To be called on one rank only.
   TetMesh mesh_with_gmsh(const CutSolid &solid, double element_size, const std::string &where);
+
+  /// Cells and nodes of an unstructured tetrahedral mesh of what the triangles enclose. The triangles, turned
+  /// outwards, are kept as they are; the nodes of the result are first `X`, then those made inside. The same
+  /// input gives the same mesh, bit for bit. Throws Error at `where` when Gmsh fails, which it does when
+  /// triangles cross. To be called on one rank only.
+  /// @param X     positions of the nodes of the triangles, and of no others
+  /// @param size  wanted length of edges at a point
+  TetMesh fill_with_gmsh(const NodalVectors<double>                  &X,
+                         const std::vector<std::array<NodeIndex, 3>> &triangles,
+                         const std::function<double(const Vec3 &)>   &size,
+                         const std::string                           &where);
 
   /// Reads linear tetrahedra from a Gmsh file (.msh, versions 2 and 4, ASCII or binary). Physical surfaces
   /// become patches, named as in the file or, without a name, by their number; outer faces on no physical

@@ -10,7 +10,8 @@ namespace retroforge
   /// contiguous range of nodes is a compact piece of the workpiece; then sorts cells and boundary
   /// faces by their smallest node, and turns each (keeping its orientation) to begin with it.
   /// Deterministic; a mesh that differs only in the order of cells or faces gives the same numbers.
-  void renumber(TetMesh &mesh);
+  /// @return the new number of each node
+  std::vector<NodeIndex> renumber(TetMesh &mesh);
 
   /// Largest difference of two node numbers in one cell.
   unsigned int bandwidth(const TetMesh &mesh);

@@ -66,7 +66,7 @@ namespace retroforge
     std::vector<Objective> objectives;
     std::vector<Parameter> parameters;
 
-    Count increments, cuts, newton_iterations, krylov_iterations, linear_solves_forward,
+    Count increments, cuts, remeshings, newton_iterations, krylov_iterations, linear_solves_forward,
       linear_solves_adjoint;
 
     double volume_initial = unknown;

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <retroforge/contact/contact.h>
+#include <retroforge/mesh/transfer.h>
+
+#include <memory>
 
 namespace retroforge
 {
@@ -14,14 +17,27 @@ namespace retroforge
     std::vector<char>    active; ///< h > 0 of each pair
   };
 
+  /// A change of mesh between two increments.
+  struct RemeshRecord
+  {
+    NodalVectors<double> X_before; ///< positions on the old mesh [mm]
+    TetMesh              mesh;     ///< the new one; its X are the positions after
+    TransferOperator     transfer;
+  };
+
   /// What the backward pass and a replay need of one increment. Positions follow from X_0 and the velocities.
   struct IncrementRecord
   {
     double                   stroke = 0.; ///< of the leading die at the start [mm]
     double                   step   = 0.; ///< [mm]
     unsigned int             cuts   = 0;  ///< times the step was halved
-    std::vector<ContactPair> pairs;
+    /// Made just before the increment; null when it goes on with the mesh there was.
+    std::shared_ptr<const RemeshRecord> remesh;
+    std::vector<ContactPair>            pairs;
     std::vector<SolveRecord> solves;                                        ///< one per stage of the scheme
     double                   deformation_energy = 0., friction_energy = 0.; ///< of this increment [mJ]
+    /// Told, and of no use to the backward pass: force of each die on the workpiece [N], iterations.
+    std::vector<Vec3> forces;
+    unsigned int      newton = 0, krylov = 0, linear_solves = 0;
   };
 } // namespace retroforge

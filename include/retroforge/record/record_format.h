@@ -16,12 +16,18 @@
 ///       cells                 [n_cells][4]      uint32
 ///       faces                 [n_faces][4]      uint32        three nodes, patch
 ///       patch_0 ...           name; of a symmetry plane also the attributes point, normal  [3] double
-///     /increment_000000 ...   attributes: run, stroke, step, cuts, deformation_energy, friction_energy
+///     /increment_000000 ...   attributes: run, n_nodes, stroke, step, cuts, deformation_energy,
+///                             friction_energy, newton, krylov, linear_solves
+///       forces                [n_dies][3]             double [N]
 ///       V                     [n_solves][n_nodes][3]  double [mm/s]
 ///       P                     [n_solves][n_nodes]     double [MPa]
 ///       pairs                 [n_pairs][2]            uint32  node, die
 ///       touching              [n_pairs]               uint8
 ///       active                [n_solves][n_pairs]     uint8
+///       remesh                only of an increment that begins on a new mesh: that mesh as in the header
+///         X_before            [n_old][3]              double [mm]   positions on the mesh before
+///         begin               [n_nodes + 1]           uint32        rows of J,
+///         node weight         [n_entries]             uint32, double
 /// A finished file has at its root the attribute n_increments.
 namespace retroforge
 {
@@ -39,7 +45,7 @@ namespace retroforge
   /// What the increments of a run have in common.
   struct RecordShape
   {
-    unsigned int  n_nodes = 0, n_dies = 0;
+    unsigned int  n_dies = 0;
     std::uint64_t run = 0; ///< fingerprint of the header: increments of different runs do not mix
 
     RecordShape() = default;

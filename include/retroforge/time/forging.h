@@ -2,7 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/time/increment.h>
+#include <retroforge/time/leg.h>
+#include <retroforge/time/remesher.h>
 
 namespace retroforge
 {
@@ -19,51 +20,71 @@ namespace retroforge
     void add_parameters(dealii::ParameterHandler &prm);
   };
 
+  /// Where a run stands between two increments.
+  struct ForgingState
+  {
+    std::shared_ptr<Leg> leg;
+    NodalVectors<double> X;
+    std::vector<double>  strain; ///< accumulated equivalent strain of each cell
+    Field<double>        W;      ///< the last increment's solution, where the next one starts
+    double               stroke = 0.;
+    unsigned int         depth  = 0; ///< an increment is the whole one / 2^depth
+
+    Energy<double>            energy;
+    unsigned int              increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;
+    std::vector<unsigned int> remeshed; ///< the increments, from 0, that began on a new mesh
+  };
+
   /// What is known at the end of an increment.
   struct IncrementEvent
   {
-    unsigned int                index; ///< from 1
     const IncrementRecord      &record;
-    const IncrementReport      &report;
-    const NodalVectors<double> &X_before;
-    const NodalVectors<double> &X;
-    const Field<double>        &W;
+    const NodalVectors<double> &X_before; ///< on the mesh of the increment
+    const ForgingState         &state;    ///< after the increment
     double                      time;
-    double                      energy; ///< so far [mJ]
-  };
-
-  /// Outcome of a run.
-  struct ForgingResult
-  {
-    NodalVectors<double> X;
-    Energy<double>       energy;
-    unsigned int         increments = 0, cuts = 0, newton = 0, krylov = 0;
   };
 
   /// The time loop: increments of equal stroke, halved while an element would invert or a node would cross
-  /// too much of an edge. In a replay the recorded increments are obeyed instead.
+  /// too much of an edge, on meshes that are remade when they must. In a replay what was recorded is obeyed
+  /// instead.
   class Forging
   {
   public:
     using Watch  = std::function<void(const IncrementEvent &)>;
     using Source = std::function<const IncrementRecord &(unsigned int)>;
 
-    Forging(const Scene &scene, const PressParameters &press, Increment &increment);
+    Forging(const ForgingModel &model, const PressParameters &press, const Remesher &remesher, Timings &timings);
 
-    /// Decides everything anew.
-    ForgingResult run(const Process<double> &process, const NodalVectors<double> &X_0, const Watch &watch);
+    /// Before the first increment.
+    ForgingState start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0) const;
+
+    /// Goes on from `state` to the end of the stroke, and decides everything anew.
+    void run(const Process<double> &process, ForgingState &state, const Watch &watch) const;
+
+    /// Where a run stood after n recorded increments, to the bit: nothing is solved.
+    void restore(const Process<double> &process,
+                 unsigned int           n,
+                 const Source          &source,
+                 ForgingState          &state,
+                 const Watch           &watch) const;
 
     /// Obeys the decisions of n recorded increments, and starts each solve from the recorded one.
-    ForgingResult replay(const Process<double>      &process,
-                         const NodalVectors<double> &X_0,
-                         unsigned int                n,
-                         const Source               &source);
+    void replay(const Process<double> &process, unsigned int n, const Source &source, ForgingState &state) const;
+
+    /// Changes the mesh as recorded: positions X' = J X + c, strain through the nodes.
+    void change_mesh(const RemeshRecord &remesh, ForgingState &state) const;
 
   private:
-    bool acceptable(const NodalVectors<double> &X, const NodalVectors<double> &X_next) const;
+    bool acceptable(const Leg &leg, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const;
+    void remesh(ForgingState &state, IncrementRecord &record) const;
+    void finish_increment(const Process<double> &process,
+                          const IncrementRecord &record,
+                          NodalVectors<double>   X_next,
+                          ForgingState          &state) const;
 
-    const Scene           &scene_;
+    const ForgingModel    &model_;
     const PressParameters &press_;
-    Increment             &increment_;
+    const Remesher        &remesher_;
+    Timings               &timings_;
   };
 } // namespace retroforge

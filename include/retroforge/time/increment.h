@@ -35,13 +35,6 @@ namespace retroforge
     Number total() const { return deformation + friction; }
   };
 
-  /// What an increment tells besides its record.
-  struct IncrementReport
-  {
-    NewtonStatistics  newton;
-    std::vector<Vec3> forces; ///< of each die on the workpiece, last stage [N]
-  };
-
   /// One increment of time: forward, its tangent, and its reverse.
   class Increment
   {
@@ -53,15 +46,13 @@ namespace retroforge
               Timings                &timings);
 
     /// From X_i to X_{i+1}. @param record  in: stroke, step; with `replay`, the recorded decisions are
-    /// obeyed.
-    ///        Out: pairs, solves, energies.
+    /// obeyed. Out: pairs, solves, energies, forces; iterations are added.
     /// @param W  in: initial guess, out: the last stage's solution
     NodalVectors<double> forward(const Process<double>      &process,
                                  const NodalVectors<double> &X,
                                  bool                        replay,
                                  IncrementRecord            &record,
-                                 Field<double>              &W,
-                                 IncrementReport            &report);
+                                 Field<double>              &W);
 
     /// Derivative of X_{i+1} and of the energy along (X, process), at a recorded increment.
     NodalVectors<Dual> tangent(const Process<Dual>      &process,
@@ -77,6 +68,19 @@ namespace retroforge
                  double                      energy_weight,
                  NodalVectors<double>       &G,
                  ProcessBar                 &process_bar);
+
+    /// X_{i+1} of a recorded increment, to the bit.
+    NodalVectors<double>
+    advance(const Process<double> &process, const NodalVectors<double> &X, const IncrementRecord &record) const;
+
+    /// Solution of the last stage of a recorded increment, its bubbles recovered from nothing: the same bits
+    /// as at the end of forward.
+    Field<double> last_field(const Process<double>      &process,
+                             const NodalVectors<double> &X,
+                             const IncrementRecord      &record) const;
+
+    /// Forgets what earlier systems left: preconditioner and starts. Results then depend on the input only.
+    void forget();
 
     /// Positions of the last stage, where objectives are taken.
     NodalVectors<double> stage_positions(const Process<double>      &process,

@@ -72,24 +72,23 @@ namespace
   {
     explicit Problem(const Parameters &all)
         : parameters(all)
-        , scene(make_billet(all.billet, MPI_COMM_WORLD),
-                {all.dies[0].die(), all.dies[1].die()},
-                MPI_COMM_WORLD)
         , process(all.process(all.billet.size[2]))
-        , model(all.step_model())
-        , system(scene, parameters.linear_solver, timings)
-        , increment(scene, model, parameters.newton, system, timings)
-        , forging(scene, parameters.press, increment)
-        , forged(forging.run(process, scene.mesh.X, [&](const IncrementEvent &event) {
-          records.push_back(event.record);
-        }))
+        , model{{all.dies[0].die(), all.dies[1].die()},
+                all.step_model(),
+                all.newton,
+                all.linear_solver,
+                MPI_COMM_WORLD}
+        , leg(std::make_shared<Leg>(make_billet(all.billet, MPI_COMM_WORLD), model, timings))
+        , scene(leg->scene)
+        , system(leg->system)
+        , remesher(parameters.remeshing, 1., MPI_COMM_WORLD)
+        , forging(model, parameters.press, remesher, timings)
+        , forged(forging.start(leg, scene.mesh.X))
     {
+      forging.run(process, forged, [&](const IncrementEvent &event) { records.push_back(event.record); });
     }
 
-    AdjointResult adjoint()
-    {
-      return adjoint_sweep(scene, increment, process, forged.X, records.size(), source());
-    }
+    AdjointResult adjoint() { return adjoint_sweep(model, leg, process, forged, source(), timings); }
 
     Forging::Source source() const
     {
@@ -98,14 +97,15 @@ namespace
 
     const Parameters             parameters;
     Timings                      timings;
-    Scene                        scene;
     Process<double>              process;
-    StepModel                    model;
-    LinearSystem                 system;
-    Increment                    increment;
+    ForgingModel                 model;
+    std::shared_ptr<Leg>         leg;
+    const Scene                 &scene;
+    LinearSystem                &system;
+    Remesher                     remesher;
     Forging                      forging;
     std::vector<IncrementRecord> records;
-    ForgingResult                forged;
+    ForgingState                 forged;
   };
 
   /// The contact's part of a reverse sweep; `reverse_node` is that of one node.
@@ -218,8 +218,8 @@ namespace
                                                         scene.dies,
                                                         physics.dies,
                                                         record.pairs,
-                                                        problem.model.ramp,
-                                                        problem.model.approach * dt,
+                                                        problem.model.step.ramp,
+                                                        problem.model.step.approach * dt,
                                                         X);
     ContactSetBar            contact_bar(record.pairs.size());
     PhysicsBar               bar(scene.dies.size());
@@ -229,7 +229,7 @@ namespace
       const double               reach = s == 1 ? dt : 0.5 * dt;
       const SolveRecord         &solve = record.solves[s];
       const NodalVectors<double> position =
-        s == 0 ? X : problem.increment.stage_positions(problem.process, X, record);
+        s == 0 ? X : problem.leg->increment.stage_positions(problem.process, X, record);
       const Stage<double> stage(scene, physics, contact, position);
       Field<double>       W(scene.mesh), rhs(scene.mesh), minus_rhs(scene.mesh), lambda;
       W.V = solve.V;
@@ -245,7 +245,7 @@ namespace
       }
       minus_rhs.add(-1., rhs);
       problem.system.assemble(stage, W, solve.active);
-      problem.system.solve(minus_rhs, problem.model.adjoint_tolerance, lambda);
+      problem.system.solve(minus_rhs, problem.model.step.adjoint_tolerance, lambda);
       if (s == 0 && omitted == Term::first_stage)
         lambda = Field<double>(scene.mesh);
       reverse_equilibrium(stage, W, solve.active, lambda, omitted, X_bar, contact_bar, bar);
@@ -261,8 +261,8 @@ namespace
       bar.dt = 0.;
     if (omitted == Term::tau)
       bar.contact.tau = 0.;
-    reverse_contact_set(scene.dies, contact, problem.model.ramp, contact_bar, G, bar.contact);
-    process_bar.add(bar, problem.process, {record.stroke, record.step}, problem.model.approach);
+    reverse_contact_set(scene.dies, contact, problem.model.step.ramp, contact_bar, G, bar.contact);
+    process_bar.add(bar, problem.process, {record.stroke, record.step}, problem.model.step.approach);
   }
 
   AdjointResult sweep(Problem &problem, const Term omitted)

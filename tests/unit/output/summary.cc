@@ -27,6 +27,7 @@ Summary filled()
   s.parameters            = {{"material/K", 1., "MPa s^m", {{"energy", 1.5}, {"volume", Summary::unknown}}}};
   s.increments            = 20;
   s.cuts                  = 0;
+  s.remeshings            = 3;
   s.newton_iterations     = 71;
   s.krylov_iterations     = 900;
   s.linear_solves_forward = 71;

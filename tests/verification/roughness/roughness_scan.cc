@@ -31,13 +31,17 @@ namespace
   {
     explicit Scan(const Parameters &all)
         : parameters(all)
-        , scene(make_billet(all.billet, MPI_COMM_WORLD), make_dies(all.dies), MPI_COMM_WORLD)
+        , mesh(make_billet(all.billet, MPI_COMM_WORLD))
         , nominal(parameters.settle(all.billet.size[2]).process(all.billet.size[2]))
-        , model(parameters.step_model())
-        , design(all.design.names, all.billet, all.dies, nominal, scene.mesh.X)
-        , system(scene, parameters.linear_solver, timings)
-        , increment(scene, model, parameters.newton, system, timings)
-        , forging(scene, parameters.press, increment)
+        , model{make_dies(all.dies),
+                parameters.step_model(),
+                parameters.newton,
+                parameters.linear_solver,
+                MPI_COMM_WORLD}
+        , design(all.design.names, all.billet, all.dies, nominal, mesh.X)
+        , leg(std::make_shared<Leg>(mesh, model, timings))
+        , remesher(parameters.remeshing, parameters.edge_length(mesh), MPI_COMM_WORLD)
+        , forging(model, parameters.press, remesher, timings)
     {
     }
 
@@ -46,35 +50,28 @@ namespace
       const std::vector<double>    value   = {mu};
       const Process<double>        process = design.process(value);
       std::vector<IncrementRecord> records;
-      const ForgingResult          forged =
-        forging.run(process, design.positions(value), [&](const IncrementEvent &event) {
-          records.push_back(event.record);
-        });
-      const AdjointResult result =
-        adjoint_sweep(scene,
-                      increment,
-                      process,
-                      forged.X,
-                      records.size(),
-                      [&](const unsigned int i) -> const IncrementRecord & { return records[i]; });
+      ForgingState                 forged  = forging.start(leg, design.positions(value));
+      forging.run(process, forged, [&](const IncrementEvent &event) { records.push_back(event.record); });
+      const AdjointResult result = adjoint_sweep(
+        model, leg, process, forged, [&](const unsigned int i) -> const IncrementRecord & { return records[i]; }, timings);
       std::printf("%.17g,%.17g,%.17g,%u,%u\n",
                   mu,
                   forged.energy.total(),
                   design.pull_back(value, result.X_0, result.process)[0],
-                  scene.mesh.n_nodes(),
+                  mesh.n_nodes(),
                   forged.increments);
       std::fflush(stdout);
     }
 
-    Parameters       parameters;
-    Timings          timings;
-    Scene            scene;
-    Process<double>  nominal;
-    StepModel        model;
-    Design           design;
-    LinearSystem     system;
-    Increment        increment;
-    Forging          forging;
+    Parameters           parameters;
+    Timings              timings;
+    TetMesh              mesh;
+    Process<double>      nominal;
+    ForgingModel         model;
+    Design               design;
+    std::shared_ptr<Leg> leg;
+    Remesher             remesher;
+    Forging              forging;
   };
 } // namespace
 

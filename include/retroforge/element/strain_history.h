@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/element/field.h>
+
+#include <vector>
+
+/// The accumulated equivalent strain  q(t) = int_0^t e dt,  e = sqrt(2/3 eps:eps),  of each piece of
+/// material.
+///
+/// It is kept per cell,  q_T += dt ebar_T,  ebar_T = 1/4 sum_a e_a  the mean of the strain rates on the four
+/// sub-tetrahedra of equal volume. Strain rates live in cells: kept at nodes, every increment would average
+/// them over the neighbours and then again, and the history would diffuse with time even without remeshing.
+/// Cells move with the material, so between remeshings the update needs no other cell and no mass matrix.
+/// When the mesh changes: cell_to_node() on the old mesh, TransferOperator, node_to_cell() on the new one.
+/// The strain rate is not regularised (no e0): material at rest accumulates nothing.
+namespace retroforge
+{
+  /// ebar_T = 1/4 sum_a sqrt(2/3 eps_a:eps_a) [1/s]. Not smooth where an eps_a vanishes: the derivative of
+  /// that e_a, where one is asked for, is then zero.
+  template <typename Number>
+  Number cell_strain_rate(const CellGeometry<Number>  &geometry,
+                          const Four<Vector3<Number>> &V,
+                          const Vector3<Number>       &beta);
+
+  /// Derivatives of weight * cell_strain_rate: adds those in V and beta to V_bar and beta_bar, and those in
+  /// the positions of the nodes to X_bar.
+  void reverse_cell_strain_rate(const CellGeometry<double> &geometry,
+                                const Four<Vec3>           &V,
+                                const Vec3                 &beta,
+                                double                      weight,
+                                Four<Vec3>                 &V_bar,
+                                Vec3                       &beta_bar,
+                                Four<Vec3>                 &X_bar);
+
+  /// q_np1 = q_n + dt ebar(X, W),  one value per cell, dimensionless.
+  /// @param X, W  positions [mm] and velocities [mm/s] of the increment's last stage
+  template <typename Number>
+  std::vector<Number> accumulate_strain(const TetMesh              &mesh,
+                                        const NodalVectors<Number> &X,
+                                        const Field<Number>        &W,
+                                        const Number               &dt,
+                                        const std::vector<Number>  &q_n);
+
+  /// Pull-back of accumulate_strain: adds dt q_bar_T debar_T to W_bar (V and beta) and X_bar.
+  /// @param q_bar  adjoint of q_np1, and as it is that of q_n
+  /// @return derivative in dt,  sum_T q_bar_T ebar_T
+  double reverse_accumulate_strain(const TetMesh              &mesh,
+                                   const NodalVectors<double> &X,
+                                   const Field<double>        &W,
+                                   double                      dt,
+                                   const std::vector<double>  &q_bar,
+                                   Field<double>              &W_bar,
+                                   NodalVectors<double>       &X_bar);
+} // namespace retroforge

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/mesh/remeshing/remeshing_parameters.h>
+#include <retroforge/mesh/tet_mesh.h>
+
+namespace retroforge
+{
+  /// Gives a mesh a wanted volume by moving the nodes of its curved surface, all by the same distance along
+  /// the outward normal: spread so thinly it stays invisible, where correcting only touched nodes would make
+  /// bumps.
+  ///
+  /// Newton's method on the distance d,  V(X + d u) = V0,  u_k = P_k g_k / |g_k|  with the area vector g_k =
+  /// dV/dX_k. P_k takes out the normals of the symmetry planes and of the flat faces at k: what is flat (on a
+  /// flat die, say) stays flat, and its rim moves inside it. When nothing is curved, flat faces move too.
+  /// @return the farthest a node moved [length]
+  double correct_volume(TetMesh &mesh, double wanted_volume);
+} // namespace retroforge

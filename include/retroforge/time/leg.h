@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/time/increment.h>
+
+namespace retroforge
+{
+  /// What all meshes of a run have in common.
+  struct ForgingModel
+  {
+    std::vector<Die>       dies;
+    StepModel              step;
+    NewtonParameters       newton;
+    LinearSolverParameters linear_solver;
+    MPI_Comm               comm;
+  };
+
+  /// One mesh and all that works on it: the part of a run between two remeshings.
+  struct Leg
+  {
+    Scene        scene;
+    LinearSystem system;
+    Increment    increment;
+
+    Leg(TetMesh mesh, const ForgingModel &model, Timings &timings)
+        : scene(std::move(mesh), model.dies, model.comm)
+        , system(scene, model.linear_solver, timings)
+        , increment(scene, model.step, model.newton, system, timings)
+    {
+    }
+    Leg(const Leg &) = delete; // its members refer to each other
+  };
+} // namespace retroforge

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/mesh/remeshing/local_remesher.h>
+#include <retroforge/record/increment_record.h>
+
+#include <string>
+
+#include <mpi.h>
+
+namespace retroforge
+{
+  struct RemesherParameters
+  {
+    std::string         when         = "never"; ///< never, quality, increments
+    std::string         method       = "local";
+    unsigned int        every        = 5;
+    double              element_size = 0.;
+    RemeshingParameters local;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+    void check() const;
+  };
+
+  /// Decides when the mesh is to be remade, and remakes it: locally, or where that cannot be (inverted
+  /// cells), from its surface, followed by a local pass.
+  class Remesher
+  {
+  public:
+    /// @param element_size  wanted length of the edges [mm]
+    Remesher(const RemesherParameters &parameters, double element_size, MPI_Comm comm);
+
+    bool enabled() const { return parameters_.when != "never"; }
+
+    /// @param frozen      cells that the last remeshing could not make better, see frozen_cells()
+    /// @param increments  since the last remeshing
+    bool due(const TetMesh              &mesh,
+             const NodalVectors<double> &X,
+             const std::vector<bool>    &frozen,
+             unsigned int                increments) const;
+
+    /// Cells that remeshing cannot make better, of a mesh just made.
+    std::vector<bool> frozen(const TetMesh &mesh) const;
+
+    /// Collective: made on rank 0, the same everywhere. Numbered with renumber().
+    /// @throws Error  when no method gives a sound mesh
+    std::shared_ptr<const RemeshRecord> remesh(const TetMesh &mesh, const NodalVectors<double> &X) const;
+
+  private:
+    RemeshedMesh make(const TetMesh &mesh, const NodalVectors<double> &X) const;
+
+    RemesherParameters parameters_;
+    double             element_size_;
+    MPI_Comm           comm_;
+  };
+} // namespace retroforge

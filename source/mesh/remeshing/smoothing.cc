@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/mesh/cell_faces.h>
+#include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/mesh/remeshing/smoothing.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace retroforge
+{
+  namespace
+  {
+    // The face opposite a corner of a cell, turned towards the corner.
+    std::array<NodeIndex, 3> face_seen_from(const Cell &cell, const unsigned int corner)
+    {
+      const auto &local = tet_face_corners[corner];
+      return {{cell[local[0]], cell[local[2]], cell[local[1]]}};
+    }
+
+    unsigned int corner_of(const Cell &cell, const NodeIndex node)
+    {
+      return std::find(cell.begin(), cell.end(), node) - cell.begin();
+    }
+
+    double cavity_size(const EditableMesh &mesh, const Cavity &cavity, const Vec3 &x)
+    {
+      double sum = 0;
+      for (const auto &face : cavity)
+        for (const NodeIndex node : face)
+          sum += (mesh.X(node) - x).norm();
+      return sum / (3 * cavity.size());
+    }
+
+    // Area vector of what the cavity leaves open: the boundary at its apex.
+    Vec3 open_side(const EditableMesh &mesh, const Cavity &cavity)
+    {
+      Vec3 sum;
+      for (const auto &face : cavity)
+        sum += cross_product_3d(mesh.X(face[1]) - mesh.X(face[0]), mesh.X(face[2]) - mesh.X(face[0]));
+      return sum;
+    }
+
+    std::vector<Vec3> space_directions()
+    {
+      std::vector<Vec3> directions;
+      for (const double sign : {1., -1.})
+      {
+        for (unsigned int axis = 0; axis < 3; ++axis)
+        {
+          Vec3 d;
+          d[axis] = sign;
+          directions.push_back(d);
+        }
+        const double s = sign / std::sqrt(3.);
+        directions.insert(directions.end(),
+                          {Vec3({s, s, s}), Vec3({s, s, -s}), Vec3({s, -s, s}), Vec3({-s, s, s})});
+      }
+      return directions;
+    }
+
+    std::vector<Vec3> plane_directions(const Vec3 &normal)
+    {
+      const unsigned int axis = std::abs(normal[0]) < std::abs(normal[1])
+                                  ? (std::abs(normal[0]) < std::abs(normal[2]) ? 0 : 2)
+                                  : (std::abs(normal[1]) < std::abs(normal[2]) ? 1 : 2);
+      Vec3               u;
+      u[axis] = 1;
+      u       = cross_product_3d(normal, u);
+      u /= u.norm();
+      Vec3 v = cross_product_3d(normal, u);
+      v /= v.norm();
+      std::vector<Vec3> directions;
+      for (unsigned int i = 0; i < 8; ++i)
+        directions.push_back(std::cos(i * M_PI / 4) * u + std::sin(i * M_PI / 4) * v);
+      return directions;
+    }
+
+    // On a curve: where the place moves to when pushed; found by pushing along the three axes.
+    std::vector<Vec3> curve_directions(const Place &place, const Vec3 &x, const double step)
+    {
+      std::vector<Vec3> directions;
+      Vec3              best;
+      for (unsigned int axis = 0; axis < 3; ++axis)
+      {
+        Vec3 push;
+        push[axis]     = step;
+        const Vec3 way = place(x + push) - x;
+        if (way.norm() > best.norm())
+          best = way;
+      }
+      if (best.norm() > 0)
+        directions = {best / best.norm(), -1. * best / best.norm()};
+      return directions;
+    }
+
+    std::vector<Vec3> directions_of(const EditableMesh &mesh,
+                                    const Cavity       &cavity,
+                                    const Place        &place,
+                                    const Vec3         &start,
+                                    const double        size)
+    {
+      if (place.kind == NodeKind::interior)
+        return space_directions();
+      const Vec3 open = open_side(mesh, cavity);
+      if (place.kind == NodeKind::surface && open.norm() > 0)
+        return plane_directions(open / open.norm());
+      if (place.kind == NodeKind::ridge)
+        return curve_directions(place, start, 0.1 * size);
+      return {};
+    }
+  } // namespace
+
+  Cavity cavity_of_node(const EditableMesh &mesh, const NodeIndex node)
+  {
+    Cavity cavity;
+    for (const CellIndex c : mesh.cells_at(node))
+      cavity.push_back(face_seen_from(mesh.cell(c), corner_of(mesh.cell(c), node)));
+    return cavity;
+  }
+
+  Cavity cavity_of_edge(const EditableMesh &mesh, const NodeIndex a, const NodeIndex b)
+  {
+    Cavity cavity;
+    for (const CellIndex c : mesh.cells_at_edge(a, b))
+      for (const NodeIndex end : {a, b})
+        cavity.push_back(face_seen_from(mesh.cell(c), corner_of(mesh.cell(c), end)));
+    return cavity;
+  }
+
+  double cavity_quality(const EditableMesh &mesh, const Cavity &cavity, const Vec3 &x, const double bound)
+  {
+    double quality = 1;
+    for (const auto &face : cavity)
+    {
+      quality = std::min(quality, tet_quality({{mesh.X(face[0]), mesh.X(face[1]), mesh.X(face[2]), x}}));
+      if (!(quality > bound))
+        return std::min(quality, bound);
+    }
+    return quality;
+  }
+
+  BestPosition
+  best_position(const EditableMesh &mesh, const Cavity &cavity, const Place &place, const Vec3 &start)
+  {
+    const double size       = cavity_size(mesh, cavity, start);
+    const auto   directions = directions_of(mesh, cavity, place, start, size);
+    BestPosition best       = {start, cavity_quality(mesh, cavity, start, -2)};
+    for (double step = size / 4; step > size / 300; step /= 2)
+    {
+      bool is_better = !directions.empty();
+      for (unsigned int turn = 0; turn < 8 && is_better; ++turn)
+      {
+        is_better = false;
+        for (const Vec3 &direction : directions)
+        {
+          const Vec3   x       = place(best.x + step * direction);
+          const double quality = cavity_quality(mesh, cavity, x, best.quality);
+          if (quality > best.quality)
+          {
+            best      = {x, quality};
+            is_better = true;
+          }
+        }
+      }
+    }
+    return best;
+  }
+
+  std::optional<CavityChange>
+  plan_smoothing(const RemeshingContext &context, const NodeIndex node, const double least_gain)
+  {
+    const EditableMesh &mesh  = context.mesh;
+    const Place         place = place_of_node(context, node);
+    if (place.kind == NodeKind::corner)
+      return {};
+    const auto   best = best_position(mesh, cavity_of_node(mesh, node), place, mesh.X(node));
+    CavityChange change;
+    change.placed_node   = node;
+    change.position      = best.x;
+    change.removed_cells = mesh.cells_at(node);
+    for (const CellIndex c : change.removed_cells)
+      change.added_cells.push_back(mesh.cell(c));
+    const double bound = std::max(0., minimum_quality(mesh, change.removed_cells) + least_gain);
+    if (!(best.quality > bound) || !evaluate(mesh, bound, change))
+      return {};
+    for (const unsigned int f : mesh.faces_at(node))
+    {
+      const auto before = corners(mesh.face(f).nodes, mesh);
+      auto       after  = before;
+      for (unsigned int i = 0; i < 3; ++i)
+        if (mesh.face(f).nodes[i] == node)
+          after[i] = best.x;
+      if (!look_alike(before, after))
+        return {};
+    }
+    return change;
+  }
+} // namespace retroforge

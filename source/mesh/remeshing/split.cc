@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/mesh/remeshing/smoothing.h>
+#include <retroforge/mesh/remeshing/split.h>
+
+#include <algorithm>
+
+namespace retroforge
+{
+  namespace
+  {
+    bool plan_faces(const EditableMesh &mesh, const NodeIndex a, const NodeIndex b, CavityChange &change)
+    {
+      change.removed_faces = mesh.faces_at_edge(a, b);
+      for (const unsigned int f : change.removed_faces)
+        for (const NodeIndex end : {a, b})
+        {
+          const auto before = corners(mesh.face(f).nodes, mesh);
+          auto       after  = before;
+          for (unsigned int i = 0; i < 3; ++i)
+            if (mesh.face(f).nodes[i] == end)
+              after[i] = change.position;
+          if (!look_alike(before, after))
+            return false;
+          change.added_faces.push_back(
+            {replaced(mesh.face(f).nodes, end, change.placed_node), mesh.face(f).region});
+        }
+      return true;
+    }
+
+    void plan_ridges(const EditableMesh &mesh, const NodeIndex a, const NodeIndex b, CavityChange &change)
+    {
+      const unsigned int curve = mesh.curve_of_edge(a, b);
+      if (curve == invalid_index)
+        return;
+      change.removed_ridges = {{{{a, b}}, curve}};
+      change.added_ridges   = {{{{a, change.placed_node}}, curve}, {{{change.placed_node, b}}, curve}};
+    }
+  } // namespace
+
+  std::optional<CavityChange> plan_split(const RemeshingContext &context,
+                                         const NodeIndex         a,
+                                         const NodeIndex         b,
+                                         const double            bound,
+                                         const bool              optimised)
+  {
+    const EditableMesh &mesh  = context.mesh;
+    const Place         place = place_of_edge(context, a, b);
+    CavityChange        change;
+    change.placed_node = mesh.n_nodes();
+    change.position    = place((mesh.X(a) + mesh.X(b)) / 2.);
+    if (optimised)
+    {
+      const auto best = best_position(mesh, cavity_of_edge(mesh, a, b), place, change.position);
+      if (!(best.quality > bound))
+        return {};
+      change.position = best.x;
+    }
+    change.removed_cells = mesh.cells_at_edge(a, b);
+    for (const CellIndex c : change.removed_cells)
+      for (const NodeIndex end : {a, b})
+        change.added_cells.push_back(replaced(mesh.cell(c), end, change.placed_node));
+    if (!evaluate(mesh, std::max(0., bound), change) || !plan_faces(mesh, a, b, change))
+      return {};
+    plan_ridges(mesh, a, b, change);
+    return change;
+  }
+} // namespace retroforge

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/resume.h>
+
+#include <map>
+#include <sstream>
+
+namespace retroforge
+{
+  namespace
+  {
+    std::string trimmed(const std::string &text)
+    {
+      const auto begin = text.find_first_not_of(" \t"), end = text.find_last_not_of(" \t");
+      return begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
+    }
+
+    /// Values by Section/name of a text as print_parameters() writes it.
+    std::map<std::string, std::string> values_of(const std::string &parameters)
+    {
+      std::map<std::string, std::string> values;
+      std::istringstream                 lines(parameters);
+      std::string                        section;
+      for (std::string line; std::getline(lines, line);)
+      {
+        line              = trimmed(line);
+        const auto equals = line.find('=');
+        if (line.rfind("subsection ", 0) == 0)
+          section = trimmed(line.substr(11));
+        else if (line.rfind("set ", 0) == 0 && equals != std::string::npos)
+          values[section + "/" + trimmed(line.substr(4, equals - 4))] = trimmed(line.substr(equals + 1));
+      }
+      return values;
+    }
+
+    bool changes_the_run(const std::string &path)
+    {
+      for (const char *section : {"Adjoint/", "Check/", "Design/", "Output/"})
+        if (path.rfind(section, 0) == 0)
+          return false;
+      return true;
+    }
+  } // namespace
+
+  void check_resumable(const RecordHeader         &header,
+                       const std::string          &parameters,
+                       const TetMesh              &mesh,
+                       const NodalVectors<double> &X_0,
+                       const std::string          &directory)
+  {
+    const auto recorded = values_of(header.parameters), now = values_of(parameters);
+    const auto value = [](const std::map<std::string, std::string> &values, const std::string &path) {
+      const auto found = values.find(path);
+      return found == values.end() ? std::string("absent") : "'" + found->second + "'";
+    };
+    std::map<std::string, std::string> all = recorded;
+    all.insert(now.begin(), now.end());
+    for (const auto &[path, ignored] : all)
+      if (changes_the_run(path) && value(recorded, path) != value(now, path))
+        throw Error(path,
+                    "is " + value(now, path) + ", in the record of " + directory + " it is " +
+                      value(recorded, path),
+                    "a run goes on with the parameters it began with",
+                    "restore the value, or start anew without --resume");
+    if (header.mesh.cells != mesh.cells || header.X_0 != X_0)
+      throw Error("Billet",
+                  "its mesh is another one than that in the record of " + directory,
+                  "a run goes on with the billet it began with",
+                  "use the same mesh file and the same version of the mesher, or start anew without --resume");
+  }
+} // namespace retroforge
