@@ -34,6 +34,14 @@ namespace retroforge
       return a;
     }
 
+    TetMesh make_first_mesh(const Parameters &parameters, MPI_Comm comm)
+    {
+      const TetMesh mesh = make_billet(parameters.billet, comm);
+      if (!parameters.remeshing.first_mesh)
+        return mesh;
+      return Remesher(parameters.remeshing, parameters.edge_length(mesh), comm).remesh(mesh, mesh.X)->mesh;
+    }
+
     /// "check" solves all systems as well as they can be, or differences would measure the solvers.
     Parameters read(const CommandLine &command, std::string &echo)
     {
@@ -52,7 +60,7 @@ namespace retroforge
       , comm_(comm)
       , root_(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
       , parameters_(read(command, echo_))
-      , billet_(make_billet(parameters_.billet, comm))
+      , billet_(make_first_mesh(parameters_, comm))
       , nominal_(parameters_.settle(billet_size()).process(billet_size()))
       , model_{make_dies(parameters_.dies),
                parameters_.step_model(),

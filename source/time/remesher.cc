@@ -33,6 +33,9 @@ namespace retroforge
                       element_size,
                       "Wanted length of the edges; 0 for that of the billet. Units: mm.",
                       Double(0.));
+    prm.add_parameter("first mesh",
+                      first_mesh,
+                      "Improve the billet's mesh by one pass before the run begins. Units: none.");
     prm.leave_subsection();
     local.add_parameters(prm);
   }

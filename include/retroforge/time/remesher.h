@@ -17,6 +17,7 @@ namespace retroforge
     std::string         method       = "local";
     unsigned int        every        = 5;
     double              element_size = 0.;
+    bool                first_mesh   = false;
     RemeshingParameters local;
 
     void add_parameters(dealii::ParameterHandler &prm);

@@ -322,7 +322,9 @@ namespace
     process.dies[1].velocity *= 1. + h * direction.speed_dot;
     for (std::size_t k = 0; k < X.size(); ++k)
       X[k] += h * direction.X_dot[k];
-    return problem.forging.replay(process, X, problem.records.size(), problem.source()).energy.total();
+    ForgingState state = problem.forging.start(problem.leg, X);
+    problem.forging.replay(process, problem.records.size(), problem.source(), state);
+    return state.energy.total();
   }
 
   double error(const double a, const double b)

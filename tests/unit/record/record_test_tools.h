@@ -81,7 +81,17 @@ namespace retroforge
   {
     std::mt19937_64 random(i + 1);
     const auto      number = [&]() { return std::ldexp(static_cast<double>(random()) - 9e18, -60); };
-    IncrementRecord increment{0.1 * i, 0.1, i % 3, {}, {}, number(), number()};
+    IncrementRecord increment;
+    increment.stroke             = 0.1 * i;
+    increment.step               = 0.1;
+    increment.cuts               = i % 3;
+    increment.deformation_energy = number();
+    increment.friction_energy    = number();
+    increment.newton             = i + 1;
+    increment.krylov             = 10 * i;
+    increment.linear_solves      = i + 2;
+    for (unsigned int d = 0; d < header.n_dies; ++d)
+      increment.forces.push_back(Vec3({number(), number(), number()}));
     for (NodeIndex k = 0; k < header.mesh.n_nodes(); k += 3)
       increment.pairs.push_back({k, static_cast<unsigned int>(random() % header.n_dies), random() % 2 == 0});
     for (unsigned int s = 0; s < n_solves; ++s)
@@ -99,6 +109,30 @@ namespace retroforge
     return increment;
   }
 
+  /// The same on a new mesh, each node of which stands between two of the old one.
+  inline IncrementRecord sample_remeshed(const RecordHeader &header, const unsigned int i)
+  {
+    RecordHeader other = header;
+    other.mesh         = brick(2, 4, 3);
+    for (Vec3 &x : other.mesh.X)
+      x *= 1.05;
+    auto remesh      = std::make_shared<RemeshRecord>();
+    remesh->X_before = header.X_0;
+    remesh->mesh     = other.mesh;
+    auto &J          = remesh->transfer;
+    J.n_old          = header.X_0.size();
+    for (NodeIndex k = 0; k < other.mesh.n_nodes(); ++k)
+    {
+      J.node.insert(J.node.end(), {k, k + 1});
+      J.weight.insert(J.weight.end(), {0.3, 0.7});
+      J.begin.push_back(J.node.size());
+    }
+    J.set_offset(remesh->X_before, remesh->mesh.X);
+    IncrementRecord increment = sample_increment(other, i);
+    increment.remesh          = remesh;
+    return increment;
+  }
+
   template <typename T>
   bool same_bits(const std::vector<T> &a, const std::vector<T> &b)
   {
@@ -110,11 +144,23 @@ namespace retroforge
     return std::memcmp(&a, &b, sizeof(double)) == 0;
   }
 
+  bool same(const TetMesh &a, const TetMesh &b);
+
+  inline bool same(const RemeshRecord &a, const RemeshRecord &b)
+  {
+    return same_bits(a.X_before, b.X_before) && same(a.mesh, b.mesh) &&
+           a.transfer.n_old == b.transfer.n_old && same_bits(a.transfer.begin, b.transfer.begin) &&
+           same_bits(a.transfer.node, b.transfer.node) && same_bits(a.transfer.weight, b.transfer.weight) &&
+           same_bits(a.transfer.offset, b.transfer.offset);
+  }
+
   inline bool same(const IncrementRecord &a, const IncrementRecord &b)
   {
     bool equal = same_bits(a.stroke, b.stroke) && same_bits(a.step, b.step) && a.cuts == b.cuts &&
                  same_bits(a.deformation_energy, b.deformation_energy) &&
-                 same_bits(a.friction_energy, b.friction_energy) && a.pairs.size() == b.pairs.size() &&
+                 same_bits(a.friction_energy, b.friction_energy) && a.newton == b.newton &&
+                 a.krylov == b.krylov && a.linear_solves == b.linear_solves && same_bits(a.forces, b.forces) &&
+                 !a.remesh == !b.remesh && (!a.remesh || same(*a.remesh, *b.remesh)) && a.pairs.size() == b.pairs.size() &&
                  a.solves.size() == b.solves.size();
     for (std::size_t p = 0; equal && p < a.pairs.size(); ++p)
       equal = a.pairs[p].node == b.pairs[p].node && a.pairs[p].die == b.pairs[p].die &&
@@ -125,20 +171,24 @@ namespace retroforge
     return equal;
   }
 
-  inline bool same(const RecordHeader &a, const RecordHeader &b)
+  inline bool same(const TetMesh &a, const TetMesh &b)
   {
-    bool equal = a.program == b.program && a.commit == b.commit && a.parameters == b.parameters &&
-                 a.n_dies == b.n_dies && same_bits(a.X_0, b.X_0) && same_bits(a.mesh.X, b.mesh.X) &&
-                 same_bits(a.mesh.cells, b.mesh.cells) && same_bits(a.mesh.faces, b.mesh.faces) &&
-                 a.mesh.patches.size() == b.mesh.patches.size();
-    for (std::size_t p = 0; equal && p < a.mesh.patches.size(); ++p)
+    bool equal = same_bits(a.X, b.X) && same_bits(a.cells, b.cells) && same_bits(a.faces, b.faces) &&
+                 a.patches.size() == b.patches.size();
+    for (std::size_t p = 0; equal && p < a.patches.size(); ++p)
     {
-      const Patch &q = a.mesh.patches[p], &r = b.mesh.patches[p];
+      const Patch &q = a.patches[p], &r = b.patches[p];
       equal =
         q.name == r.name && q.symmetry.has_value() == r.symmetry.has_value() &&
         (!q.symmetry || (q.symmetry->point == r.symmetry->point && q.symmetry->normal == r.symmetry->normal));
     }
     return equal;
+  }
+
+  inline bool same(const RecordHeader &a, const RecordHeader &b)
+  {
+    return a.program == b.program && a.commit == b.commit && a.parameters == b.parameters &&
+           a.n_dies == b.n_dies && same_bits(a.X_0, b.X_0) && same(a.mesh, b.mesh);
   }
 
   inline std::string bytes_of(const std::string &file)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 // Proves: what is written is read to the bit (NaN, signed zero, denormals, empty lists included), while a run
-// goes on, after resume and after finish; and a solve of n nodes costs less than 56 n bytes: velocity and
+// goes on, after resume and after finish, a change of mesh too; and a solve of n nodes costs less than 56 n bytes: velocity and
 // pressure are 32 n, the 500 pairs 9 bytes and 1 per solve, so 0.61 plus HDF5's own.
 #include "record_test_tools.h"
 
@@ -24,7 +24,7 @@ std::vector<IncrementRecord> awkward_increments(const RecordHeader &header)
 {
   using limits = std::numeric_limits<double>;
   std::vector<IncrementRecord> increments{sample_increment(header, 0), sample_increment(header, 1, 1)};
-  increments.push_back(sample_increment(header, 2, 0));
+  increments.push_back(sample_remeshed(header, 2));
   increments.push_back(sample_increment(header, 3));
   increments[3].pairs.clear();
   for (SolveRecord &solve : increments[3].solves)
