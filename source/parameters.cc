@@ -223,7 +223,7 @@ namespace retroforge
 
   Parameters &Parameters::settle(const double size)
   {
-    const double smooth_step = 3e-3 * height(size);
+    const double smooth_step = 2.5e-3 * height(size);
     if (press.increments == 0)
       press.increments = std::max(1., std::ceil(press.stroke / smooth_step - 1e-9));
     return *this;

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/core/version.h>
+#include <retroforge/geometry/stl_file.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/output/blas.h>
 #include <retroforge/output/safe_file.h>
@@ -27,6 +28,14 @@ namespace retroforge
       return dies;
     }
 
+    std::vector<unsigned int> facets(const std::vector<Die> &dies)
+    {
+      std::vector<unsigned int> n;
+      for (const Die &die : dies)
+        n.push_back(die.n_facets());
+      return n;
+    }
+
     NodalVectors<double> sum(NodalVectors<double> a, const NodalVectors<double> &b)
     {
       for (std::size_t k = 0; k < a.size(); ++k)
@@ -39,7 +48,13 @@ namespace retroforge
       const TetMesh mesh = make_billet(parameters.billet, comm);
       if (!parameters.remeshing.first_mesh)
         return mesh;
-      return Remesher(parameters.remeshing, parameters.edge_length(mesh), comm).remesh(mesh, mesh.X)->mesh;
+      const std::vector<Die>        dies = make_dies(parameters.dies);
+      std::vector<DieState<double>> states;
+      for (const DieParameters &die : parameters.dies)
+        states.push_back(die.initial_state());
+      return Remesher(parameters.remeshing, parameters.edge_length(mesh), dies, comm)
+        .remesh(mesh, mesh.X, states)
+        ->mesh;
     }
 
     /// "check" solves all systems as well as they can be, or differences would measure the solvers.
@@ -69,7 +84,7 @@ namespace retroforge
                comm}
       , design_(parameters_.design.names, parameters_.billet, parameters_.dies, nominal_, billet_.X)
       , first_leg_(std::make_shared<Leg>(billet_, model_, timings_))
-      , remesher_(parameters_.remeshing, parameters_.edge_length(billet_), comm)
+      , remesher_(parameters_.remeshing, parameters_.edge_length(billet_), model_.dies, comm)
       , forging_(model_, parameters_.press, remesher_, timings_)
       , mu_(design_.nominal())
       , process_(design_.process(mu_))
@@ -94,7 +109,7 @@ namespace retroforge
       for (NodeIndex k = 0; k < billet_.n_nodes(); ++k)
         if (first_leg_->scene.topology.is_on_surface(k))
         {
-          const double delta = model_.dies[d].project(X_0_[k], Vec3()).delta;
+          const double delta = model_.dies[d].signed_distance(X_0_[k], Vec3());
           nearest            = std::min(nearest, delta);
           deepest            = std::max(deepest, -delta);
         }
@@ -128,6 +143,7 @@ namespace retroforge
                 << billet_.n_cells() << " tetrahedra, " << dealii::Utilities::MPI::n_mpi_processes(comm_)
                 << " rank(s), BLAS: " << blas_in_use() << std::endl;
     }
+    write_dies();
     bool passed = true;
     forge();
     if (command_.command != "simulate")
@@ -136,6 +152,15 @@ namespace retroforge
       passed = check();
     summarise();
     return passed ? 0 : 1;
+  }
+
+  void Simulation::write_dies() const
+  {
+    if (!root_)
+      return;
+    for (const Die &die : model_.dies)
+      if (die.surface())
+        write_stl(command_.output_directory + "/die_" + die.name + ".stl", *die.surface(), StlFormat::binary);
   }
 
   void Simulation::forge()
@@ -153,7 +178,7 @@ namespace retroforge
     else if (root_ && parameters_.output.record)
       record_ = std::make_unique<RecordWriter>(
         command_.output_directory,
-        RecordHeader{version, commit, echo_, static_cast<unsigned int>(model_.dies.size()), billet_, X_0_});
+        RecordHeader{version, commit, echo_, facets(model_.dies), billet_, X_0_});
     forging_.run(process_, state, [&](const IncrementEvent &event) {
       if (record_)
       {

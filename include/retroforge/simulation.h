@@ -26,6 +26,8 @@ namespace retroforge
     int run();
 
   private:
+    /// Surfaces of the dies that are no planes, at the start of the run: die_NAME.stl.
+    void write_dies() const;
     void forge();
     /// The state after the last increment of the record in the output folder, which the run goes on from.
     void resume(ForgingState &state);

@@ -95,9 +95,12 @@ namespace retroforge
       for (NodeIndex k = 0; k < X.size(); ++k)
         if (topology.is_on_surface(k))
         {
-          const double delta = dies[d].project(X[k], states[d].displacement).delta;
+          const DieFeature feature = dies[d].closest(X[k], states[d].displacement, reach);
+          if (!feature.found())
+            continue;
+          const double delta = dies[d].project(X[k], states[d].displacement, feature).delta;
           if (delta <= reach)
-            pairs.push_back({k, d, delta <= ramp.width});
+            pairs.push_back({k, d, delta <= ramp.width, feature});
         }
     return pairs;
   }
@@ -121,7 +124,8 @@ namespace retroforge
     for (const ContactPair &pair : pairs)
     {
       index[{pair.die, pair.node}] = contact.projections.size();
-      contact.projections.push_back(dies[pair.die].project(X[pair.node], states[pair.die].displacement));
+      contact.projections.push_back(
+        dies[pair.die].project(X[pair.node], states[pair.die].displacement, pair.feature));
       contact.ramps.push_back(ramp(contact.projections.back().delta, pair.touching));
     }
     // A face is visited from its first pair of each die.
@@ -147,19 +151,29 @@ namespace retroforge
     return contact;
   }
 
-  void reverse_contact_set(const std::vector<Die>   &dies,
-                           const ContactSet<double> &contact,
-                           const FrictionRamp       &ramp,
-                           const ContactSetBar      &bar,
-                           NodalVectors<double>     &X_bar,
-                           ContactSensitivity       &sensitivity)
+  void reverse_contact_set(const std::vector<Die>              &dies,
+                           const std::vector<DieState<double>> &states,
+                           const ContactSet<double>            &contact,
+                           const FrictionRamp                  &ramp,
+                           const NodalVectors<double>          &X,
+                           const ContactSetBar                 &bar,
+                           NodalVectors<double>                &X_bar,
+                           ContactSensitivity                  &sensitivity)
   {
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
     {
-      const ContactPair &pair = contact.pairs[p];
-      const double delta_bar  = bar.delta[p] + bar.ramp[p] * ramp.derivative(contact.projections[p].delta);
-      dies[pair.die].reverse_project(
-        delta_bar, bar.n[p], X_bar[pair.node], sensitivity.dies[pair.die].displacement);
+      const ContactPair &pair  = contact.pairs[p];
+      const double delta_bar   = bar.delta[p] + bar.ramp[p] * ramp.derivative(contact.projections[p].delta);
+      const bool   by_vertices = dies[pair.die].surface() && pair.die < sensitivity.die_vertices.size() &&
+                               !sensitivity.die_vertices[pair.die].empty();
+      dies[pair.die].reverse_project(X[pair.node],
+                                     states[pair.die].displacement,
+                                     pair.feature,
+                                     delta_bar,
+                                     bar.n[p],
+                                     X_bar[pair.node],
+                                     sensitivity.dies[pair.die].displacement,
+                                     by_vertices ? &sensitivity.die_vertices[pair.die] : nullptr);
     }
   }
 

@@ -1,35 +1,65 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/core/error.h>
 #include <retroforge/geometry/die.h>
+
+#include <algorithm>
 
 namespace retroforge
 {
-  void DieParameters::add_parameters(dealii::ParameterHandler &prm)
+  namespace
   {
-    prm.enter_subsection("Die " + name);
-    prm.add_parameter("point", point, "A point of the working face at the start of the run. Units: mm.");
-    prm.add_parameter(
-      "facing",
-      facing,
-      "Normal of the working face, pointing from the die to the workpiece; of any length. Units: none.");
-    prm.add_parameter("velocity", velocity, "Velocity of the die, constant. Units: mm/s.");
-    prm.add_parameter(
-      "friction",
-      friction,
-      "alpha of the Norton friction law tau = -alpha K |dv|^(m-1) dv; 0 is a frictionless die. "
-      "Units: mm^(-m).",
-      dealii::Patterns::Double(0.));
-    prm.leave_subsection();
+    double distance_to_box(const Vec3 &X, const std::pair<Vec3, Vec3> &box)
+    {
+      Vec3 out;
+      for (unsigned int i = 0; i < 3; ++i)
+        out[i] = std::max({box.first[i] - X[i], X[i] - box.second[i], 0.});
+      return out.norm();
+    }
+  } // namespace
+
+  Die::Die(std::string name, TriangleSurface surface, const double depth)
+      : name(std::move(name)), surface_(std::make_shared<const Surface>(std::move(surface), depth))
+  {
   }
 
-  void DieParameters::check()
+  DieFeature Die::closest(const Vec3 &X, const Vec3 &displacement, const double reach) const
   {
-    if (!(facing.norm() > 0.))
-      throw Error("Die " + name + "/facing",
-                  "is the zero vector",
-                  "it must point from the die to the workpiece",
-                  "use for instance 0, 0, 1 for a lower die");
-    facing /= facing.norm();
+    if (!surface_)
+      return DieFeature();
+    const Vec3   x      = X - displacement;
+    const double within = std::max(reach, surface_->depth);
+    if (distance_to_box(x, surface_->shape.box()) > within)
+      return DieFeature::none();
+    const DieFeature feature = surface_->closest(x, within);
+    if (!feature.found())
+      return feature;
+    const double delta = project(x, Vec3(), feature).delta;
+    return delta <= reach && -delta <= surface_->depth ? feature : DieFeature::none();
+  }
+
+  double Die::signed_distance(const Vec3 &X, const Vec3 &displacement) const
+  {
+    const DieFeature feature = surface_ ? surface_->closest(X - displacement) : DieFeature();
+    return feature.found() ? project(X, displacement, feature).delta
+                           : std::numeric_limits<double>::infinity();
+  }
+
+  void Die::reverse_project(const Vec3           &X,
+                            const Vec3           &displacement,
+                            const DieFeature     &feature,
+                            const double          delta_bar,
+                            const Vec3           &n_bar,
+                            Vec3                 &X_bar,
+                            Vec3                 &displacement_bar,
+                            NodalVectors<double> *vertices_bar) const
+  {
+    if (surface_)
+    {
+      reverse_project_on_feature(
+        surface_->shape, feature, X, displacement, delta_bar, n_bar, X_bar, displacement_bar, vertices_bar);
+      return;
+    }
+    X_bar -= delta_bar * into_;
+    displacement_bar += delta_bar * into_;
   }
 } // namespace retroforge

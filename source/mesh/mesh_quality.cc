@@ -22,14 +22,6 @@ namespace retroforge
                cross_product_3d(x[3] - x[0], x[1] - x[0]),
                cross_product_3d(x[1] - x[0], x[2] - x[0])}};
     }
-
-    double rms_edge(const TetCorners &x)
-    {
-      double sum = 0;
-      for (const auto &edge : edges)
-        sum += (x[edge[1]] - x[edge[0]]).norm_square();
-      return std::sqrt(sum / 6);
-    }
   } // namespace
 
   TetCorners corners(const std::array<NodeIndex, 4> &cell, const NodalVectors<double> &X)
@@ -60,20 +52,28 @@ namespace retroforge
   double tet_quality(const TetCorners &x)
   {
     const double six_volume = 6 * tet_volume(x);
-    const double length     = rms_edge(x);
-    if (!(length > 0))
-      return 0;
-    const auto normal  = face_normals(x);
-    double     quality = std::sqrt(2.) * six_volume / (length * length * length);
+    const auto   normal     = face_normals(x);
+    double       squares[4], sum = 0, least = std::numeric_limits<double>::max(), most = 0;
+    for (unsigned int a = 0; a < 4; ++a)
+      squares[a] = normal[a].norm_square();
+    // sin = 3 V l / (2 A1 A2), and the normals have twice the areas; one root for all six, this is called
+    // often
     for (const auto &edge : edges)
     {
-      // sin = 3 V l / (2 A1 A2), and the normals have twice the areas
-      const double areas = normal[edge[2]].norm() * normal[edge[3]].norm();
-      const double l     = (x[edge[1]] - x[edge[0]]).norm();
+      const double l_square = (x[edge[1]] - x[edge[0]]).norm_square();
+      const double areas    = squares[edge[2]] * squares[edge[3]];
+      sum += l_square;
       if (areas > 0)
-        quality = std::min(quality, six_volume * l / areas);
+      {
+        least = std::min(least, l_square / areas);
+        most  = std::max(most, l_square / areas);
+      }
     }
-    return quality;
+    if (!(sum > 0))
+      return 0;
+    const double length  = std::sqrt(sum / 6);
+    const double quality = std::sqrt(2.) * six_volume / (length * length * length);
+    return most > 0 ? std::min(quality, six_volume * std::sqrt(six_volume > 0 ? least : most)) : quality;
   }
 
   double volume(const std::vector<std::array<NodeIndex, 4>> &cells, const NodalVectors<double> &X)

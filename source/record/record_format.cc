@@ -13,7 +13,7 @@ namespace retroforge
 {
   namespace
   {
-    constexpr unsigned int format = 2;
+    constexpr unsigned int format = 3;
 
     static_assert(sizeof(Vec3) == 3 * sizeof(double),
                   "nodal vectors are read and written as arrays of numbers");
@@ -111,6 +111,12 @@ namespace retroforge
       return mesh;
     }
 
+    bool is_there(const ContactPair &pair, const unsigned int n_nodes, const RecordShape &shape)
+    {
+      return pair.node < n_nodes && pair.die < shape.die_facets.size() &&
+             pair.feature.facet < shape.die_facets[pair.die] && pair.feature.kind < DieFeature::n_kinds;
+    }
+
     /// A record with sizes that disagree is a mistake of the program, found before it reaches the disk.
     unsigned int check_increment(const IncrementRecord &increment, const RecordShape &shape)
     {
@@ -118,8 +124,8 @@ namespace retroforge
       AssertThrow(!increment.remesh || increment.remesh->mesh.n_nodes() == n_nodes,
                   dealii::ExcMessage("a new mesh has not as many nodes as the solution on it"));
       for (const ContactPair &pair : increment.pairs)
-        AssertThrow(pair.node < n_nodes && pair.die < shape.n_dies,
-                    dealii::ExcMessage("a contact pair refers to a node or die that is not there"));
+        AssertThrow(is_there(pair, n_nodes, shape),
+                    dealii::ExcMessage("a contact pair refers to a node, die or feature that is not there"));
       for (const SolveRecord &solve : increment.solves)
       {
         AssertThrow(solve.V.size() == n_nodes,
@@ -187,15 +193,19 @@ namespace retroforge
 
     void write_pairs(const hid_t group, const std::vector<ContactPair> &pairs)
     {
-      std::vector<unsigned int>  indices;
-      std::vector<unsigned char> touching;
+      std::vector<unsigned int>  indices, facet;
+      std::vector<unsigned char> touching, kind;
       for (const ContactPair &pair : pairs)
       {
         indices.insert(indices.end(), {pair.node, pair.die});
         touching.push_back(pair.touching);
+        facet.push_back(pair.feature.facet);
+        kind.push_back(pair.feature.kind);
       }
       hdf5::write_array(group, "pairs", {pairs.size(), 2}, indices.data());
       hdf5::write_array(group, "touching", {pairs.size()}, touching.data());
+      hdf5::write_array(group, "facet", {pairs.size()}, facet.data());
+      hdf5::write_array(group, "kind", {pairs.size()}, kind.data());
     }
 
     std::vector<unsigned char>
@@ -212,15 +222,26 @@ namespace retroforge
     {
       const auto               indices  = hdf5::read_array<unsigned int>(group, "pairs", {hdf5::any, 2});
       const auto               touching = read_flags(group, "touching", {indices.size() / 2});
+      const hsize_t            n        = touching.size();
+      const auto               facet    = hdf5::read_array<unsigned int>(group, "facet", {n});
+      const auto               kind     = hdf5::read_array<unsigned char>(group, "kind", {n});
       std::vector<ContactPair> pairs;
-      for (std::size_t i = 0; i < touching.size(); ++i)
+      for (std::size_t i = 0; i < n; ++i)
       {
-        pairs.push_back({indices[2 * i], indices[2 * i + 1], touching[i] != 0});
-        if (pairs[i].node >= n_nodes || pairs[i].die >= shape.n_dies)
-          throw hdf5::Failure("contact pair " + std::to_string(i) + " is of node " +
-                              std::to_string(pairs[i].node) + " and die " + std::to_string(pairs[i].die) +
-                              " where there are " + std::to_string(n_nodes) + " nodes and " +
-                              std::to_string(shape.n_dies) + " dies, counted from 0");
+        pairs.push_back({indices[2 * i], indices[2 * i + 1], touching[i] != 0, {facet[i], kind[i]}});
+        if (is_there(pairs[i], n_nodes, shape))
+          continue;
+        const bool        feature = pairs[i].node < n_nodes && pairs[i].die < shape.die_facets.size();
+        const std::string pair    = "contact pair " + std::to_string(i) + " is of ";
+        if (feature)
+          throw hdf5::Failure(pair + "facet " + std::to_string(facet[i]) + ", kind " +
+                              std::to_string(kind[i]) + " of a die of " +
+                              std::to_string(shape.die_facets[pairs[i].die]) + " facets and " +
+                              std::to_string(DieFeature::n_kinds) + " kinds, counted from 0");
+        throw hdf5::Failure(pair + "node " + std::to_string(pairs[i].node) + " and die " +
+                            std::to_string(pairs[i].die) + " where there are " +
+                            std::to_string(n_nodes) + " nodes and " +
+                            std::to_string(shape.die_facets.size()) + " dies, counted from 0");
       }
       return pairs;
     }
@@ -244,7 +265,7 @@ namespace retroforge
   } // namespace
 
   RecordShape::RecordShape(const RecordHeader &header)
-      : n_dies(header.n_dies), run(0xcbf29ce484222325u)
+      : die_facets(header.die_facets), run(0xcbf29ce484222325u)
   {
     const TetMesh &mesh = header.mesh;
     add_to_fingerprint(run, header.parameters.data(), header.parameters.size());
@@ -263,7 +284,7 @@ namespace retroforge
   {
     const hdf5::Handle group = hdf5::create_group(file, "header");
     hdf5::write_attribute(group, "format", &format);
-    hdf5::write_attribute(group, "n_dies", &header.n_dies);
+    hdf5::write_array(group, "die_facets", {header.die_facets.size()}, header.die_facets.data());
     hdf5::write_string(group, "program", header.program);
     hdf5::write_string(group, "commit", header.commit);
     hdf5::write_string(group, "parameters", header.parameters);
@@ -284,7 +305,7 @@ namespace retroforge
                   "use retroforge " + header.program + ", which wrote it, or run the simulation again");
     header.commit     = hdf5::read_string(group, "commit");
     header.parameters = hdf5::read_string(group, "parameters");
-    header.n_dies     = hdf5::read_attribute<unsigned int>(group, "n_dies");
+    header.die_facets = hdf5::read_array<unsigned int>(group, "die_facets", {hdf5::any});
     header.mesh       = read_mesh(group);
     header.X_0        = read_vectors(group, "X_0", header.mesh.n_nodes());
     check_mesh(header.mesh, file_name);

@@ -42,11 +42,15 @@ namespace retroforge
       double nearest = std::numeric_limits<double>::max();
       for (NodeIndex k = 0; k < X.size(); ++k)
         if (scene.topology.is_on_surface(k))
-          nearest = std::min(nearest, scene.dies[d].project(X[k], physics.dies[d].displacement).delta);
+          nearest = std::min(nearest, scene.dies[d].signed_distance(X[k], physics.dies[d].displacement));
       for (NodeIndex k = 0; k < X.size(); ++k)
         if (scene.topology.is_on_surface(k))
         {
-          const auto projection = scene.dies[d].project(X[k], physics.dies[d].displacement);
+          const Vec3 &displacement = physics.dies[d].displacement;
+          const auto  feature      = scene.dies[d].closest(X[k], displacement, nearest + 0.05 * size);
+          if (!feature.found())
+            continue;
+          const auto projection = scene.dies[d].project(X[k], displacement, feature);
           if (projection.delta > nearest + 0.05 * size)
             continue;
           resist(k, projection.n);

@@ -16,7 +16,7 @@ namespace retroforge
     prm.add_parameter("stroke", stroke, "Path of the leading die. Units: mm.", Double(1e-300));
     prm.add_parameter("increments",
                       increments,
-                      "Number of equal increments of stroke, before any is cut; 0 for steps of 0.3 % of the "
+                      "Number of equal increments of stroke, before any is cut; 0 for steps of 0.25 % of the "
                       "billet's height, with which the energy is smooth in the design. Units: none.",
                       Integer(0));
     prm.add_parameter(
@@ -93,10 +93,10 @@ namespace retroforge
     state.remeshed.push_back(state.increments);
   }
 
-  void Forging::remesh(ForgingState &state, IncrementRecord &record) const
+  void Forging::remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const
   {
     const auto timing = timings_.scope("remeshing");
-    record.remesh     = remesher_.remesh(state.leg->scene.mesh, state.X);
+    record.remesh     = remesher_.remesh(state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies);
     change_mesh(*record.remesh, state);
     state.X = record.remesh->mesh.X; // J X + c to the last bit
   }
@@ -140,10 +140,14 @@ namespace retroforge
     {
       IncrementRecord record;
       const auto      renew = [&]() {
-        remesh(state, record);
+        remesh(process, state, record);
         frozen = remesher_.frozen(state.leg->scene.mesh);
       };
-      if (remesher_.enabled() && remesher_.due(state.leg->scene.mesh, state.X, frozen, since_remeshing()))
+      if (remesher_.enabled() && remesher_.due(state.leg->scene.mesh,
+                                               state.X,
+                                               process.at_stroke(state.stroke).dies,
+                                               frozen,
+                                               since_remeshing()))
         renew();
       record.stroke = state.stroke;
       record.step   = std::min(whole / (1 << state.depth), press_.stroke - state.stroke);

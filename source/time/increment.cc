@@ -136,10 +136,14 @@ namespace retroforge
       for (NodeIndex k = 0; k < W.V.size(); ++k)
         if (!watched[d][k] && scene_.topology.is_on_surface(k))
         {
-          const auto &die        = stage.physics.dies[d];
-          const auto  projection = scene_.dies[d].project(stage.X[k], die.displacement);
-          if ((W.V[k] - die.velocity) * projection.n >
-              approach_speed(projection.delta, stage.contact.tau, stage.contact.layer))
+          const auto  &die     = stage.physics.dies[d];
+          const Vec3   u       = W.V[k] - die.velocity;
+          const double reach   = approach_distance(u.norm(), stage.contact.tau, stage.contact.layer);
+          const auto   feature = scene_.dies[d].closest(stage.X[k], die.displacement, reach);
+          if (!feature.found())
+            continue;
+          const auto projection = scene_.dies[d].project(stage.X[k], die.displacement, feature);
+          if (u * projection.n > approach_speed(projection.delta, stage.contact.tau, stage.contact.layer))
             return true;
         }
     return false;
@@ -299,7 +303,7 @@ namespace retroforge
       if (s == 0)
       {
         reverse_contact_set(
-          scene_.dies, contact, model_.ramp, contact_bar, position_bar, physics_bar.contact);
+          scene_.dies, physics.dies, contact, model_.ramp, X, contact_bar, position_bar, physics_bar.contact);
       }
       sum_over_ranks(position_bar, comm);
       for (std::size_t k = 0; k < X.size(); ++k)

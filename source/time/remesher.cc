@@ -3,12 +3,14 @@
 #include <deal.II/base/mpi.h>
 
 #include <retroforge/core/error.h>
+#include <retroforge/geometry/facet_curvature.h>
 #include <retroforge/mesh/broadcast.h>
 #include <retroforge/mesh/mesh_checks.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/rebuild.h>
 #include <retroforge/mesh/remeshing/trigger.h>
 #include <retroforge/mesh/renumber.h>
+#include <retroforge/mesh/size_field.h>
 #include <retroforge/time/remesher.h>
 
 namespace retroforge
@@ -20,7 +22,7 @@ namespace retroforge
     prm.add_parameter("when",
                       when,
                       "quality: when an angle between two faces of a cell falls below the trigger angle, or an "
-                      "increment would invert a cell. increments: that, and after every so many increments. "
+                      "increment would invert a cell, or when the surface no longer fits a curved die. increments: that, and after every so many increments. "
                       "Units: none.",
                       Selection("never|quality|increments"));
     prm.add_parameter("every", every, "Increments between remeshings. Units: none.", Integer(1));
@@ -33,6 +35,25 @@ namespace retroforge
                       element_size,
                       "Wanted length of the edges; 0 for that of the billet. Units: mm.",
                       Double(0.));
+    prm.add_parameter("chord error",
+                      chord_error,
+                      "Wanted distance between a surface edge and a curved die, r its radius there: edges are "
+                      "sqrt(8 r error) long. 0: the same length everywhere. Units: mm.",
+                      Double(0.));
+    prm.add_parameter("smallest size",
+                      smallest_size,
+                      "Edges near curved dies are not wanted shorter than this part of the element size. Units: "
+                      "none.",
+                      Double(1e-3, 1.));
+    prm.add_parameter("growth",
+                      growth,
+                      "Most by which the wanted length grows per distance from where it is small. Units: none.",
+                      Double(1e-3));
+    prm.add_parameter("die fit",
+                      fit,
+                      "Remesh when a surface edge with both ends on a curved die is deeper inside it than this "
+                      "part of the element size. Units: none.",
+                      Double(1e-6));
     prm.add_parameter("first mesh",
                       first_mesh,
                       "Improve the billet's mesh by one pass before the run begins. Units: none.");
@@ -45,20 +66,38 @@ namespace retroforge
     local.check();
   }
 
-  Remesher::Remesher(const RemesherParameters &parameters, const double element_size, MPI_Comm comm)
-      : parameters_(parameters), element_size_(element_size), comm_(comm)
+  Remesher::Remesher(const RemesherParameters &parameters,
+                     const double              element_size,
+                     const std::vector<Die>   &dies,
+                     MPI_Comm                  comm)
+      : parameters_(parameters), element_size_(element_size), dies_(dies), comm_(comm), facet_size_(dies.size())
   {
+    if (parameters_.chord_error == 0.)
+      return;
+    for (unsigned int d = 0; d < dies.size(); ++d)
+      if (dies[d].surface())
+        for (const double curvature : facet_curvature(*dies[d].surface()))
+        {
+          const double length = std::sqrt(8. * parameters_.chord_error / std::max(curvature, 1e-300));
+          facet_size_[d].push_back(
+            std::min(element_size, std::max(parameters_.smallest_size * element_size, length)));
+        }
   }
 
   bool Remesher::due(const TetMesh              &mesh,
                      const NodalVectors<double> &X,
+                     const DieStates            &states,
                      const std::vector<bool>    &frozen,
                      const unsigned int          increments) const
   {
     if (increments == 0)
       return false;
-    return (parameters_.when == "increments" && increments >= parameters_.every) ||
-           needs_remeshing(mesh, X, parameters_.local, frozen);
+    if (parameters_.when == "increments" && increments >= parameters_.every)
+      return true;
+    if (needs_remeshing(mesh, X, parameters_.local, frozen))
+      return true;
+    // A mesh that cannot follow its die does so no better when it is remade each time.
+    return increments > 2 && misfit(mesh, X, states) > parameters_.fit * element_size_;
   }
 
   std::vector<bool> Remesher::frozen(const TetMesh &mesh) const
@@ -66,27 +105,116 @@ namespace retroforge
     return frozen_cells(mesh, parameters_.local);
   }
 
-  RemeshedMesh Remesher::make(const TetMesh &mesh, const NodalVectors<double> &X) const
+  double Remesher::misfit(const TetMesh              &mesh,
+                          const NodalVectors<double> &X,
+                          const DieStates            &states) const
   {
-    const SizeField size     = [h = element_size_](const Vec3 &) { return h; };
-    const bool      inverted = minimum_quality(mesh.cells, X) <= 0.;
+    double deepest = 0.;
+    for (unsigned int d = 0; d < dies_.size(); ++d)
+      if (dies_[d].surface())
+      {
+        const double      touching = 0.1 * parameters_.fit * element_size_;
+        std::vector<bool> on_die(mesh.n_nodes(), false);
+        const auto        delta = [&](const Vec3 &x) {
+          const DieFeature feature = dies_[d].closest(x, states[d].displacement, touching);
+          return feature.found() ? dies_[d].project(x, states[d].displacement, feature).delta
+                                        : std::numeric_limits<double>::max();
+        };
+        for (const BoundaryFace &face : mesh.faces)
+          if (mesh.is_surface(face))
+            for (const NodeIndex k : face.nodes)
+              if (!on_die[k])
+                on_die[k] = delta(X[k]) <= touching;
+        for (const BoundaryFace &face : mesh.faces)
+          if (mesh.is_surface(face))
+            for (unsigned int e = 0; e < 3; ++e)
+              if (const NodeIndex a = face.nodes[e], b = face.nodes[(e + 1) % 3]; a < b && on_die[a] && on_die[b])
+                deepest = std::max(deepest, -delta(0.5 * (X[a] + X[b])));
+      }
+    return deepest;
+  }
+
+  SizeField Remesher::size_field(const NodalVectors<double> &X, const DieStates &states) const
+  {
+    const auto is_curved = [](const std::vector<double> &size) { return !size.empty(); };
+    if (std::none_of(facet_size_.begin(), facet_size_.end(), is_curved))
+      return GradedSize(element_size_);
+    const double reach  = element_size_ / parameters_.growth;
+    const auto   wanted = [&](const Vec3 &x) {
+      double size = element_size_;
+      for (unsigned int d = 0; d < dies_.size(); ++d)
+        if (!facet_size_[d].empty())
+          if (const DieFeature feature = dies_[d].closest(x, states[d].displacement, reach); feature.found())
+          {
+            const double distance = std::abs(dies_[d].project(x, states[d].displacement, feature).delta);
+            size = std::min(size, facet_size_[d][feature.facet] + parameters_.growth * distance);
+          }
+      return size;
+    };
+    auto [low, high] = bounding_box(X);
+    for (unsigned int i = 0; i < 3; ++i)
+    {
+      low[i] -= 0.5 * element_size_;
+      high[i] += 0.5 * element_size_;
+    }
+    std::vector<Vec3> points;
+    for (unsigned int d = 0; d < dies_.size(); ++d)
+      if (!facet_size_[d].empty())
+        for (const Vec3 &vertex : dies_[d].surface()->vertices())
+        {
+          const Vec3 x      = vertex + states[d].displacement;
+          bool       inside = true;
+          for (unsigned int i = 0; i < 3; ++i)
+            inside = inside && low[i] <= x[i] && x[i] <= high[i];
+          if (inside)
+            points.push_back(x);
+        }
+    Box region(low);
+    region.include(high);
+    return GradedSize(region,
+                      wanted,
+                      points,
+                      {parameters_.smallest_size * element_size_, element_size_, parameters_.growth});
+  }
+
+  PushOut Remesher::push_out(const DieStates &states) const
+  {
+    return [this, &states](const Vec3 &x) {
+      Vec3 moved = x;
+      for (unsigned int d = 0; d < dies_.size(); ++d)
+        if (const DieFeature feature = dies_[d].closest(moved, states[d].displacement, 0.); feature.found())
+        {
+          const auto projection = dies_[d].project(moved, states[d].displacement, feature);
+          if (projection.delta < 0. && dies_[d].surface())
+            moved += projection.delta * projection.n;
+        }
+      return moved;
+    };
+  }
+
+  RemeshedMesh Remesher::make(const TetMesh              &mesh,
+                              const NodalVectors<double> &X,
+                              const SizeField            &size,
+                              const PushOut              &push_out) const
+  {
+    const bool inverted = minimum_quality(mesh.cells, X) <= 0.;
     if (parameters_.method == "local" && !inverted)
-      return remesh_locally(mesh, X, size, parameters_.local);
+      return remesh_locally(mesh, X, size, parameters_.local, push_out);
     const RebuiltMesh rebuilt = rebuild_inside(mesh, X, size, "Remeshing");
-    RemeshedMesh      local   = remesh_locally(rebuilt.mesh, rebuilt.mesh.X, size, parameters_.local);
+    RemeshedMesh      local = remesh_locally(rebuilt.mesh, rebuilt.mesh.X, size, parameters_.local, push_out);
     for (NodeIndex &k : local.old_node)
       if (k != invalid_index)
         k = rebuilt.old_node[k];
     return local;
   }
 
-  std::shared_ptr<const RemeshRecord> Remesher::remesh(const TetMesh              &mesh,
-                                                       const NodalVectors<double> &X) const
+  std::shared_ptr<const RemeshRecord>
+  Remesher::remesh(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const
   {
     auto                   record = std::make_shared<RemeshRecord>();
     std::vector<NodeIndex> old_node;
     const auto             make_numbered = [&]() {
-      RemeshedMesh made = make(mesh, X);
+      RemeshedMesh made = make(mesh, X, size_field(X, states), push_out(states));
       check_mesh(made.mesh, "Remeshing");
       const std::vector<NodeIndex> number = renumber(made.mesh);
       old_node.resize(number.size());

@@ -6,6 +6,7 @@
 #include <retroforge/material/norton_hoff.h>
 #include <retroforge/mesh/topology.h>
 
+#include <cmath>
 #include <cstdint>
 
 /// Unilateral contact and Norton friction, lumped at the nodes of the surface.
@@ -49,6 +50,7 @@ namespace retroforge
     NodeIndex    node;
     unsigned int die;
     bool         touching; ///< delta <= width of the friction ramp
+    DieFeature   feature;  ///< of the die, closest to the node
   };
 
   /// Contact as found at the start of an increment.
@@ -82,6 +84,8 @@ namespace retroforge
   {
     double                        K = 0., m = 0., rho = 0., v0 = 0., tau = 0.;
     std::vector<DieState<double>> dies; ///< velocity, displacement and friction of each
+    /// In each die's vertices: filled in where it has as many entries as there are.
+    std::vector<NodalVectors<double>> die_vertices;
   };
 
   /// Derivatives in the increment's data: what ContactSet depends on is filled in later, by
@@ -114,13 +118,15 @@ namespace retroforge
                                       const NodalVectors<Number>          &X,
                                       double                               layer = 0.);
 
-  /// Pull-back of make_contact_set: adds to X_bar and to the dies' displacements.
-  void reverse_contact_set(const std::vector<Die>   &dies,
-                           const ContactSet<double> &contact,
-                           const FrictionRamp       &ramp,
-                           const ContactSetBar      &bar,
-                           NodalVectors<double>     &X_bar,
-                           ContactSensitivity       &sensitivity);
+  /// Pull-back of make_contact_set: adds to X_bar and to the dies' displacements and vertices.
+  void reverse_contact_set(const std::vector<Die>              &dies,
+                           const std::vector<DieState<double>> &states,
+                           const ContactSet<double>            &contact,
+                           const FrictionRamp                  &ramp,
+                           const NodalVectors<double>          &X,
+                           const ContactSetBar                 &bar,
+                           NodalVectors<double>                &X_bar,
+                           ContactSensitivity                  &sensitivity);
 
   template <typename Number>
   ContactAreas<Number> contact_areas(const TetMesh              &mesh,
@@ -164,6 +170,12 @@ namespace retroforge
     if (value_of(s) < 0.)
       return -layer / tau * log(Number(sqrt(Number(1. + s * s)) - s));
     return layer / tau * log(Number(sqrt(Number(1. + s * s)) + s));
+  }
+
+  /// The gap whose approach speed is `speed`: the reverse function.
+  inline double approach_distance(const double speed, const double tau, const double layer)
+  {
+    return layer == 0. ? speed * tau : layer * std::sinh(speed * tau / layer);
   }
 
   template <typename Number>

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/geometry/die_parameters.h>
 #include <retroforge/mesh/billet.h>
 #include <retroforge/time/process.h>
 

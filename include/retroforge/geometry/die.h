@@ -2,11 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/core/types.h>
-
-#include <deal.II/base/parameter_handler.h>
-
-#include <string>
+#include <retroforge/geometry/feature_projection.h>
 
 namespace retroforge
 {
@@ -19,15 +15,10 @@ namespace retroforge
     Number          friction;     ///< alpha of tau = -alpha K |dv|^(m-1) dv [mm^(-m)]
   };
 
-  /// Signed distance to a die, > 0 outside of it, and the closest feature's normal pointing into the die.
-  template <typename Number>
-  struct Projection
-  {
-    Number          delta;
-    Vector3<Number> n;
-  };
-
-  /// A rigid plane die.
+  /// A rigid die: a plane in closed form, or a triangulated surface whose normals point to the workpiece.
+  ///
+  /// Which feature a point sees is a decision (`closest`), the distance to it a formula (`project`): replays
+  /// and derivatives pass the recorded feature.
   class Die
   {
   public:
@@ -37,10 +28,25 @@ namespace retroforge
     {
     }
 
-    /// Closest feature seen from X:  delta = n·(point + displacement - X).
+    /// @param depth  points deeper than this behind the surface are not in contact [mm]
+    Die(std::string name, TriangleSurface surface, double depth);
+
+    /// The closest feature seen from X, or none: none of it within `reach`, or X deeper inside than `depth`,
+    /// or behind the rim of an open surface. A plane is always found.
+    DieFeature
+    closest(const Vec3 &X, const Vec3 &displacement, double reach = std::numeric_limits<double>::max()) const;
+
+    /// Signed distance however far or deep [mm]; infinite behind the rim of an open surface.
+    double signed_distance(const Vec3 &X, const Vec3 &displacement) const;
+
+    /// Signed distance and normal of a feature seen from X. Of a plane:  delta = n·(point + displacement -
+    /// X).
     template <typename Number>
-    Projection<Number> project(const Vector3<Number> &X, const Vector3<Number> &displacement) const
+    Projection<Number>
+    project(const Vector3<Number> &X, const Vector3<Number> &displacement, const DieFeature &feature) const
     {
+      if (surface_)
+        return project_on_feature(surface_->shape, surface_->shape.vertices(), feature, X, displacement);
       Projection<Number> projection;
       projection.delta = Number(0.);
       for (unsigned int i = 0; i < 3; ++i)
@@ -51,37 +57,39 @@ namespace retroforge
       return projection;
     }
 
-    /// Adds the pull-back of project to X_bar and displacement_bar. The normal of a plane depends on neither,
-    /// so that its derivative n_bar goes nowhere.
-    void
-    reverse_project(const double delta_bar, const Vec3 & /*n_bar*/, Vec3 &X_bar, Vec3 &displacement_bar) const
-    {
-      X_bar -= delta_bar * into_;
-      displacement_bar += delta_bar * into_;
-    }
+    /// Adds the pull-back of project to X_bar and displacement_bar, and to vertices_bar if given. The normal
+    /// of a plane depends on neither.
+    void reverse_project(const Vec3           &X,
+                         const Vec3           &displacement,
+                         const DieFeature     &feature,
+                         double                delta_bar,
+                         const Vec3           &n_bar,
+                         Vec3                 &X_bar,
+                         Vec3                 &displacement_bar,
+                         NodalVectors<double> *vertices_bar = nullptr) const;
+
+    /// Null for a plane.
+    const TriangleSurface *surface() const { return surface_ ? &surface_->shape : nullptr; }
+
+    /// Number of facets; 1 for a plane.
+    unsigned int n_facets() const { return surface_ ? surface_->shape.n_facets() : 1; }
 
     std::string name;
 
   private:
-    Vec3 point_;
-    Vec3 into_; ///< unit normal into the die
-  };
+    struct Surface
+    {
+      TriangleSurface shape;
+      ClosestFeature  closest;
+      double          depth;
 
-  struct DieParameters
-  {
-    std::string name;
-    Vec3        point;
-    Vec3        facing;
-    Vec3        velocity;
-    double      friction = 0.;
+      Surface(TriangleSurface made, const double depth) : shape(std::move(made)), closest(shape), depth(depth)
+      {
+      }
+    };
 
-    explicit DieParameters(std::string name) : name(std::move(name)) {}
-
-    void add_parameters(dealii::ParameterHandler &prm);
-    /// Normalises `facing`.
-    void check();
-
-    Die              die() const { return Die(name, point, facing); }
-    DieState<double> initial_state() const { return {velocity, Vec3(), friction}; }
+    Vec3                           point_;
+    Vec3                           into_; ///< unit normal into the die
+    std::shared_ptr<const Surface> surface_;
   };
 } // namespace retroforge

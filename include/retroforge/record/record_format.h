@@ -10,8 +10,9 @@
 
 /// What is in a record, object by object. Little endian; arrays in C order; n_* are counts.
 ///
-///     /header                 attributes: format, n_dies, n_patches
+///     /header                 attributes: format, n_patches
 ///       program commit parameters               text
+///       die_facets            [n_dies]          uint32        facets of each die; 1 for a plane
 ///       X X_0                 [n_nodes][3]      double [mm]   mesh when made, and at the start of the run
 ///       cells                 [n_cells][4]      uint32
 ///       faces                 [n_faces][4]      uint32        three nodes, patch
@@ -23,6 +24,8 @@
 ///       P                     [n_solves][n_nodes]     double [MPa]
 ///       pairs                 [n_pairs][2]            uint32  node, die
 ///       touching              [n_pairs]               uint8
+///       facet                 [n_pairs]               uint32  of the die
+///       kind                  [n_pairs]               uint8   0 face, 1-3 edge, 4-6 corner of the facet
 ///       active                [n_solves][n_pairs]     uint8
 ///       remesh                only of an increment that begins on a new mesh: that mesh as in the header
 ///         X_before            [n_old][3]              double [mm]   positions on the mesh before
@@ -34,19 +37,19 @@ namespace retroforge
   /// What holds for a whole run.
   struct RecordHeader
   {
-    std::string          program;    ///< version
-    std::string          commit;     ///< of the program
-    std::string          parameters; ///< the complete input
-    unsigned int         n_dies = 0;
-    TetMesh              mesh;
-    NodalVectors<double> X_0; ///< positions at the start of the run [mm]
+    std::string               program;    ///< version
+    std::string               commit;     ///< of the program
+    std::string               parameters; ///< the complete input
+    std::vector<unsigned int> die_facets; ///< number of facets of each die; 1 for a plane
+    TetMesh                   mesh;
+    NodalVectors<double>      X_0; ///< positions at the start of the run [mm]
   };
 
   /// What the increments of a run have in common.
   struct RecordShape
   {
-    unsigned int  n_dies = 0;
-    std::uint64_t run = 0; ///< fingerprint of the header: increments of different runs do not mix
+    std::vector<unsigned int> die_facets; ///< as in the header
+    std::uint64_t             run = 0; ///< fingerprint of the header: increments of different runs do not mix
 
     RecordShape() = default;
     explicit RecordShape(const RecordHeader &header);

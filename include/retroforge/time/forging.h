@@ -76,7 +76,7 @@ namespace retroforge
 
   private:
     bool acceptable(const Leg &leg, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const;
-    void remesh(ForgingState &state, IncrementRecord &record) const;
+    void remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
     void finish_increment(const Process<double> &process,
                           const IncrementRecord &record,
                           NodalVectors<double>   X_next,

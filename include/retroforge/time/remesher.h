@@ -13,11 +13,15 @@ namespace retroforge
 {
   struct RemesherParameters
   {
-    std::string         when         = "never"; ///< never, quality, increments
-    std::string         method       = "local";
-    unsigned int        every        = 5;
-    double              element_size = 0.;
-    bool                first_mesh   = false;
+    std::string         when          = "never"; ///< never, quality, increments
+    std::string         method        = "local";
+    unsigned int        every         = 5;
+    double              element_size  = 0.;
+    double              chord_error   = 0.;
+    double              smallest_size = 0.4;
+    double              growth        = 0.3;
+    double              fit           = 0.1;
+    bool                first_mesh    = false;
     RemeshingParameters local;
 
     void add_parameters(dealii::ParameterHandler &prm);
@@ -29,8 +33,14 @@ namespace retroforge
   class Remesher
   {
   public:
-    /// @param element_size  wanted length of the edges [mm]
-    Remesher(const RemesherParameters &parameters, double element_size, MPI_Comm comm);
+    /// Where the dies are.
+    using DieStates = std::vector<DieState<double>>;
+
+    /// @param element_size  wanted length of the edges away from curved dies [mm]
+    Remesher(const RemesherParameters &parameters,
+             double                    element_size,
+             const std::vector<Die>   &dies,
+             MPI_Comm                  comm);
 
     bool enabled() const { return parameters_.when != "never"; }
 
@@ -38,6 +48,7 @@ namespace retroforge
     /// @param increments  since the last remeshing
     bool due(const TetMesh              &mesh,
              const NodalVectors<double> &X,
+             const DieStates            &states,
              const std::vector<bool>    &frozen,
              unsigned int                increments) const;
 
@@ -46,13 +57,25 @@ namespace retroforge
 
     /// Collective: made on rank 0, the same everywhere. Numbered with renumber().
     /// @throws Error  when no method gives a sound mesh
-    std::shared_ptr<const RemeshRecord> remesh(const TetMesh &mesh, const NodalVectors<double> &X) const;
+    std::shared_ptr<const RemeshRecord>
+    remesh(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const;
+
+    /// Wanted length of edges: near a curved die as its curvature asks for.
+    SizeField size_field(const NodalVectors<double> &X, const DieStates &states) const;
+
+    /// How deep the middles of surface edges whose ends touch a die are inside it, at most [mm]: what the
+    /// mesh does not see of the die.
+    double misfit(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const;
 
   private:
-    RemeshedMesh make(const TetMesh &mesh, const NodalVectors<double> &X) const;
+    RemeshedMesh
+    make(const TetMesh &mesh, const NodalVectors<double> &X, const SizeField &size, const PushOut &push_out) const;
+    PushOut push_out(const DieStates &states) const;
 
-    RemesherParameters parameters_;
-    double             element_size_;
-    MPI_Comm           comm_;
+    RemesherParameters       parameters_;
+    double                   element_size_;
+    const std::vector<Die>  &dies_;
+    MPI_Comm                 comm_;
+    std::vector<std::vector<double>> facet_size_; ///< of each curved die: the length its curvature asks for
   };
 } // namespace retroforge

@@ -11,12 +11,14 @@ namespace retroforge
 {
   namespace
   {
-    // Faces belong to a flat piece when all neighbours are within this of their normal (cosine; 0.26 degrees)
-    // ...
-    constexpr double flat_cosine = 1 - 1e-5;
-    // ... or beyond a ridge, which bounds the piece (40 degrees).
-    constexpr double       ridge_cosine   = 0.766;
-    constexpr unsigned int max_iterations = 8;
+    // A face is part of a flat piece when each neighbour is within 0.26 degrees of its normal, or turns by
+    // more than 40 degrees or has another patch: then it bounds the piece.
+    constexpr double flat_cosine  = 1 - 1e-5;
+    constexpr double ridge_cosine = 0.766;
+    // What rounding makes of the sum of many cells; not worth moving nodes for, flat sides even less.
+    constexpr double       negligible         = 1e-13;
+    constexpr double       negligible_if_flat = 1e-12;
+    constexpr unsigned int max_iterations     = 8;
 
     std::vector<bool> flat_faces(const TetMesh &mesh, const std::vector<Vec3> &normals)
     {
@@ -124,18 +126,18 @@ namespace retroforge
   {
     const double tolerance = 1e-14 * wanted_volume;
     double       missing   = wanted_volume - volume(mesh.cells, mesh.X);
-    if (std::abs(missing) <= tolerance)
+    if (std::abs(missing) <= negligible * wanted_volume)
       return 0;
     const auto normals = face_unit_normals(mesh.faces, mesh.X);
     auto       g       = area_vectors(mesh);
     auto       moves   = directions(mesh, g, node_constraints(mesh, normals, true));
-    if (moves.area < 1e-3 * surface_area(mesh))
+    if (moves.area < 1e-3 * surface_area(mesh) && std::abs(missing) > negligible_if_flat * wanted_volume)
       moves = directions(mesh, g, node_constraints(mesh, normals, false));
 
     double distance = 0;
     for (unsigned int i = 0; i < max_iterations && std::abs(missing) > tolerance; ++i)
     {
-      if (!(moves.area > 0))
+      if (moves.area < 1e-3 * surface_area(mesh))
         break;
       const double step = missing / moves.area;
       for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)

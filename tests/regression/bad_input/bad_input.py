@@ -103,6 +103,13 @@ MISTAKES = {
     "design parameter of another shape": (settings("Design/parameters=billet/radius"), r"billet/radius"),
     "billet out of reach": (settings("Billet/translation=0, 0, 500", "Die upper/point=0, 0, 1000"), r"Die|billet"),
     "billet inside a die": (settings("Die lower/point=0, 0, 4"), r"Die lower.*inside"),
+    "die of a file without one": (settings("Die lower/shape=stl"), r"Die lower/file.*empty"),
+    "missing die file": (settings("Die lower/shape=stl", "Die lower/file=absent.stl"), r"absent\.stl.*cannot be read"),
+    "a die's file that is no STL": (settings("Die lower/shape=stl", "Die lower/file=case.prm"), r"case\.prm"),
+    "file for a plane": (settings("Die lower/file=lower.stl"), r"Die lower/file.*plane"),
+    "die whose measures do not fit": (settings("Die lower/shape=tripod", "Die lower/Tripod/arm width=3"),
+                                      r"Die lower/Tripod/arm width.*3"),
+    "unknown shape of a die": (settings("Die lower/shape=cone"), r"Die lower/shape.*cone.*bell"),
     "element size of zero": (settings("Billet/element size=0"), r"Billet/element size"),
     "missing mesh": (file_mesh("absent"), r"absent\.msh"),
     "overlapping tetrahedra": (file_mesh("overlapping"), r"overlapping\.msh|[Tt]etrahed|face"),
@@ -159,7 +166,7 @@ def interrupted(folder):
 
 def full_disk(folder):
     """A small file system of our own, where the machine lets us have one."""
-    for size, name, more in (("4k", "first files", ""), ("48k", "fields", ""),
+    for size, name, more in (("4k", "first files", ""), ("64k", "fields", ""),
                              ("120k", "record", "--set 'Output/fields every=0' --set Press/increments=60")):
         disk, saved = os.path.join(folder, f"disk_{size}"), os.path.join(folder, f"saved_{size}")
         os.mkdir(disk)

@@ -10,7 +10,8 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/adjoint/sweep.h>
+#include "recorded_run.h"
+
 #include <retroforge/parameters.h>
 
 #include <iostream>
@@ -68,45 +69,7 @@ namespace
     return p;
   }
 
-  struct Problem
-  {
-    explicit Problem(const Parameters &all)
-        : parameters(all)
-        , process(all.process(all.billet.size[2]))
-        , model{{all.dies[0].die(), all.dies[1].die()},
-                all.step_model(),
-                all.newton,
-                all.linear_solver,
-                MPI_COMM_WORLD}
-        , leg(std::make_shared<Leg>(make_billet(all.billet, MPI_COMM_WORLD), model, timings))
-        , scene(leg->scene)
-        , system(leg->system)
-        , remesher(parameters.remeshing, 1., MPI_COMM_WORLD)
-        , forging(model, parameters.press, remesher, timings)
-        , forged(forging.start(leg, scene.mesh.X))
-    {
-      forging.run(process, forged, [&](const IncrementEvent &event) { records.push_back(event.record); });
-    }
-
-    AdjointResult adjoint() { return adjoint_sweep(model, leg, process, forged, source(), timings); }
-
-    Forging::Source source() const
-    {
-      return [&](const unsigned int i) -> const IncrementRecord & { return records[i]; };
-    }
-
-    const Parameters             parameters;
-    Timings                      timings;
-    Process<double>              process;
-    ForgingModel                 model;
-    std::shared_ptr<Leg>         leg;
-    const Scene                 &scene;
-    LinearSystem                &system;
-    Remesher                     remesher;
-    Forging                      forging;
-    std::vector<IncrementRecord> records;
-    ForgingState                 forged;
-  };
+  using Problem = RecordedRun;
 
   /// The contact's part of a reverse sweep; `reverse_node` is that of one node.
   template <typename NodeReverse>
@@ -220,7 +183,8 @@ namespace
                                                         record.pairs,
                                                         problem.model.step.ramp,
                                                         problem.model.step.approach * dt,
-                                                        X);
+                                                        X,
+                                                        problem.model.step.layer);
     ContactSetBar            contact_bar(record.pairs.size());
     PhysicsBar               bar(scene.dies.size());
     NodalVectors<double>     next = G; // dPhi/d(where the stage's velocity leads): X_{i+1}, then Y
@@ -244,8 +208,8 @@ namespace
         rhs.V[k] += reach * next[k];
       }
       minus_rhs.add(-1., rhs);
-      problem.system.assemble(stage, W, solve.active);
-      problem.system.solve(minus_rhs, problem.model.step.adjoint_tolerance, lambda);
+      problem.leg->system.assemble(stage, W, solve.active);
+      problem.leg->system.solve(minus_rhs, problem.model.step.adjoint_tolerance, lambda);
       if (s == 0 && omitted == Term::first_stage)
         lambda = Field<double>(scene.mesh);
       reverse_equilibrium(stage, W, solve.active, lambda, omitted, X_bar, contact_bar, bar);
@@ -261,7 +225,8 @@ namespace
       bar.dt = 0.;
     if (omitted == Term::tau)
       bar.contact.tau = 0.;
-    reverse_contact_set(scene.dies, contact, problem.model.step.ramp, contact_bar, G, bar.contact);
+    reverse_contact_set(
+      scene.dies, physics.dies, contact, problem.model.step.ramp, X, contact_bar, G, bar.contact);
     process_bar.add(bar, problem.process, {record.stroke, record.step}, problem.model.step.approach);
   }
 
@@ -303,7 +268,7 @@ namespace
       if (pair.touching)
         list[1].X_dot[pair.node] -=
           (1.5 + uniform(generator)) *
-          problem.scene.dies[pair.die].project(problem.scene.mesh.X[pair.node], Vec3()).n;
+          problem.scene.dies[pair.die].project(problem.scene.mesh.X[pair.node], Vec3(), pair.feature).n;
     return list;
   }
 
@@ -322,9 +287,7 @@ namespace
     process.dies[1].velocity *= 1. + h * direction.speed_dot;
     for (std::size_t k = 0; k < X.size(); ++k)
       X[k] += h * direction.X_dot[k];
-    ForgingState state = problem.forging.start(problem.leg, X);
-    problem.forging.replay(process, problem.records.size(), problem.source(), state);
-    return state.energy.total();
+    return problem.replayed_energy(process, X);
   }
 
   double error(const double a, const double b)

@@ -11,7 +11,8 @@
 // - the same within a layer, whose approach speed is smooth through zero and slower than delta/tau outside;
 // - gaps, ramps, areas under two tilted dies: <A x, y> = <x, A^T y> for A the forward derivative, where the
 // smooth ramp,
-//   the sharp one and the dies' displacements count;
+//   the sharp one and the dies' displacements count; the same with a triangulated, curved die, where the
+//   normals change too;
 // - the smooth ramp joins 1 and 0 with zero slope and curvature.
 
 #include <deal.II/base/mpi.h>
@@ -208,14 +209,37 @@ struct CornerScene
     return make_billet(parameters, MPI_COMM_SELF);
   }
 
-  CornerScene(const FrictionRamp &ramp, Random &random)
+  /// A wavy sheet under the corner, its edges and vertices included; normals up.
+  static TriangleSurface wavy_sheet()
+  {
+    const unsigned int    n = 8;
+    NodalVectors<double>  x;
+    std::vector<Triangle> t;
+    for (unsigned int j = 0; j <= n; ++j)
+      for (unsigned int i = 0; i <= n; ++i)
+      {
+        const double a = -8. + 16. * i / n, b = -8. + 16. * j / n;
+        x.push_back(Vec3({a, b, 0.1 + 0.3 * std::sin(a + 0.4) * std::cos(0.8 * b)}));
+      }
+    for (unsigned int j = 0; j < n; ++j)
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        const unsigned int k = j * (n + 1) + i;
+        t.insert(t.end(), {{{k, k + 1, k + n + 2}}, {{k, k + n + 2, k + n + 1}}});
+      }
+    return TriangleSurface("sheet", x, t);
+  }
+
+  CornerScene(const FrictionRamp &ramp, Random &random, const bool curved)
       : mesh(make_mesh()), topology(mesh), X(mesh.X), ramp(ramp)
   {
     for (Vec3 &x : X)
       x += 0.1 * random.vector();
     const Vec3 up = Vec3({0.1, -0.15, 1.}), side = Vec3({-1., 0.1, 0.2});
-    dies   = {Die("lower", Vec3({0., 0., 0.1}), up / up.norm()),
-              Die("side", Vec3({5., 0., 0.}), side / side.norm())};
+    dies = {Die("lower", Vec3({0., 0., 0.1}), up / up.norm()),
+            Die("side", Vec3({5., 0., 0.}), side / side.norm())};
+    if (curved)
+      dies[0] = Die("lower", wavy_sheet(), 2.);
     states = {{Vec3(), 0.1 * random.vector(), 0.3}, {Vec3(), 0.1 * random.vector(), 0.2}};
     pairs  = find_contact_pairs(topology, dies, states, X, ramp, 1.5 * ramp.width);
   }
@@ -299,8 +323,10 @@ void check_mesh(const CornerScene &scene,
   NodalVectors<double> X_bar(scene.X.size());
   ContactSensitivity   sensitivity;
   sensitivity.dies.resize(scene.dies.size());
+  for (const Die &die : scene.dies)
+    sensitivity.die_vertices.emplace_back(die.surface() ? die.surface()->vertices().size() : 0);
   reverse_contact_areas(scene.mesh, scene.topology, contact, scene.X, areas_bar, X_bar, bar);
-  reverse_contact_set(scene.dies, contact, scene.ramp, bar, X_bar, sensitivity);
+  reverse_contact_set(scene.dies, scene.states, contact, scene.ramp, scene.X, bar, X_bar, sensitivity);
   double backward = dot(X_dot, X_bar);
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
     backward += dot(displacement_dot[d], sensitivity.dies[d].displacement);
@@ -308,13 +334,23 @@ void check_mesh(const CornerScene &scene,
                    (move_dies ? "dies" : ""),
                  backward,
                  forward);
+  // All vertices moved alike are a displacement of the die.
+  for (unsigned int d = 0; d < scene.dies.size(); ++d)
+    if (scene.dies[d].surface())
+    {
+      Vec3 sum;
+      for (const Vec3 &x : sensitivity.die_vertices[d])
+        sum += x;
+      for (unsigned int i = 0; i < 3; ++i)
+        errors.compare("vertices' derivatives summed", sum[i], sensitivity.dies[d].displacement[i]);
+    }
 }
 
-double check_meshes(const FrictionRamp &ramp)
+double check_meshes(const FrictionRamp &ramp, const bool curved)
 {
   Random            random;
   Errors            errors;
-  const CornerScene scene(ramp, random);
+  const CornerScene scene(ramp, random, curved);
   const auto        contact =
     make_contact_set(scene.mesh, scene.topology, scene.dies, scene.states, scene.pairs, ramp, 0.3, scene.X);
   unsigned int n_partial = 0, n_faces[2] = {0, 0};
@@ -322,8 +358,14 @@ double check_meshes(const FrictionRamp &ramp)
     n_partial += w > 0. && w < 1.;
   for (const auto &face : contact.friction_faces)
     ++n_faces[contact.pairs[face.points[0]].die];
-  std::cout << (ramp.sharp ? "sharp" : "smooth") << " ramp under two tilted dies" << std::endl
+  unsigned int n_kind[DieFeature::n_kinds] = {};
+  for (const ContactPair &pair : scene.pairs)
+    ++n_kind[pair.feature.kind];
+  std::cout << (ramp.sharp ? "sharp" : "smooth") << " ramp under "
+            << (curved ? "a curved and a tilted die" : "two tilted dies") << std::endl
             << "  friction faces on both dies: " << (n_faces[0] > 3 && n_faces[1] > 3 ? "yes" : "NO")
+            << std::endl
+            << "  nodes on edges or vertices of a die: " << (n_kind[0] < scene.pairs.size() ? "some" : "none")
             << std::endl
             << "  nodes within the ramp: " << (n_partial > 3 ? "some" : "none") << std::endl;
   for (unsigned int k = 0; k < 5; ++k)
@@ -414,8 +456,10 @@ int main(int argc, char **argv)
   std::cout << "potential" << std::endl;
   potential.print(1e-9);
 
-  largest = std::max(largest, check_meshes({0.9, false}));
-  largest = std::max(largest, check_meshes({0.9, true}));
+  largest = std::max(largest, check_meshes({0.9, false}, false));
+  largest = std::max(largest, check_meshes({0.9, true}, false));
+  largest = std::max(largest, check_meshes({0.9, false}, true));
+  largest = std::max(largest, check_meshes({0.9, true}, true));
   check_ramp();
   check_layer();
   std::cout << "FIGURE contact_derivative_error " << largest << std::endl;

@@ -133,11 +133,19 @@ void show_bad_increments()
     replace(g, "P", {1, 12}, std::vector<double>(12));
   });
   show("pair of a node that is not there", [](const hid_t g) {
-    replace(g, "pairs", {4, 2}, std::vector<unsigned int>{0, 0, 1, 0, 12, 0, 3, 0});
+    replace(g, "pairs", {4, 2}, std::vector<unsigned int>{0, 1, 1, 1, 12, 1, 3, 1});
   });
   show("pair of a die that is not there", [](const hid_t g) {
-    replace(g, "pairs", {4, 2}, std::vector<unsigned int>{0, 0, 1, 0, 2, 2, 3, 0});
+    replace(g, "pairs", {4, 2}, std::vector<unsigned int>{0, 1, 1, 1, 2, 2, 3, 1});
   });
+  show("facet that is not there", [](const hid_t g) {
+    replace(g, "facet", {4}, std::vector<unsigned int>{0, 0, 96, 0});
+  });
+  show("kind of feature that is not there", [](const hid_t g) {
+    replace(g, "kind", {4}, std::vector<unsigned char>{0, 0, 7, 0});
+  });
+  show("fewer kinds than pairs",
+       [](const hid_t g) { replace(g, "kind", {3}, std::vector<unsigned char>(3)); });
   show("more pairs than flags", [](const hid_t g) {
     replace(g, "pairs", {5, 2}, std::vector<unsigned int>(10));
   });

@@ -69,7 +69,7 @@ namespace retroforge
   inline RecordHeader sample_header(const TetMesh     &mesh,
                                     const std::string &parameters = "set K = 1\n# 5°, µ\n")
   {
-    RecordHeader header{"0.1.0", "abc1234", parameters, 2, mesh, mesh.X};
+    RecordHeader header{"0.1.0", "abc1234", parameters, {1, 96}, mesh, mesh.X};
     for (Vec3 &x : header.X_0)
       x *= 1.1;
     return header;
@@ -90,10 +90,16 @@ namespace retroforge
     increment.newton             = i + 1;
     increment.krylov             = 10 * i;
     increment.linear_solves      = i + 2;
-    for (unsigned int d = 0; d < header.n_dies; ++d)
+    for (unsigned int d = 0; d < header.die_facets.size(); ++d)
       increment.forces.push_back(Vec3({number(), number(), number()}));
     for (NodeIndex k = 0; k < header.mesh.n_nodes(); k += 3)
-      increment.pairs.push_back({k, static_cast<unsigned int>(random() % header.n_dies), random() % 2 == 0});
+    {
+      const unsigned int die      = random() % header.die_facets.size();
+      const bool         touching = random() % 2 == 0;
+      const unsigned int facet    = random() % header.die_facets[die];
+      increment.pairs.push_back(
+        {k, die, touching, {facet, static_cast<unsigned char>(random() % DieFeature::n_kinds)}});
+    }
     for (unsigned int s = 0; s < n_solves; ++s)
     {
       SolveRecord solve;
@@ -164,7 +170,7 @@ namespace retroforge
                  a.solves.size() == b.solves.size();
     for (std::size_t p = 0; equal && p < a.pairs.size(); ++p)
       equal = a.pairs[p].node == b.pairs[p].node && a.pairs[p].die == b.pairs[p].die &&
-              a.pairs[p].touching == b.pairs[p].touching;
+              a.pairs[p].touching == b.pairs[p].touching && a.pairs[p].feature == b.pairs[p].feature;
     for (std::size_t s = 0; equal && s < a.solves.size(); ++s)
       equal = same_bits(a.solves[s].V, b.solves[s].V) && same_bits(a.solves[s].P, b.solves[s].P) &&
               same_bits(a.solves[s].active, b.solves[s].active);
@@ -188,7 +194,7 @@ namespace retroforge
   inline bool same(const RecordHeader &a, const RecordHeader &b)
   {
     return a.program == b.program && a.commit == b.commit && a.parameters == b.parameters &&
-           a.n_dies == b.n_dies && same_bits(a.X_0, b.X_0) && same(a.mesh, b.mesh);
+           a.die_facets == b.die_facets && same_bits(a.X_0, b.X_0) && same(a.mesh, b.mesh);
   }
 
   inline std::string bytes_of(const std::string &file)

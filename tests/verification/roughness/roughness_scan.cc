@@ -40,7 +40,7 @@ namespace
                 MPI_COMM_WORLD}
         , design(all.design.names, all.billet, all.dies, nominal, mesh.X)
         , leg(std::make_shared<Leg>(mesh, model, timings))
-        , remesher(parameters.remeshing, parameters.edge_length(mesh), MPI_COMM_WORLD)
+        , remesher(parameters.remeshing, parameters.edge_length(mesh), model.dies, MPI_COMM_WORLD)
         , forging(model, parameters.press, remesher, timings)
     {
     }

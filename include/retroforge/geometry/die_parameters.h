@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/geometry/die.h>
+#include <retroforge/geometry/die_shapes.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+namespace retroforge
+{
+  /// What a parameter file says about a die.
+  ///
+  /// A plane goes through `point`. A tripod or bell has its origin there and its z axis along `facing`,
+  /// turned about it by `angle`: x' = point + R x, R the rotation that takes z to `facing` the short way (for
+  /// facing = -z: half a turn about the x axis) after the turn about z. The surface of an STL file stands as
+  /// drawn, scaled, turned by `angle` about `axis` and moved by `point`; there `facing` only says along which
+  /// way `die NAME/offset` moves it.
+  struct DieParameters
+  {
+    std::string name;
+    std::string shape = "plane";
+    Vec3        point;
+    Vec3        facing;
+    Vec3        velocity;
+    double      friction = 0.;
+    double      depth    = 0.; ///< 0: a tenth of the surface's diagonal [mm]
+
+    std::string file;
+    double      scale = 1.;
+    Vec3        axis  = Vec3({0., 0., 1.});
+    double      angle = 0.; ///< [degrees]
+
+    double              chord_error = 0.05; ///< [mm]
+    TripodShape<double> tripod;
+    BellShape<double>   bell;
+
+    explicit DieParameters(std::string name) : name(std::move(name)) {}
+
+    void add_parameters(dealii::ParameterHandler &prm);
+    /// Normalises `facing`.
+    void check();
+
+    /// @throws Error  for a file or measures that make no surface
+    Die              die() const;
+    DieState<double> initial_state() const { return {velocity, Vec3(), friction}; }
+
+  private:
+    std::string     section() const { return "Die " + name; }
+    TriangleSurface surface() const;
+  };
+} // namespace retroforge

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/geometry/triangle_surface.h>
+
+#include <vector>
+
+/// Dies made from a few numbers: a flat face z = 0 with a cavity below it, open towards +z, where the
+/// workpiece is. Templated on the number type, so that vertices come with their derivatives in the shape's
+/// parameters; how many vertices there are follows from the values alone.
+///
+/// All are one construction: rings around the z axis. A ring is the cavity's outline in plan, moved inwards
+/// by o at depth z, and (o, z) runs along a profile: flat face, rounded edge, drafted wall, fillet, flat
+/// floor. Halves of a sector are mirror images, so that a die cut by its planes of symmetry is the whole one.
+namespace retroforge
+{
+  /// Vertices and facets, as TriangleSurface takes them.
+  template <typename Number>
+  struct ShapeMesh
+  {
+    NodalVectors<Number>  vertices;
+    std::vector<Triangle> triangles;
+  };
+
+  /// What a cavity looks like in section.
+  template <typename Number>
+  struct CavityProfile
+  {
+    Number depth  = 9.5; ///< of the floor below the face [mm]
+    Number draft  = 7.;  ///< of the wall against the z axis [degrees]
+    Number edge   = 2.;  ///< radius of the edge between face and wall [mm]
+    Number fillet = 2.;  ///< radius between wall and floor [mm]
+  };
+
+  /// A hub with three arms at 0, 120 and 240 degrees from the x axis. Plan measures hold where the wall,
+  /// prolonged, meets the face. The defaults, of upper and lower die together, take up a billet of radius 20
+  /// and height 60 crushed by 40: floors 20 apart, faces 1 apart.
+  template <typename Number>
+  struct TripodShape
+  {
+    Number                hub    = 24.; ///< radius [mm]
+    Number                width  = 24.; ///< of an arm, whose end is a half circle [mm]
+    Number                length = 56.; ///< from the axis to the end of an arm [mm]
+    Number                corner = 8.;  ///< radius in plan between hub and arm [mm]
+    Number                outer  = 80.; ///< radius of the face [mm]
+    CavityProfile<Number> profile;
+  };
+
+  /// A bell: a body of revolution around the z axis.
+  template <typename Number>
+  struct BellShape
+  {
+    Number                mouth = 60.; ///< radius where the wall, prolonged, meets the face [mm]
+    Number                outer = 90.; ///< radius of the face [mm]
+    CavityProfile<Number> profile{60., 25., 8., 12.};
+  };
+
+  /// @param chord_error  largest distance of facets from the smooth shape [mm]
+  /// @throws Error  whose place begins with `where`, when the measures do not fit each other
+  template <typename Number>
+  ShapeMesh<Number> make_tripod(const std::string &where, const TripodShape<Number> &, double chord_error);
+
+  template <typename Number>
+  ShapeMesh<Number> make_bell(const std::string &where, const BellShape<Number> &, double chord_error);
+} // namespace retroforge

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <deal.II/base/numbers.h>
+
+#include <retroforge/core/dual.h>
+#include <retroforge/core/error.h>
+#include <retroforge/geometry/die_shapes.h>
+
+#include <cmath>
+#include <functional>
+
+namespace retroforge
+{
+  namespace
+  {
+    constexpr double pi = dealii::numbers::PI;
+
+    template <typename Number>
+    struct Point2
+    {
+      Number x, y;
+    };
+
+    template <typename Number>
+    using Points2 = std::vector<Point2<Number>>;
+
+    /// Half of a sector of an outline, moved inwards: the ends included, always as many points.
+    template <typename Number>
+    using Outline = std::function<Points2<Number>(const Number &inwards)>;
+
+    /// Segments of an arc whose chords stay within `error` of it.
+    unsigned int n_segments(const double radius, const double angle, const double error)
+    {
+      if (error >= radius)
+        return 1;
+      return std::max(1., std::ceil(angle / (2. * std::acos(1. - error / radius)) - 1e-9));
+    }
+
+    void require(const bool condition, const std::string &where, const std::string &what, const char *rule)
+    {
+      if (!condition)
+        throw Error(where, what, rule, "change the measures so that they fit each other");
+    }
+
+    /// Points of an arc at angles from..to about a centre; the first is left out if there are points before.
+    template <typename Number>
+    void append_arc(Points2<Number>      &points,
+                    const Point2<Number> &centre,
+                    const Number         &radius,
+                    const Number         &from,
+                    const Number         &to,
+                    const unsigned int    n)
+    {
+      using std::cos;
+      using std::sin;
+      for (unsigned int i = points.empty() ? 0 : 1; i <= n; ++i)
+      {
+        const Number a = from + (to - from) * (double(i) / n);
+        points.push_back({centre.x + radius * cos(a), centre.y + radius * sin(a)});
+      }
+    }
+
+    /// (o, z) from the floor to the face. @param tangent_face, tangent_floor  how far the roundings reach
+    /// along face and floor
+    template <typename Number>
+    struct Section
+    {
+      Points2<Number> points;
+      Number          reach_out; ///< of the edge, outwards on the face
+      Number          reach_in;  ///< of the fillet, inwards on the floor
+    };
+
+    template <typename Number>
+    Section<Number>
+    make_section(const std::string &where, const CavityProfile<Number> &profile, const double chord_error)
+    {
+      using std::cos;
+      using std::sin;
+      using std::tan;
+      for (const auto &[name, x] : {std::make_pair("depth", &profile.depth),
+                                    std::make_pair("edge radius", &profile.edge),
+                                    std::make_pair("fillet radius", &profile.fillet)})
+        require(value_of(*x) > 0., where + "/" + name, "is " + std::to_string(value_of(*x)), "must be > 0");
+      require(value_of(profile.draft) >= 0. && value_of(profile.draft) < 80.,
+              where + "/draft angle",
+              "is " + std::to_string(value_of(profile.draft)),
+              "must be from 0 to 80 degrees");
+      const Number draft = profile.draft * (pi / 180.), turn = 0.5 * pi - draft, slope = tan(draft),
+                   tangent = tan(Number(0.5 * turn));
+      // The wall must be longer than the parts that the roundings take of it.
+      require(value_of(Number(profile.depth / cos(draft))) >
+                value_of(Number((profile.edge + profile.fillet) * tangent)),
+              where,
+              "edge radius and fillet radius take more than the whole wall",
+              "a part of the wall must remain between them");
+      Section<Number> section;
+      section.reach_out           = profile.edge * tangent;
+      section.reach_in            = profile.depth * slope + profile.fillet * tangent;
+      const unsigned int n_fillet = n_segments(value_of(profile.fillet), value_of(turn), chord_error),
+                         n_edge   = n_segments(value_of(profile.edge), value_of(turn), chord_error);
+      for (unsigned int i = 0; i <= n_fillet; ++i)
+      {
+        const Number a = turn * (double(i) / n_fillet);
+        section.points.push_back(
+          {section.reach_in - profile.fillet * sin(a), -profile.depth + profile.fillet * (1. - cos(a))});
+      }
+      for (unsigned int i = n_edge + 1; i-- > 0;)
+      {
+        const Number a = turn * (double(i) / n_edge);
+        section.points.push_back({-section.reach_out + profile.edge * sin(a), -profile.edge * (1. - cos(a))});
+      }
+      return section;
+    }
+
+    /// A half sector repeated around the axis, every second one mirrored; counter-clockwise.
+    template <typename Number>
+    Points2<Number> whole_ring(const Points2<Number> &half, const unsigned int n_halves)
+    {
+      const unsigned int m = half.size() - 1;
+      Points2<Number>    ring;
+      for (unsigned int s = 0; s < n_halves; ++s)
+      {
+        const bool   mirrored = s % 2 == 1;
+        const double angle = 2. * pi / n_halves * (mirrored ? s + 1 : s), c = std::cos(angle),
+                     d = std::sin(angle);
+        for (unsigned int i = 0; i < m; ++i)
+        {
+          const Point2<Number> &p = half[mirrored ? m - i : i];
+          const Number          y = mirrored ? Number(-p.y) : p.y;
+          ring.push_back({c * p.x - d * y, d * p.x + c * y});
+        }
+      }
+      return ring;
+    }
+
+    template <typename Number>
+    ShapeMesh<Number> make_rings(const Outline<Number> &outline,
+                                 const Section<Number> &section,
+                                 const Number          &outer,
+                                 const unsigned int     n_halves)
+    {
+      using std::sqrt;
+      ShapeMesh<Number> mesh;
+      const auto        add = [&mesh](const Number &x, const Number &y, const Number &z) {
+        Vector3<Number> v;
+        v[0] = x;
+        v[1] = y;
+        v[2] = z;
+        mesh.vertices.push_back(v);
+      };
+      add(Number(0.), Number(0.), section.points[0].y);
+      unsigned int n = 0;
+      for (const Point2<Number> &place : section.points)
+      {
+        const Points2<Number> ring = whole_ring(outline(place.x), n_halves);
+        n                          = ring.size();
+        for (const Point2<Number> &p : ring)
+          add(p.x, p.y, place.y);
+      }
+      const std::size_t last = mesh.vertices.size() - n;
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        const Vector3<Number> v   = mesh.vertices[last + i];
+        const Number          out = outer / sqrt(Number(v[0] * v[0] + v[1] * v[1]));
+        add(v[0] * out, v[1] * out, v[2]);
+      }
+      const unsigned int m = n / n_halves;
+      for (unsigned int i = 0; i < n; ++i)
+        mesh.triangles.push_back({{0, 1 + i, 1 + (i + 1) % n}});
+      for (unsigned int k = 0; k < section.points.size(); ++k)
+        for (unsigned int i = 0; i < n; ++i)
+        {
+          const unsigned int j = (i + 1) % n, a = 1 + k * n + i, b = 1 + (k + 1) * n + i,
+                             c = 1 + (k + 1) * n + j, d = 1 + k * n + j;
+          if (i / m % 2 == 0)
+            mesh.triangles.insert(mesh.triangles.end(), {{{a, b, c}}, {{a, c, d}}});
+          else
+            mesh.triangles.insert(mesh.triangles.end(), {{{a, b, d}}, {{b, c, d}}});
+        }
+      return mesh;
+    }
+  } // namespace
+
+  template <typename Number>
+  ShapeMesh<Number>
+  make_tripod(const std::string &where, const TripodShape<Number> &shape, const double chord_error)
+  {
+    const double error = 0.5 * chord_error; // chords in plan and in section add up
+    using std::atan2;
+    using std::sqrt;
+    const auto   section = make_section(where, shape.profile, error);
+    const Number b = 0.5 * shape.width, in = section.reach_in, out = section.reach_out;
+    const double hub = value_of(shape.hub), half = value_of(b), corner = value_of(shape.corner);
+    require(half > value_of(in),
+            where + "/arm width",
+            "is " + std::to_string(2. * half) + " where draft and fillet take " +
+              std::to_string(2. * value_of(in)),
+            "a part of the floor must remain in the arms");
+    require(corner > value_of(out),
+            where + "/corner radius",
+            "is " + std::to_string(corner) + " where the rounded edge takes " + std::to_string(value_of(out)),
+            "the corner in plan must be rounder than the edge");
+    // The corner's arc is tangent to the hub's circle and to the arm's side.
+    const Number reach = shape.hub + shape.corner, rise = b + shape.corner;
+    require(value_of(rise) < value_of(reach),
+            where + "/hub radius",
+            "is " + std::to_string(hub) + " where the arms are " + std::to_string(2. * half) + " wide",
+            "the hub must be wider than an arm");
+    const Number foot = sqrt(Number(reach * reach - rise * rise)), angle = atan2(rise, foot);
+    require(value_of(angle) < pi / 3.,
+            where + "/corner radius",
+            "is " + std::to_string(corner),
+            "corners of neighbouring arms must leave a part of the hub between them");
+    require(value_of(shape.length) - half > value_of(foot),
+            where + "/arm length",
+            "is " + std::to_string(value_of(shape.length)),
+            "an arm must be longer than hub and corner");
+    require(value_of(shape.outer) > value_of(Number(shape.length + out)),
+            where + "/outer radius",
+            "is " + std::to_string(value_of(shape.outer)),
+            "the face must surround the cavity");
+    const unsigned int n_cap = n_segments(value_of(Number(b + out)), 0.5 * pi, error),
+                       n_corner =
+                         n_segments(value_of(Number(shape.corner + in)), pi / 2. - value_of(angle), error),
+                       n_hub =
+                         n_segments(value_of(Number(shape.hub + out)), pi / 3. - value_of(angle), error);
+    const Outline<Number> outline = [&](const Number &o) {
+      const Number    zero(0.), right(0.5 * pi);
+      Points2<Number> points;
+      append_arc(points, {Number(shape.length - b), zero}, Number(b - o), zero, right, n_cap);
+      points.push_back({foot, Number(b - o)});
+      append_arc(
+        points, {foot, rise}, Number(shape.corner + o), Number(-0.5 * pi), Number(angle - pi), n_corner);
+      append_arc(points, {zero, zero}, Number(shape.hub - o), angle, Number(pi / 3.), n_hub);
+      return points;
+    };
+    return make_rings(outline, section, shape.outer, 6);
+  }
+
+  template <typename Number>
+  ShapeMesh<Number>
+  make_bell(const std::string &where, const BellShape<Number> &shape, const double chord_error)
+  {
+    const double error   = 0.5 * chord_error; // chords in plan and in section add up
+    const auto   section = make_section(where, shape.profile, error);
+    require(value_of(shape.mouth) > value_of(section.reach_in),
+            where + "/mouth radius",
+            "is " + std::to_string(value_of(shape.mouth)) + " where draft and fillet take " +
+              std::to_string(value_of(section.reach_in)),
+            "a part of the floor must remain");
+    require(value_of(shape.outer) > value_of(Number(shape.mouth + section.reach_out)),
+            where + "/outer radius",
+            "is " + std::to_string(value_of(shape.outer)),
+            "the face must surround the cavity");
+    const unsigned int    n = n_segments(value_of(Number(shape.mouth + section.reach_out)), 0.5 * pi, error);
+    const Outline<Number> outline = [&](const Number &o) {
+      const Number    zero(0.);
+      Points2<Number> points;
+      append_arc(points, {zero, zero}, Number(shape.mouth - o), zero, Number(0.5 * pi), n);
+      return points;
+    };
+    return make_rings(outline, section, shape.outer, 4);
+  }
+
+#define RETROFORGE_INSTANTIATE(Number)                                                              \
+  template ShapeMesh<Number> make_tripod(const std::string &, const TripodShape<Number> &, double); \
+  template ShapeMesh<Number> make_bell(const std::string &, const BellShape<Number> &, double);
+  RETROFORGE_INSTANTIATE(double)
+  RETROFORGE_INSTANTIATE(Dual)
+#undef RETROFORGE_INSTANTIATE
+} // namespace retroforge

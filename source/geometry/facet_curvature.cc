@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/geometry/facet_curvature.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace retroforge
+{
+  namespace
+  {
+    Vec3 normal(const TriangleSurface &surface, const unsigned int facet)
+    {
+      const auto &x = surface.vertices();
+      const auto &t = surface.triangles()[facet];
+      const Vec3  v = facet_vector(x[t[0]], x[t[1]], x[t[2]]);
+      return v / v.norm();
+    }
+
+    /// Distance of the centroid from the line of an edge: a third of the height over it.
+    double centroid_distance(const TriangleSurface &surface, const unsigned int facet, const unsigned int edge)
+    {
+      const auto &x = surface.vertices();
+      const auto &t = surface.triangles()[facet];
+      const Vec3  v = facet_vector(x[t[0]], x[t[1]], x[t[2]]), along = x[t[(edge + 1) % 3]] - x[t[edge]];
+      return v.norm() / along.norm() / 3.;
+    }
+  } // namespace
+
+  std::vector<double> facet_curvature(const TriangleSurface &surface)
+  {
+    std::vector<double> curvature(surface.n_facets(), 0.);
+    for (unsigned int f = 0; f < surface.n_facets(); ++f)
+      for (unsigned int e = 0; e < 3; ++e)
+        if (const auto other = surface.neighbour(f, e); other.facet != invalid_index)
+        {
+          const Vec3   n = normal(surface, f), m = normal(surface, other.facet);
+          const double angle    = std::atan2(cross_product_3d(n, m).norm(), n * m);
+          const double distance = centroid_distance(surface, f, e) + centroid_distance(surface, other.facet, other.edge);
+          curvature[f]          = std::max(curvature[f], angle / distance);
+        }
+    return curvature;
+  }
+} // namespace retroforge

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/adjoint/sweep.h>
+#include <retroforge/parameters.h>
+
+namespace retroforge
+{
+  /// A scene forged once, its increments kept, to be differentiated and replayed.
+  struct RecordedRun
+  {
+    RecordedRun(const Parameters &all, std::vector<Die> dies)
+        : parameters(all)
+        , process(all.process(all.billet.size[2]))
+        , model{std::move(dies), all.step_model(), all.newton, all.linear_solver, MPI_COMM_WORLD}
+        , leg(std::make_shared<Leg>(make_billet(all.billet, MPI_COMM_WORLD), model, timings))
+        , scene(leg->scene)
+        , remesher(parameters.remeshing, parameters.edge_length(scene.mesh), model.dies, MPI_COMM_WORLD)
+        , forging(model, parameters.press, remesher, timings)
+        , forged(forging.start(leg, scene.mesh.X))
+    {
+      forging.run(process, forged, [&](const IncrementEvent &event) { records.push_back(event.record); });
+    }
+
+    explicit RecordedRun(const Parameters &all) : RecordedRun(all, {all.dies[0].die(), all.dies[1].die()}) {}
+
+    Forging::Source source() const
+    {
+      return [&](const unsigned int i) -> const IncrementRecord & { return records[i]; };
+    }
+
+    AdjointResult adjoint() { return adjoint_sweep(model, leg, process, forged, source(), timings); }
+
+    double tangent(const Process<Dual> &along, const NodalVectors<Dual> &X)
+    {
+      return tangent_sweep(model, leg, along, X, records.size(), source(), timings).total().dx(0);
+    }
+
+    double replayed_energy(const Process<double> &at, const NodalVectors<double> &X) const
+    {
+      ForgingState state = forging.start(leg, X);
+      forging.replay(at, records.size(), source(), state);
+      return state.energy.total();
+    }
+
+    const Parameters             parameters;
+    Timings                      timings;
+    Process<double>              process;
+    ForgingModel                 model;
+    std::shared_ptr<Leg>         leg;
+    const Scene                 &scene;
+    Remesher                     remesher;
+    Forging                      forging;
+    std::vector<IncrementRecord> records;
+    ForgingState                 forged;
+  };
+} // namespace retroforge
