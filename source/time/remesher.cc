@@ -192,16 +192,30 @@ namespace retroforge
     };
   }
 
+  TouchesDie Remesher::touches(const DieStates &states) const
+  {
+    return [this, &states](const Vec3 &x) {
+      const double near = 1e-2 * element_size_;
+      for (unsigned int d = 0; d < dies_.size(); ++d)
+        if (const DieFeature feature = dies_[d].closest(x, states[d].displacement, near);
+            feature.found() && dies_[d].project(x, states[d].displacement, feature).delta < near)
+          return true;
+      return false;
+    };
+  }
+
   RemeshedMesh Remesher::make(const TetMesh              &mesh,
                               const NodalVectors<double> &X,
                               const SizeField            &size,
-                              const PushOut              &push_out) const
+                              const DieStates            &states) const
   {
-    const bool inverted = minimum_quality(mesh.cells, X) <= 0.;
+    const PushOut    push_out = this->push_out(states);
+    const TouchesDie touches  = this->touches(states);
+    const bool       inverted = minimum_quality(mesh.cells, X) <= 0.;
     if (parameters_.method == "local" && !inverted)
-      return remesh_locally(mesh, X, size, parameters_.local, push_out);
+      return remesh_locally(mesh, X, size, parameters_.local, push_out, touches);
     const RebuiltMesh rebuilt = rebuild_inside(mesh, X, size, "Remeshing");
-    RemeshedMesh      local = remesh_locally(rebuilt.mesh, rebuilt.mesh.X, size, parameters_.local, push_out);
+    RemeshedMesh      local = remesh_locally(rebuilt.mesh, rebuilt.mesh.X, size, parameters_.local, push_out, touches);
     for (NodeIndex &k : local.old_node)
       if (k != invalid_index)
         k = rebuilt.old_node[k];
@@ -214,7 +228,7 @@ namespace retroforge
     auto                   record = std::make_shared<RemeshRecord>();
     std::vector<NodeIndex> old_node;
     const auto             make_numbered = [&]() {
-      RemeshedMesh made = make(mesh, X, size_field(X, states), push_out(states));
+      RemeshedMesh made = make(mesh, X, size_field(X, states), states);
       check_mesh(made.mesh, "Remeshing");
       const std::vector<NodeIndex> number = renumber(made.mesh);
       old_node.resize(number.size());

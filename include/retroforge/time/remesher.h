@@ -69,8 +69,9 @@ namespace retroforge
 
   private:
     RemeshedMesh
-    make(const TetMesh &mesh, const NodalVectors<double> &X, const SizeField &size, const PushOut &push_out) const;
-    PushOut push_out(const DieStates &states) const;
+    make(const TetMesh &mesh, const NodalVectors<double> &X, const SizeField &size, const DieStates &states) const;
+    PushOut    push_out(const DieStates &states) const;
+    TouchesDie touches(const DieStates &states) const;
 
     RemesherParameters       parameters_;
     double                   element_size_;

@@ -77,6 +77,9 @@ namespace retroforge
       return std::min(before, 0.5 * std::sin(context.parameters.goal_angle * M_PI / 180));
     }
 
+    // Splits do not go below, whatever there was before.
+    constexpr double lowest_quality = 0.1;
+
     std::optional<CavityChange>
     better_collapse(const RemeshingContext &context, const NodeIndex a, const NodeIndex b)
     {
@@ -129,8 +132,9 @@ namespace retroforge
         if (!context.mesh.is_edge(edge.a, edge.b))
           continue;
         const double before = minimum_quality(context.mesh, context.mesh.cells_at_edge(edge.a, edge.b));
-        // Halving an edge at most halves the quality, about.
-        if (const auto change = plan_split(context, edge.a, edge.b, 0.3 * before, false))
+        // Halving an edge at most halves the quality, about; but not time and again.
+        const double bound = std::max(0.3 * before, std::min(0.9 * before, lowest_quality));
+        if (const auto change = plan_split(context, edge.a, edge.b, bound, false))
         {
           const CellIndex next = context.mesh.n_cells();
           context.mesh.apply(*change);

@@ -30,12 +30,19 @@ namespace retroforge
     void restore_volume(const NodalVectors<double> &X,
                         const SizeField            &size,
                         const RemeshingParameters  &parameters,
+                        const TouchesDie           &touches,
                         RemeshedMesh               &result)
     {
       TetMesh         &mesh     = result.mesh;
       RemeshingReport &report   = result.report;
       report.volume_uncorrected = volume(mesh.cells, mesh.X);
-      const double moved        = correct_volume(mesh, report.volume_before);
+      std::vector<bool> held(mesh.n_nodes(), false);
+      if (touches)
+        for (const BoundaryFace &face : mesh.faces)
+          if (mesh.is_surface(face))
+            for (const NodeIndex node : face.nodes)
+              held[node] = held[node] || touches(mesh.X[node]);
+      const double moved = correct_volume(mesh, report.volume_before, held);
       result.correction.resize(mesh.n_nodes());
       for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
       {
@@ -99,7 +106,8 @@ namespace retroforge
                               const NodalVectors<double> &X,
                               const SizeField            &size,
                               const RemeshingParameters  &parameters,
-                              const PushOut              &push_out)
+                              const PushOut              &push_out,
+                              const TouchesDie           &touches)
   {
     check_volumes(mesh, X);
     RemeshedMesh result;
@@ -114,7 +122,7 @@ namespace retroforge
 
     result.mesh         = compacted(edited, features, result.old_node);
     result.mesh.patches = mesh.patches;
-    restore_volume(X, size, parameters, result);
+    restore_volume(X, size, parameters, touches, result);
     report_after(result, result.report);
     return result;
   }

@@ -48,7 +48,11 @@ namespace retroforge
     const Place         place = place_of_edge(context, a, b);
     CavityChange        change;
     change.placed_node = mesh.n_nodes();
-    change.position    = place((mesh.X(a) + mesh.X(b)) / 2.);
+    const Vec3 middle  = (mesh.X(a) + mesh.X(b)) / 2.;
+    change.position    = place(middle);
+    // Where the surface or a die is far from the edge, halving it would not shorten it.
+    if ((change.position - middle).norm() > 0.25 * (mesh.X(b) - mesh.X(a)).norm())
+      return {};
     if (optimised)
     {
       const auto best = best_position(mesh, cavity_of_edge(mesh, a, b), place, change.position);

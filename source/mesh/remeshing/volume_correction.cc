@@ -93,13 +93,15 @@ namespace retroforge
       double               area = 0; // sum of g·u, the derivative of the volume
     };
 
-    Directions
-    directions(const TetMesh &mesh, const NodalVectors<double> &g, const std::vector<Constraint> &constraints)
+    Directions directions(const TetMesh                 &mesh,
+                          const NodalVectors<double>    &g,
+                          const std::vector<Constraint> &constraints,
+                          const std::vector<bool>       &held)
     {
       Directions result;
       result.u.resize(mesh.n_nodes());
       for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
-        if (g[node].norm_square() > 0)
+        if (g[node].norm_square() > 0 && !held[node])
         {
           result.u[node] = constraints[node].project(g[node] / g[node].norm());
           // Rounding must not move what is fixed.
@@ -108,6 +110,24 @@ namespace retroforge
           result.area += g[node] * result.u[node];
         }
       return result;
+    }
+
+    /// Moves nodes by step * u, or by as many halves of it as the cells allow; returns what was taken.
+    double advance(TetMesh &mesh, const NodalVectors<double> &u, double step)
+    {
+      const NodalVectors<double> X = mesh.X;
+      for (unsigned int halvings = 0; halvings < 6; ++halvings, step *= 0.5)
+      {
+        for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
+          mesh.X[node] = X[node] + step * u[node];
+        const bool sound = std::all_of(mesh.cells.begin(), mesh.cells.end(), [&](const auto &cell) {
+          return tet_volume(corners(cell, mesh.X)) > 0.2 * tet_volume(corners(cell, X));
+        });
+        if (sound)
+          return step;
+      }
+      mesh.X = X;
+      return 0.;
     }
 
     double surface_area(const TetMesh &mesh)
@@ -122,7 +142,7 @@ namespace retroforge
     }
   } // namespace
 
-  double correct_volume(TetMesh &mesh, const double wanted_volume)
+  double correct_volume(TetMesh &mesh, const double wanted_volume, const std::vector<bool> &held)
   {
     const double tolerance = 1e-14 * wanted_volume;
     double       missing   = wanted_volume - volume(mesh.cells, mesh.X);
@@ -130,23 +150,21 @@ namespace retroforge
       return 0;
     const auto normals = face_unit_normals(mesh.faces, mesh.X);
     auto       g       = area_vectors(mesh);
-    auto       moves   = directions(mesh, g, node_constraints(mesh, normals, true));
+    auto       moves   = directions(mesh, g, node_constraints(mesh, normals, true), held);
     if (moves.area < 1e-3 * surface_area(mesh) && std::abs(missing) > negligible_if_flat * wanted_volume)
-      moves = directions(mesh, g, node_constraints(mesh, normals, false));
+      moves = directions(mesh, g, node_constraints(mesh, normals, false), held);
 
     double distance = 0;
     for (unsigned int i = 0; i < max_iterations && std::abs(missing) > tolerance; ++i)
     {
       if (moves.area < 1e-3 * surface_area(mesh))
         break;
-      const double step = missing / moves.area;
-      for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
-        mesh.X[node] += step * moves.u[node];
+      const double step = advance(mesh, moves.u, missing / moves.area);
       distance += step;
       const double before = std::abs(missing);
       missing             = wanted_volume - volume(mesh.cells, mesh.X);
-      if (!(std::abs(missing) < before))
-        break; // rounding
+      if (step == 0. || !(std::abs(missing) < before))
+        break; // rounding, or no room
     }
     return std::abs(distance);
   }

@@ -32,10 +32,12 @@ namespace retroforge
   /// @param X     positions of its nodes
   /// @param size  wanted edge length, may vary in space
   /// @param push_out  keeps new surface nodes out of the dies; may be empty
+  /// @param touches   nodes the volume correction leaves where they are; may be empty
   /// Throws Error when a cell has no positive volume: then the mesh must be rebuilt from its surface.
   RemeshedMesh remesh_locally(const TetMesh              &mesh,
                               const NodalVectors<double> &X,
                               const SizeField            &size,
                               const RemeshingParameters  &parameters,
-                              const PushOut              &push_out = {});
+                              const PushOut              &push_out = {},
+                              const TouchesDie           &touches  = {});
 } // namespace retroforge

@@ -16,6 +16,9 @@ namespace retroforge
   /// Moves a point of the surface out of a die it would be inside of; returns other points as they are.
   using PushOut = std::function<Vec3(const Vec3 &)>;
 
+  /// Says whether a point of the surface touches a die, off which the volume correction must not move it.
+  using TouchesDie = std::function<bool(const Vec3 &)>;
+
   /// When to remesh and how far to go. Angles in degrees, lengths relative to the wanted edge length h.
   struct RemeshingParameters
   {
