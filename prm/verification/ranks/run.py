@@ -56,6 +56,11 @@ def tight():
     compare_ranks("tight", TIGHT)
 
 
+def remeshed():
+    """Through remeshings: they are decided on one rank from numbers that differ by rounding."""
+    compare_ranks("remeshed", {**TIGHT, "Remeshing/when": "increments", "Remeshing/every": 4})
+
+
 def default():
     compare_ranks("default", {})
 
@@ -72,4 +77,4 @@ def stiff():
 
 
 if __name__ == "__main__":
-    {"tight": tight, "default": default, "soft": soft, "stiff": stiff}[sys.argv[2]]()
+    {"tight": tight, "default": default, "remeshed": remeshed, "soft": soft, "stiff": stiff}[sys.argv[2]]()

@@ -146,6 +146,12 @@ def judge(name, done, pattern):
         failures.append(name)
 
 
+def judge_that(name, good, otherwise):
+    print(f"{'ok    ' if good else 'FAILED'} {name}" + ("" if good else f": {otherwise}"))
+    if not good:
+        failures.append(name)
+
+
 def whole_history(name, path, at_least):
     """The lines of a history, each of which must be whole."""
     with open(path, encoding="utf-8") as file:
@@ -162,6 +168,30 @@ def interrupted(folder):
         "Press/stroke=9", "Press/increments=6", "Press/max cuts=0", "Press/largest move=0.3"), folder)
     judge("stopped on the way", done, r"Press/increments")
     whole_history("what was computed before is kept", os.path.join(folder, "stopped", "history.csv"), 1)
+    record = os.path.join(folder, "stopped", "record")
+    kept = [f for f in os.listdir(record) if f.startswith("increment_")] if os.path.isdir(record) else []
+    judge_that("its record too", len(kept) >= 1, f"{len(kept)} increments in {record}")
+
+
+def resumed(folder):
+    """What --resume refuses: nothing to resume, other parameters, another billet, files that are no records."""
+    short = settings("Press/stroke=0.9", "Press/max cuts=0")
+    judge("nothing to resume", run(["case.prm", "--output", "new", "--resume"], folder), "new")
+    run(["case.prm", "--output", "done"] + short, folder)
+    for name, value in (("Material/consistency", "2"), ("Press/increments", "4"), ("Die upper/friction", "0.2"),
+                        ("Billet/element size", "3")):
+        judge(f"resumed with another {name}",
+              run(["case.prm", "--output", "done", "--resume"] + short + settings(f"{name}={value}"), folder), name)
+    same = run(["case.prm", "--output", "done", "--resume"] + short + settings("Output/fields every=0", "Design/parameters=material/m"),
+               folder)
+    judge_that("resumed with other output and design", same.returncode == 0, same.stderr)
+    record = os.path.join(folder, "done", "record.h5")
+    with open(record, "rb") as file:
+        whole = file.read()
+    for name, content in (("truncated", whole[:len(whole) // 2]), ("foreign", b"not a record at all\n" * 100), ("empty", b"")):
+        with open(record, "wb") as file:
+            file.write(content)
+        judge(f"{name} record", run(["case.prm", "--output", "done", "--resume"] + short, folder), r"record\.h5")
 
 
 def full_disk(folder):
@@ -209,6 +239,7 @@ def main():
         judge("section not closed", run(["unclosed.prm"], folder), "unclosed.prm")
         forbidden_output(folder)
         interrupted(folder)
+        resumed(folder)
         full_disk(folder)
     print(f"{len(failures)} failed")
     return 1 if failures else 0
