@@ -5,6 +5,8 @@
 #include <retroforge/core/parameter_list.h>
 #include <retroforge/parameters.h>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <sstream>
 
@@ -134,6 +136,20 @@ namespace retroforge
 
   namespace
   {
+    /// Names become sections of the parameter file, names of files, and parts of the names of parameters.
+    void check_die_name(const std::string &name)
+    {
+      const bool is_sound = !name.empty() && name.size() <= 64 &&
+                            std::all_of(name.begin(), name.end(), [](const unsigned char c) {
+                              return std::isalnum(c) != 0 || c == ' ' || c == '_' || c == '-' || c == '.';
+                            });
+      if (!is_sound)
+        throw Error("Dies/names",
+                    "holds the name '" + legible(name) + "'",
+                    "a name has 1 to 64 of the characters a-z, A-Z, 0-9, blank, '_', '-' and '.'",
+                    "rename the die and its section");
+    }
+
     /// The dies' names must be known before their sections can be: they are looked for ahead of the real
     /// reading.
     std::vector<std::string> die_names(const std::string                                      &file,
@@ -154,7 +170,16 @@ namespace retroforge
       for (const auto &[path, value] : overrides)
         if (path == "Dies/names")
           names = value;
-      return dealii::Utilities::split_string_list(names);
+      const std::vector<std::string> all = dealii::Utilities::split_string_list(names);
+      constexpr std::size_t most = 100;
+      if (all.size() > most)
+        throw Error("Dies/names",
+                    "names " + std::to_string(all.size()) + " dies",
+                    "there may be " + std::to_string(most),
+                    "name each die once");
+      for (const std::string &name : all)
+        check_die_name(name);
+      return all;
     }
   } // namespace
 
@@ -221,11 +246,41 @@ namespace retroforge
     return billet.shape == "box" ? billet.size[2] : billet.shape == "cylinder" ? billet.height : size;
   }
 
+  void Parameters::check_derived(const double size) const
+  {
+    const auto is_sound = [](const double x) { return std::isfinite(x) && x > 0.; };
+    const auto require  = [](const bool sound, const std::string &where, const std::string &what) {
+      if (!sound)
+        throw Error(where,
+                    "makes " + what + " zero or infinite",
+                    "what follows from the parameters must be positive finite numbers",
+                    "use values of the usual size: lengths in mm, speeds in mm/s, stresses in MPa");
+    };
+    const StepModel model = step_model();
+    require(is_sound(press.stroke / press.increments), "Press/stroke", "the increments of stroke");
+    require(is_sound(model.reach) && is_sound(model.ramp.width),
+            "Contact",
+            "the reach of contact (approach, layer, ramp width)");
+    const Process<double> made = process(size);
+    require(is_sound(made.speed()), "Dies", "the speed of the leading die");
+    require(is_sound(made.contact.rho), "Contact", "the penalty (with the speed and the material)");
+  }
+
   Parameters &Parameters::settle(const double size)
   {
     const double smooth_step = 2.5e-3 * height(size);
     if (press.increments == 0)
-      press.increments = std::max(1., std::ceil(press.stroke / smooth_step - 1e-9));
+    {
+      constexpr double most   = 1e9;
+      const double     number = std::max(1., std::ceil(press.stroke / smooth_step - 1e-9));
+      if (!(number <= most))
+        throw Error("Press/stroke",
+                    "is so long that it takes " + std::to_string(number) + " increments",
+                    "there may be 1e9",
+                    "shorten the stroke, or set Press/increments");
+      press.increments = number;
+    }
+    check_derived(size);
     return *this;
   }
 

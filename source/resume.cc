@@ -47,6 +47,7 @@ namespace retroforge
                        const std::string          &parameters,
                        const TetMesh              &mesh,
                        const NodalVectors<double> &X_0,
+                       const std::vector<Die>     &dies,
                        const std::string          &directory)
   {
     const auto recorded = values_of(header.parameters), now = values_of(parameters);
@@ -63,6 +64,12 @@ namespace retroforge
                       value(recorded, path),
                     "a run goes on with the parameters it began with",
                     "restore the value, or start anew without --resume");
+    for (unsigned int d = 0; d < dies.size(); ++d)
+      if (d >= header.die_facets.size() || header.die_facets[d] != dies[d].n_facets())
+        throw Error("Die " + dies[d].name,
+                    "its surface has not the number of facets of that in the record of " + directory,
+                    "a run goes on with the dies it began with",
+                    "restore the die's file, or start anew without --resume");
     if (header.mesh.cells != mesh.cells || header.X_0 != X_0)
       throw Error("Billet",
                   "its mesh is another one than that in the record of " + directory,

@@ -199,7 +199,8 @@ namespace retroforge
   void Simulation::resume(ForgingState &state)
   {
     const RecordReader record(command_.output_directory);
-    check_resumable(record.header(), echo_, billet_, X_0_, command_.output_directory);
+    check_resumable(
+      record.header(), echo_, billet_, X_0_, model_.dies, command_.output_directory);
     const unsigned int n = record.n_increments();
     IncrementRecord    increment;
     forging_.restore(

@@ -71,7 +71,8 @@ namespace retroforge
                            const std::vector<std::pair<std::string, std::string>> &overrides,
                            std::string                                            &echo);
 
-    /// Chooses the number of increments where it is left open.
+    /// Chooses the number of increments where it is left open, and checks what follows from the parameters.
+    /// @throws Error  where steps, contact or penalty come out zero or infinite
     /// @param size  cube root of the mesh's volume [mm], for billets whose height is not a parameter
     Parameters &settle(double size);
 
@@ -86,6 +87,7 @@ namespace retroforge
   private:
     double       height(double size) const;
     void         check_all();
+    void         check_derived(double size) const;
     unsigned int leading_die() const;
   };
 } // namespace retroforge

@@ -14,5 +14,6 @@ namespace retroforge
                        const std::string          &parameters,
                        const TetMesh              &mesh,
                        const NodalVectors<double> &X_0,
+                       const std::vector<Die>     &dies,
                        const std::string          &directory);
 } // namespace retroforge

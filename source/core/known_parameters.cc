@@ -36,7 +36,8 @@ namespace retroforge
       const std::string name  = last_part(path);
       std::string       meant = nearest_name(path, known, tolerated_edits(name));
       for (const std::string &candidate : known)
-        if (meant.empty() && edit_distance(name, last_part(candidate)) == 0) // right name, wrong section
+        if (meant.empty() && name.size() == last_part(candidate).size() &&
+            edit_distance(name, last_part(candidate)) == 0) // right name, wrong section
           meant = candidate;
       return meant;
     }

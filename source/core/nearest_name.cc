@@ -42,11 +42,16 @@ namespace retroforge
     std::string  best;
     unsigned int best_distance = max_distance + 1;
     for (const std::string &name : known)
+    {
+      // Too different in length: not worth the products of lengths that the distance costs.
+      if (std::max(wrong.size(), name.size()) - std::min(wrong.size(), name.size()) > max_distance)
+        continue;
       if (const unsigned int distance = edit_distance(wrong, name); distance < best_distance)
       {
         best          = name;
         best_distance = distance;
       }
+    }
     return best;
   }
 

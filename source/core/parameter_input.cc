@@ -35,6 +35,16 @@ namespace retroforge
       return result;
     }
 
+    /// Values are passed on to formats that know no other text.
+    void check_text(const std::string &where, const std::string &text)
+    {
+      if (!is_plain_text(text))
+        throw Error(where,
+                    "'" + legible(text) + "' holds bytes that are no text",
+                    "parameters are UTF-8 text without control characters",
+                    "save the file as UTF-8, or write the line anew");
+    }
+
     /// Reads parameter files line by line; knows in which section it is.
     class FileReader
     {
@@ -87,7 +97,8 @@ namespace retroforge
       {
         const std::string rule   = "parameters are read from a text file",
                           remedy = "check its name and permissions";
-        if (std::filesystem::is_directory(file))
+        std::error_code ignored;
+        if (std::filesystem::is_directory(file, ignored))
           throw Error(file, "is a folder", rule, "name a file in it");
         errno = 0;
         std::ifstream in(file);
@@ -126,7 +137,8 @@ namespace retroforge
                      const std::string &line,
                      const std::size_t  outer_depth)
       {
-        const std::string where   = file + ", line " + std::to_string(number);
+        const std::string where = file + ", line " + std::to_string(number);
+        check_text(where, line);
         const std::size_t space   = line.find(' ');
         const std::string keyword = line.substr(0, space);
         const std::string rest    = space == std::string::npos ? "" : line.substr(space + 1);
@@ -185,7 +197,8 @@ namespace retroforge
       void interpret_include(const std::string &where, const std::string &file, const std::string &name)
       {
         const std::filesystem::path included = std::filesystem::path(file).parent_path() / name;
-        if (name.empty() || !std::filesystem::is_regular_file(included))
+        std::error_code             ignored;
+        if (name.empty() || !std::filesystem::is_regular_file(included, ignored))
           throw Error(where,
                       "'" + included.string() + "' is not a file",
                       "'include' is followed by the name of a parameter file",
@@ -265,6 +278,7 @@ namespace retroforge
     for (const auto &[path, value] : overrides)
     {
       const std::string where = "--set " + path + "=" + value;
+      check_text(where, path + value);
       assignments.push_back({where, known.entry(single_spaced(path), where).path(), single_spaced(value)});
     }
     for (const Assignment &assignment : assignments)

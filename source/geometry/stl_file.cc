@@ -9,10 +9,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <limits>
 #include <map>
+#include <sstream>
 
 namespace retroforge
 {
@@ -20,6 +20,8 @@ namespace retroforge
   {
     constexpr std::size_t header_bytes = 80, facet_bytes = 50;
     constexpr double      merge_distance = 1e-6; ///< of the diagonal
+    /// Within these bounds no product of lengths overflows, and corners are told apart.
+    constexpr double largest_coordinate = 1e30, smallest_size = 1e-30, farthest_off = 1e6;
 
     struct StlFacet
     {
@@ -250,6 +252,46 @@ namespace retroforge
       std::map<Key, std::vector<unsigned int>> cells_;
     };
 
+    std::string read_bytes(const std::string &file_name)
+    {
+      std::ifstream      in(file_name, std::ios::binary);
+      std::ostringstream bytes;
+      std::error_code    ignored;
+      const bool         is_folder = std::filesystem::is_directory(file_name, ignored);
+      if (!in || is_folder || (in.peek() != EOF && !(bytes << in.rdbuf())))
+        throw Error(file_name,
+                    is_folder ? "is a folder" : "cannot be read",
+                    "the file of a die must exist",
+                    "paths are relative to the folder the program was started in");
+      return bytes.str();
+    }
+
+    /// The diagonal of the corners' bounding box, with which distances can be computed; 1 if all corners are
+    /// one point, whose facets are then found to have no area.
+    double checked_size(const std::string &file_name, const NodalVectors<double> &corners)
+    {
+      if (corners.empty())
+        return 1.;
+      double farthest = 0.;
+      for (const Vec3 &x : corners)
+        for (unsigned int i = 0; i < 3; ++i)
+          farthest = std::max(farthest, std::abs(x[i]));
+      const auto   box  = bounding_box(corners);
+      const double size = farthest < largest_coordinate ? (box.second - box.first).norm() : 0.;
+      if (!(farthest < largest_coordinate) || (size > 0. && size < smallest_size) ||
+          (size > 0. && farthest > farthest_off * size))
+      {
+        std::ostringstream what;
+        what << "has a corner at a coordinate of " << farthest << " and an extent of "
+             << (box.second - box.first).norm();
+        throw Error(file_name,
+                    what.str(),
+                    "coordinates are below 1e30, and 1e-30 and 1e-6 of them is the least extent",
+                    "export the part in millimetres, near the origin");
+      }
+      return size > 0. ? size : 1.;
+    }
+
     void check_normal(const std::string &file_name, const StlFacet &facet, const std::size_t f)
     {
       const Vec3 v = facet_vector(facet.corners[0], facet.corners[1], facet.corners[2]);
@@ -265,24 +307,12 @@ namespace retroforge
 
   TriangleSurface read_stl(const std::string &file_name)
   {
-    std::ifstream in(file_name, std::ios::binary);
-    if (!in)
-      throw Error(file_name,
-                  "cannot be read",
-                  "the file of a die must exist",
-                  "paths are relative to the folder the program was started in");
-    const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    const std::string bytes = read_bytes(file_name);
     const auto facets = is_ascii(bytes) ? parse_ascii(file_name, bytes) : parse_binary(file_name, bytes);
     NodalVectors<double> corners;
     for (const StlFacet &facet : facets)
       corners.insert(corners.end(), facet.corners.begin(), facet.corners.end());
-    double size = 0.;
-    if (!corners.empty())
-    {
-      const auto box = bounding_box(corners);
-      size           = (box.second - box.first).norm();
-    }
-    Merger                merge(std::max(merge_distance * size, std::numeric_limits<double>::min()));
+    Merger                merge(merge_distance * checked_size(file_name, corners));
     std::vector<Triangle> triangles;
     for (std::size_t f = 0; f < facets.size(); ++f)
     {

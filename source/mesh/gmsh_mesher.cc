@@ -4,6 +4,7 @@
 #include <retroforge/mesh/cell_faces.h>
 #include <retroforge/mesh/gmsh_mesher.h>
 #include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/mesh/msh_file.h>
 
 #include <algorithm>
 #include <cfenv>
@@ -205,25 +206,38 @@ namespace retroforge
     using TagToNode = std::unordered_map<std::size_t, NodeIndex>;
 
     // Nodes of cells only: Gmsh also keeps points of the geometry.
-    TetMesh cells_and_nodes(const std::string &where, TagToNode &number)
+    // cells: node tags, four for each; tags, X: of all nodes
+    TetMesh cells_and_nodes(const Tags                 &cells,
+                            const Tags                 &tags,
+                            const NodalVectors<double> &X,
+                            const std::string          &where,
+                            TagToNode                  &number)
     {
-      TetMesh    mesh;
-      const Tags tags = cell_tags(where);
-      number          = number_tags(tags);
-      mesh.cells.resize(tags.size() / 4);
-      for (std::size_t i = 0; i < tags.size(); ++i)
-        mesh.cells[i / 4][i % 4] = number.at(tags[i]);
-
-      Tags                all;
-      std::vector<double> coordinates, parameters;
-      gmsh::model::mesh::getNodes(all, coordinates, parameters);
+      TetMesh mesh;
+      number = number_tags(cells);
+      mesh.cells.resize(cells.size() / 4);
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        mesh.cells[i / 4][i % 4] = number.at(cells[i]);
       mesh.X.assign(number.size(),
                     Vec3({std::nan(""), 0, 0})); // a node that is not given is caught by check_mesh()
-      for (std::size_t i = 0; i < all.size(); ++i)
-        if (const auto node = number.find(all[i]); node != number.end())
-          mesh.X[node->second] = Vec3({coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]});
+      for (std::size_t i = 0; i < tags.size(); ++i)
+        if (const auto node = number.find(tags[i]); node != number.end())
+          mesh.X[node->second] = X[i];
       orient_cells(mesh, where);
       return mesh;
+    }
+
+    // Of Gmsh's present model.
+    TetMesh cells_and_nodes(const std::string &where)
+    {
+      Tags                 tags;
+      std::vector<double>  coordinates, parameters;
+      NodalVectors<double> X;
+      gmsh::model::mesh::getNodes(tags, coordinates, parameters);
+      for (std::size_t i = 0; i < tags.size(); ++i)
+        X.push_back(Vec3({coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]}));
+      TagToNode number;
+      return cells_and_nodes(cell_tags(where), tags, X, where, number);
     }
 
     TetMesh attempt_mesh(const Attempt &attempt, const double element_size, const std::string &where)
@@ -233,8 +247,7 @@ namespace retroforge
       gmsh::option::setNumber("Mesh.MeshSizeMin", attempt.size_factor * element_size);
       gmsh::option::setNumber("Mesh.MeshSizeMax", attempt.size_factor * element_size);
       gmsh::model::mesh::generate(3);
-      TagToNode number;
-      return cells_and_nodes(where, number);
+      return cells_and_nodes(where);
     }
 
     // A discrete surface with the given triangles, node tags from 1, and the volume it encloses.
@@ -259,7 +272,7 @@ namespace retroforge
       gmsh::model::geo::synchronize();
     }
 
-    // Refuses what Gmsh would take for something else (it runs scripts, too).
+    // Refuses what is another kind of file.
     void check_is_msh(const std::string &file_name)
     {
       std::ifstream file(file_name);
@@ -288,28 +301,13 @@ namespace retroforge
       Tags        nodes; // three for each triangle
     };
 
-    std::vector<PhysicalSurface> physical_surfaces()
+    std::vector<PhysicalSurface> physical_surfaces(const MshFile &file)
     {
       std::vector<PhysicalSurface> surfaces;
-      gmsh::vectorpair             groups;
-      gmsh::model::getPhysicalGroups(groups, 2);
-      for (const auto &[dimension, tag] : groups)
+      for (const auto &[number, surface] : file.surfaces)
       {
-        PhysicalSurface surface;
-        surface.id = std::to_string(tag);
-        gmsh::model::getPhysicalName(dimension, tag, surface.name);
-        if (surface.name.empty())
-          surface.name = surface.id;
-        std::vector<int> entities;
-        gmsh::model::getEntitiesForPhysicalGroup(dimension, tag, entities);
-        for (const int entity : entities)
-        {
-          constexpr int linear_triangle = 2;
-          Tags          elements, nodes;
-          gmsh::model::mesh::getElementsByType(linear_triangle, elements, nodes, entity);
-          surface.nodes.insert(surface.nodes.end(), nodes.begin(), nodes.end());
-        }
-        surfaces.push_back(surface);
+        const std::string id = std::to_string(number);
+        surfaces.push_back({surface.name.empty() ? id : surface.name, id, surface.triangles});
       }
       return surfaces;
     }
@@ -374,9 +372,10 @@ namespace retroforge
     }
 
     // Outer faces of the cells on the patches of the file, the others on a last patch of their own.
-    std::vector<PhysicalSurface> add_faces(TetMesh &mesh, const TagToNode &number, const std::string &where)
+    std::vector<PhysicalSurface>
+    add_faces(TetMesh &mesh, const MshFile &file, const TagToNode &number, const std::string &where)
     {
-      auto         surfaces = physical_surfaces();
+      auto         surfaces = physical_surfaces(file);
       const auto   patch_of = patches_of_triangles(surfaces, number, where);
       unsigned int rest     = surfaces.size();
       bool         has_rest = false;
@@ -432,24 +431,21 @@ namespace retroforge
         return size(Vec3({x, y, z}));
       });
       gmsh::model::mesh::generate(3);
-      TagToNode number;
-      return cells_and_nodes(where, number);
+      return cells_and_nodes(where);
     });
   }
 
   TetMesh read_msh(const std::string &file_name, const std::vector<std::string> &symmetry_patches)
   {
     check_is_msh(file_name);
-    return within_gmsh(file_name, "check that the file is complete", [&]() {
-      gmsh::open(file_name);
-      TagToNode number;
-      TetMesh   mesh = cells_and_nodes(file_name, number);
-      if (mesh.cells.empty())
-        return mesh;
-      const auto surfaces    = add_faces(mesh, number, file_name);
-      const auto is_symmetry = find_symmetry(surfaces, symmetry_patches, file_name);
-      fit_symmetry_planes(mesh, is_symmetry, file_name);
+    const MshFile file = read_msh_file(file_name);
+    TagToNode     number;
+    TetMesh       mesh = cells_and_nodes(file.tetrahedra, file.tags, file.X, file_name, number);
+    if (mesh.cells.empty())
       return mesh;
-    });
+    const auto surfaces    = add_faces(mesh, file, number, file_name);
+    const auto is_symmetry = find_symmetry(surfaces, symmetry_patches, file_name);
+    fit_symmetry_planes(mesh, is_symmetry, file_name);
+    return mesh;
   }
 } // namespace retroforge

@@ -6,7 +6,9 @@
 
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <sstream>
 
 namespace retroforge
@@ -29,7 +31,7 @@ namespace retroforge
     {
       throw Error(file + ", line " + std::to_string(line),
                   "is not a row of a history",
-                  "the columns are " + header.substr(0, header.size() - 1),
+                  "the columns are " + header.substr(0, header.size() - 1) + ", increments ascend",
                   "remove the file and start the run anew, without --resume");
     }
 
@@ -45,7 +47,12 @@ namespace retroforge
           throw_not_a_history(file, line_number);
         begin = end + 1;
       }
-      const auto count = [](const double number) { return static_cast<unsigned int>(number); };
+      const auto count = [&](const double number) {
+        if (!(number >= 0. && number <= std::numeric_limits<unsigned int>::max()) ||
+            number != std::floor(number))
+          throw_not_a_history(file, line_number);
+        return static_cast<unsigned int>(number);
+      };
       return {count(x[0]), x[1], x[2], x[3], x[4], x[5], x[6], count(x[7]), count(x[8])};
     }
   } // namespace
@@ -92,6 +99,8 @@ namespace retroforge
       if (in.eof()) // no newline: the run was killed while it wrote this row
         break;
       rows.push_back(from_csv(line, file, line_number));
+      if (rows.size() > 1 && rows.back().increment <= rows[rows.size() - 2].increment)
+        throw_not_a_history(file, line_number);
     }
     return rows;
   }

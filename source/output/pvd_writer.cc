@@ -7,11 +7,39 @@
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <sstream>
 
 namespace retroforge
 {
+  namespace
+  {
+    [[noreturn]] void throw_not_a_series(const std::string &file, const std::string &reason)
+    {
+      throw Error(file,
+                  "is not a time series: " + reason,
+                  "a run goes on with the .pvd file it wrote",
+                  "remove it and start the run anew, without --resume");
+    }
+
+    /// How deep elements may stand in each other at most: opening tags that are not closed so far. The XML
+    /// reader calls itself for each.
+    std::size_t nesting_bound(const std::string &xml)
+    {
+      std::size_t depth = 0, deepest = 0;
+      for (std::size_t i = 0; i + 1 < xml.size(); ++i)
+      {
+        const char a = xml[i], b = xml[i + 1];
+        if (a == '<' && b != '/')
+          deepest = std::max(deepest, ++depth);
+        else if (depth > 0 && ((a == '<' && b == '/') || (b == '>' && (a == '/' || a == '?'))))
+          --depth;
+      }
+      return deepest;
+    }
+  } // namespace
+
   PvdWriter::PvdWriter(const std::string &file) : file_(file) {}
 
   PvdWriter PvdWriter::continue_after(const std::string &file, const double last_time)
@@ -19,7 +47,10 @@ namespace retroforge
     PvdWriter series(file);
     try
     {
-      std::istringstream          in(read_file(file));
+      const std::string contents = read_file(file);
+      if (nesting_bound(contents) > 100)
+        throw_not_a_series(file, "its elements are nested too deep");
+      std::istringstream          in(contents);
       boost::property_tree::ptree tree;
       boost::property_tree::read_xml(in, tree);
       for (const auto &[tag, node] : tree.get_child("VTKFile.Collection"))
@@ -29,10 +60,7 @@ namespace retroforge
     }
     catch (const boost::property_tree::ptree_error &error)
     {
-      throw Error(file,
-                  std::string("is not a time series: ") + error.what(),
-                  "a run goes on with the .pvd file it wrote",
-                  "remove it and start the run anew, without --resume");
+      throw_not_a_series(file, error.what());
     }
     return series;
   }

@@ -80,9 +80,12 @@ namespace retroforge
     errno = 0;
     std::ifstream      in(file, std::ios::binary);
     std::ostringstream contents;
-    if (!in || !(contents << in.rdbuf()))
+    std::error_code    ignored;
+    // An empty file is no failure, though copying nothing is one to a stream.
+    if (!in || std::filesystem::is_directory(file, ignored) ||
+        (in.peek() != EOF && !(contents << in.rdbuf())))
       throw Error(file,
-                  std::string("cannot be read: ") + std::strerror(errno),
+                  std::string("cannot be read: ") + std::strerror(errno != 0 ? errno : EISDIR),
                   "the results of an earlier run are expected there",
                   "check the folder given with --output DIR");
     return contents.str();

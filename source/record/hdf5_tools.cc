@@ -309,6 +309,9 @@ namespace retroforge::hdf5
     const Handle type(H5Aget_type(attribute), H5Tclose, name), space(H5Aget_space(attribute), H5Sclose, name);
     check_type<Number>(type, name);
     check_shape(space, name, size == 1 ? std::vector<hsize_t>() : std::vector<hsize_t>{size});
+    if (H5Sget_simple_extent_npoints(space) !=
+        static_cast<hssize_t>(size)) // a null space has no extents either
+      throw Failure(name + " holds no value");
     check(H5Aread(attribute, memory_type<Number>(), values), name);
   }
 
@@ -355,7 +358,9 @@ namespace retroforge::hdf5
     if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
       throw Failure(name + " is not text");
     const std::size_t length = H5Tget_size(type);
-    std::string       value(safe_size(dataset, check_shape(space, name, {1}), length) * length, '\0');
+    if (length == 0)
+      throw Failure(name + " is text without a length");
+    std::string value(safe_size(dataset, check_shape(space, name, {1}), length) * length, '\0');
     check(H5Dread(dataset, string_type(length), H5S_ALL, H5S_ALL, H5P_DEFAULT, value.data()), name);
     value.resize(std::strlen(value.c_str()));
     return value;

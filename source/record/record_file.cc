@@ -270,6 +270,7 @@ namespace retroforge
   IncrementRecord RecordReader::read(const unsigned int i) const
   {
     const std::string file = finished() ? file_ : increment_file(directory_, i);
-    return read_whole<IncrementRecord>(file, [&](const hid_t f) { return read_increment(f, i, shape_); });
+    return read_whole<IncrementRecord>(file,
+                                       [&](const hid_t f) { return read_increment(f, file, i, shape_); });
   }
 } // namespace retroforge

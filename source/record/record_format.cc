@@ -6,6 +6,8 @@
 #include <retroforge/mesh/mesh_checks.h>
 #include <retroforge/record/record_format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 
@@ -39,9 +41,31 @@ namespace retroforge
       return X;
     }
 
+    /// Records hold finite numbers only: those of a step that diverged are not written.
+    void check_finite(const double *values, const std::size_t n, const std::string &name)
+    {
+      if (!std::all_of(values, values + n, [](const double value) { return std::isfinite(value); }))
+        throw hdf5::Failure(name + " holds a number that is not finite");
+    }
+
+    std::vector<double>
+    read_numbers(const hid_t parent, const std::string &name, const std::vector<hsize_t> &shape)
+    {
+      std::vector<double> values = hdf5::read_array<double>(parent, name, shape);
+      check_finite(values.data(), values.size(), name);
+      return values;
+    }
+
+    double read_number(const hid_t object, const std::string &name)
+    {
+      const double value = hdf5::read_attribute<double>(object, name);
+      check_finite(&value, 1, name);
+      return value;
+    }
+
     NodalVectors<double> read_vectors(const hid_t parent, const std::string &name, const hsize_t n)
     {
-      const std::vector<double> values = hdf5::read_array<double>(parent, name, {n, 3});
+      const std::vector<double> values = read_numbers(parent, name, {n, 3});
       return to_vectors(values.data(), values.size() / 3);
     }
 
@@ -70,6 +94,9 @@ namespace retroforge
         Plane plane;
         hdf5::read_attribute(group, "point", plane.point.begin_raw(), 3);
         hdf5::read_attribute(group, "normal", plane.normal.begin_raw(), 3);
+        check_finite(plane.point.begin_raw(), 3, "point");
+        if (!(std::abs(plane.normal.norm() - 1.) < 1e-6))
+          throw hdf5::Failure("the normal of " + name + " has not length one");
         patch.symmetry = plane;
       }
       return patch;
@@ -149,7 +176,7 @@ namespace retroforge
       hdf5::write_array(group, "weight", {J.weight.size()}, J.weight.data());
     }
 
-    std::shared_ptr<const RemeshRecord> read_remesh(const hid_t parent)
+    std::shared_ptr<const RemeshRecord> read_remesh(const hid_t parent, const std::string &where)
     {
       const hdf5::Handle group  = hdf5::open_group(parent, "remesh");
       auto               remesh = std::make_shared<RemeshRecord>();
@@ -159,7 +186,7 @@ namespace retroforge
       J.n_old                   = remesh->X_before.size();
       J.begin                   = hdf5::read_array<unsigned int>(group, "begin", {remesh->mesh.X.size() + 1});
       J.node                    = hdf5::read_array<unsigned int>(group, "node", {hdf5::any});
-      J.weight                  = hdf5::read_array<double>(group, "weight", {J.node.size()});
+      J.weight                  = read_numbers(group, "weight", {J.node.size()});
       bool sound                = J.begin.front() == 0 && J.begin.back() == J.node.size();
       for (std::size_t k = 0; k + 1 < J.begin.size(); ++k)
         sound = sound && J.begin[k] <= J.begin[k + 1];
@@ -167,7 +194,7 @@ namespace retroforge
         sound = sound && k < J.n_old;
       if (!sound)
         throw hdf5::Failure("the rows of a transfer between meshes do not fit these meshes");
-      check_mesh(remesh->mesh, "record");
+      check_mesh(remesh->mesh, where);
       J.set_offset(remesh->X_before, remesh->mesh.X);
       return remesh;
     }
@@ -248,9 +275,9 @@ namespace retroforge
 
     std::vector<SolveRecord> read_solves(const hid_t group, const hsize_t n_nodes, const hsize_t n_pairs)
     {
-      const auto V      = hdf5::read_array<double>(group, "V", {hdf5::any, n_nodes, 3});
-      const auto n      = V.size() / (3 * n_nodes);
-      const auto P      = hdf5::read_array<double>(group, "P", {n, n_nodes});
+      const auto V      = read_numbers(group, "V", {hdf5::any, n_nodes, 3});
+      const auto n      = n_nodes == 0 ? 0 : V.size() / (3 * n_nodes);
+      const auto P      = read_numbers(group, "P", {n, n_nodes});
       const auto active = read_flags(group, "active", {n, n_pairs});
 
       std::vector<SolveRecord> solves(n);
@@ -306,6 +333,8 @@ namespace retroforge
     header.commit     = hdf5::read_string(group, "commit");
     header.parameters = hdf5::read_string(group, "parameters");
     header.die_facets = hdf5::read_array<unsigned int>(group, "die_facets", {hdf5::any});
+    if (std::count(header.die_facets.begin(), header.die_facets.end(), 0u) > 0)
+      throw hdf5::Failure("die_facets holds a die without facets");
     header.mesh       = read_mesh(group);
     header.X_0        = read_vectors(group, "X_0", header.mesh.n_nodes());
     check_mesh(header.mesh, file_name);
@@ -336,26 +365,32 @@ namespace retroforge
       write_remesh(group, *increment.remesh);
   }
 
-  IncrementRecord read_increment(const hid_t file, const unsigned int i, const RecordShape &shape)
+  IncrementRecord read_increment(const hid_t        file,
+                                 const std::string &file_name,
+                                 const unsigned int i,
+                                 const RecordShape &shape)
   {
     const hdf5::Handle group = hdf5::open_group(file, increment_name(i));
     if (hdf5::read_attribute<std::uint64_t>(group, "run") != shape.run)
       throw hdf5::Failure(increment_name(i) + " belongs to another run");
     IncrementRecord increment;
-    increment.stroke             = hdf5::read_attribute<double>(group, "stroke");
-    increment.step               = hdf5::read_attribute<double>(group, "step");
+    increment.stroke             = read_number(group, "stroke");
+    increment.step               = read_number(group, "step");
     increment.cuts               = hdf5::read_attribute<unsigned int>(group, "cuts");
-    increment.deformation_energy = hdf5::read_attribute<double>(group, "deformation_energy");
-    increment.friction_energy    = hdf5::read_attribute<double>(group, "friction_energy");
+    increment.deformation_energy = read_number(group, "deformation_energy");
+    increment.friction_energy    = read_number(group, "friction_energy");
     increment.newton             = hdf5::read_attribute<unsigned int>(group, "newton");
     increment.krylov             = hdf5::read_attribute<unsigned int>(group, "krylov");
     increment.linear_solves      = hdf5::read_attribute<unsigned int>(group, "linear_solves");
-    increment.forces             = read_vectors(group, "forces", hdf5::any);
+    increment.forces             = read_vectors(group, "forces", shape.die_facets.size());
     const auto n_nodes           = hdf5::read_attribute<unsigned int>(group, "n_nodes");
     increment.pairs              = read_pairs(group, shape, n_nodes);
     increment.solves             = read_solves(group, n_nodes, increment.pairs.size());
     if (hdf5::has_group(group, "remesh"))
-      increment.remesh = read_remesh(group);
+      increment.remesh = read_remesh(group, file_name + ", " + increment_name(i));
+    if (increment.remesh && increment.remesh->mesh.n_nodes() != n_nodes)
+      throw hdf5::Failure("the new mesh has " + std::to_string(increment.remesh->mesh.n_nodes()) +
+                          " nodes, the solution on it " + std::to_string(n_nodes));
     return increment;
   }
 } // namespace retroforge

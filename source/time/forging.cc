@@ -3,6 +3,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/element/strain_history.h>
 #include <retroforge/mesh/cell_to_node.h>
+#include <retroforge/mesh/rebuild.h>
 #include <retroforge/time/forging.h>
 
 namespace retroforge
@@ -40,6 +41,9 @@ namespace retroforge
       "max cuts", max_cuts, "Times an increment may be halved before the run stops. Units: none.");
     prm.leave_subsection();
   }
+
+  /// Increments between looks at whether the surface crosses itself.
+  constexpr unsigned int fold_interval = 5;
 
   Forging::Forging(const ForgingModel    &model,
                    const PressParameters &press,
@@ -178,6 +182,9 @@ namespace retroforge
       finish_increment(process, record, std::move(X_next), state);
       if (watch)
         watch({record, X_before, state, state.stroke / process.speed()});
+      // Metal that folds onto itself is not in the model: such a run must not go on as if nothing were.
+      if (state.increments % fold_interval == 0 || state.stroke >= press_.stroke - 1e-9 * whole)
+        check_boundary_does_not_cross(state.leg->scene.mesh, state.X, "Workpiece");
     }
   }
 

@@ -7,18 +7,23 @@
 
 namespace retroforge
 {
+  /// Whether the text is valid UTF-8 without control characters; a tab is allowed.
+  bool is_plain_text(const std::string &text);
+
+  /// The text fit for one line of a terminal: control characters and what is not UTF-8 become '?', and of
+  /// more than 300 bytes the first ones and '...' are left.
+  std::string legible(const std::string &text);
+
   /// The one exception a user can cause. Its message has four parts:
   /// where (parameter path, file, node), what was found, the rule it breaks, and what to do.
-  /// Printed as  `where: what; rule; remedy`.
+  /// Printed as  `where: what; rule; remedy`, on one line: each part is cleaned as by legible(), and cut
+  /// where it has more than 2000 bytes.
   class Error : public std::runtime_error
   {
   public:
     Error(const std::string &where,
           const std::string &what,
           const std::string &rule,
-          const std::string &remedy)
-        : std::runtime_error(where + ": " + what + "; " + rule + "; " + remedy)
-    {
-    }
+          const std::string &remedy);
   };
 } // namespace retroforge

@@ -57,10 +57,11 @@ namespace retroforge
 
   std::string increment_name(unsigned int i); ///< increment_000000
 
-  /// Into and out of an open file.  @throws hdf5::Failure; read_header also Error, which names `file_name`
+  /// Into and out of an open file.  @throws hdf5::Failure; reading also Error, which names `file_name`
   void         write_header(hid_t file, const RecordHeader &header);
   RecordHeader read_header(hid_t file, const std::string &file_name);
 
-  void            write_increment(hid_t file, unsigned int i, const IncrementRecord &, const RecordShape &);
-  IncrementRecord read_increment(hid_t file, unsigned int i, const RecordShape &);
+  void write_increment(hid_t file, unsigned int i, const IncrementRecord &, const RecordShape &);
+  IncrementRecord
+  read_increment(hid_t file, const std::string &file_name, unsigned int i, const RecordShape &);
 } // namespace retroforge
