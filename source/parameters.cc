@@ -33,7 +33,7 @@ namespace retroforge
     prm.add_parameter(
       "layer",
       layer,
-"Bends the speed at which a gap may close, so that the force on an arriving node sets in gradually: "
+      "Bends the speed at which a gap may close, so that the force on an arriving node sets in gradually: "
       "smooths the objective at less bias than `approach' does. 0.5 is moderate, 0.3 strong; 0, or the sharp "
       "law, for none. In units of approach times the increment's stroke. Units: none.",
       Double(0.));
@@ -170,8 +170,8 @@ namespace retroforge
       for (const auto &[path, value] : overrides)
         if (path == "Dies/names")
           names = value;
-      const std::vector<std::string> all = dealii::Utilities::split_string_list(names);
-      constexpr std::size_t most = 100;
+      const std::vector<std::string> all  = dealii::Utilities::split_string_list(names);
+      constexpr std::size_t          most = 100;
       if (all.size() > most)
         throw Error("Dies/names",
                     "names " + std::to_string(all.size()) + " dies",
@@ -303,11 +303,11 @@ namespace retroforge
   StepModel Parameters::step_model() const
   {
     StepModel    model;
-    const double step = press.stroke / press.increments;
-    model.scheme      = press.scheme == "euler" ? Scheme::euler : Scheme::midpoint;
-    model.approach    = contact.approach;
-    model.ramp.sharp  = contact.law == "sharp";
-    model.ramp.width  = contact.ramp_width * contact.approach * step;
+    const double step  = press.stroke / press.increments;
+    model.scheme       = press.scheme == "euler" ? Scheme::euler : Scheme::midpoint;
+    model.approach     = contact.approach;
+    model.ramp.sharp   = contact.law == "sharp";
+    model.ramp.width   = contact.ramp_width * contact.approach * step;
     const double layer = model.ramp.sharp ? 0. : contact.layer;
     model.layer        = layer * contact.approach * step;
     // Where a node at rest meets the approach speed.

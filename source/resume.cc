@@ -71,9 +71,10 @@ namespace retroforge
                     "a run goes on with the dies it began with",
                     "restore the die's file, or start anew without --resume");
     if (header.mesh.cells != mesh.cells || header.X_0 != X_0)
-      throw Error("Billet",
-                  "its mesh is another one than that in the record of " + directory,
-                  "a run goes on with the billet it began with",
-                  "use the same mesh file and the same version of the mesher, or start anew without --resume");
+      throw Error(
+        "Billet",
+        "its mesh is another one than that in the record of " + directory,
+        "a run goes on with the billet it began with",
+        "use the same mesh file and the same version of the mesher, or start anew without --resume");
   }
 } // namespace retroforge

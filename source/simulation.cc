@@ -177,8 +177,7 @@ namespace retroforge
       resume(state);
     else if (root_ && parameters_.output.record)
       record_ = std::make_unique<RecordWriter>(
-        command_.output_directory,
-        RecordHeader{version, commit, echo_, facets(model_.dies), billet_, X_0_});
+        command_.output_directory, RecordHeader{version, commit, echo_, facets(model_.dies), billet_, X_0_});
     forging_.run(process_, state, [&](const IncrementEvent &event) {
       if (record_)
       {
@@ -199,8 +198,7 @@ namespace retroforge
   void Simulation::resume(ForgingState &state)
   {
     const RecordReader record(command_.output_directory);
-    check_resumable(
-      record.header(), echo_, billet_, X_0_, model_.dies, command_.output_directory);
+    check_resumable(record.header(), echo_, billet_, X_0_, model_.dies, command_.output_directory);
     const unsigned int n = record.n_increments();
     IncrementRecord    increment;
     forging_.restore(
@@ -270,8 +268,7 @@ namespace retroforge
     const Scene         &scene = run.leg->scene;
     const TetMesh       &mesh  = scene.mesh;
     const Field<double> &W     = run.W;
-    ScalarField          pressure{"pressure", W.P},
-      state{"contact_state", std::vector<double>(mesh.n_nodes(), 0.)},
+    ScalarField pressure{"pressure", W.P}, state{"contact_state", std::vector<double>(mesh.n_nodes(), 0.)},
       contact_pressure{"contact_pressure", std::vector<double>(mesh.n_nodes(), 0.)}, rate{"strain_rate", {}};
     const auto          physics  = process_.at_stroke(event.record.stroke);
     const auto          position = run.leg->increment.stage_positions(process_, event.X_before, event.record);
@@ -319,10 +316,10 @@ namespace retroforge
 
   void Simulation::differentiate()
   {
-    const auto timing = timings_.scope("adjoint");
-    const auto result = adjoint_sweep(model_, first_leg_, process_, forged_, source(), timings_);
-    X_0_bar_          = result.X_0;
-    gradient_         = design_.pull_back(mu_, X_0_bar_, result.process);
+    const auto timing              = timings_.scope("adjoint");
+    const auto result              = adjoint_sweep(model_, first_leg_, process_, forged_, source(), timings_);
+    X_0_bar_                       = result.X_0;
+    gradient_                      = design_.pull_back(mu_, X_0_bar_, result.process);
     summary_.linear_solves_adjoint = result.linear_solves;
     if (root_)
     {
@@ -404,27 +401,27 @@ namespace retroforge
 
   void Simulation::summarise()
   {
-    summary_.command        = command_.command;
-    summary_.version        = version;
-    summary_.commit         = commit;
-    summary_.blas           = blas_in_use();
-    summary_.ranks          = dealii::Utilities::MPI::n_mpi_processes(comm_);
-    summary_.n_nodes        = billet_.n_nodes();
-    summary_.n_cells        = billet_.n_cells();
+    summary_.command               = command_.command;
+    summary_.version               = version;
+    summary_.commit                = commit;
+    summary_.blas                  = blas_in_use();
+    summary_.ranks                 = dealii::Utilities::MPI::n_mpi_processes(comm_);
+    summary_.n_nodes               = billet_.n_nodes();
+    summary_.n_cells               = billet_.n_cells();
     summary_.newton_iterations     = forged_.newton;
     summary_.krylov_iterations     = forged_.krylov;
     summary_.linear_solves_forward = forged_.linear_solves;
     summary_.remeshings            = forged_.remeshed.size();
-    summary_.increments     = forged_.increments;
-    summary_.cuts           = forged_.cuts;
-    summary_.volume_initial = volume(billet_.cells, X_0_);
-    summary_.volume_final   = volume(forged_.leg->scene.mesh.cells, forged_.X);
-    summary_.wall_seconds   = timings_.all();
-    summary_.objectives     = {
-          {"energy",
-           forged_.energy.total(),
-           "mJ",
-           {{"deformation", forged_.energy.deformation}, {"friction", forged_.energy.friction}}}};
+    summary_.increments            = forged_.increments;
+    summary_.cuts                  = forged_.cuts;
+    summary_.volume_initial        = volume(billet_.cells, X_0_);
+    summary_.volume_final          = volume(forged_.leg->scene.mesh.cells, forged_.X);
+    summary_.wall_seconds          = timings_.all();
+    summary_.objectives            = {
+                 {"energy",
+                  forged_.energy.total(),
+                  "mJ",
+                  {{"deformation", forged_.energy.deformation}, {"friction", forged_.energy.friction}}}};
     for (std::size_t j = 0; j < mu_.size() && !gradient_.empty(); ++j)
       summary_.parameters.push_back(
         {design_.parameters()[j].name, mu_[j], design_.parameters()[j].unit, {{"energy", gradient_[j]}}});

@@ -18,7 +18,8 @@ namespace retroforge
     }
 
     /// Distance of the centroid from the line of an edge: a third of the height over it.
-    double centroid_distance(const TriangleSurface &surface, const unsigned int facet, const unsigned int edge)
+    double
+    centroid_distance(const TriangleSurface &surface, const unsigned int facet, const unsigned int edge)
     {
       const auto &x = surface.vertices();
       const auto &t = surface.triangles()[facet];
@@ -35,9 +36,10 @@ namespace retroforge
         if (const auto other = surface.neighbour(f, e); other.facet != invalid_index)
         {
           const Vec3   n = normal(surface, f), m = normal(surface, other.facet);
-          const double angle    = std::atan2(cross_product_3d(n, m).norm(), n * m);
-          const double distance = centroid_distance(surface, f, e) + centroid_distance(surface, other.facet, other.edge);
-          curvature[f]          = std::max(curvature[f], angle / distance);
+          const double angle = std::atan2(cross_product_3d(n, m).norm(), n * m);
+          const double distance =
+            centroid_distance(surface, f, e) + centroid_distance(surface, other.facet, other.edge);
+          curvature[f] = std::max(curvature[f], angle / distance);
         }
     return curvature;
   }

@@ -269,8 +269,7 @@ namespace retroforge
     prm.add_parameter("base centre", base_centre, "Centre of the base of box or cylinder. Units: mm.");
     prm.add_parameter("size", size, "Lengths of the whole box along x, y and z, before cuts. Units: mm.");
     prm.add_parameter("radius", radius, "Radius of the cylinder. Units: mm.", Double(0));
-    prm.add_parameter(
-      "height", height, "Height of the whole cylinder, before cuts. Units: mm.", Double(0));
+    prm.add_parameter("height", height, "Height of the whole cylinder, before cuts. Units: mm.", Double(0));
     prm.add_parameter("element size",
                       element_size,
                       "Wanted length of the edges of the mesh of box or cylinder. Units: mm.",

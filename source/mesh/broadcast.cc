@@ -73,9 +73,8 @@ namespace retroforge
     }
   } // namespace
 
-  TetMesh make_on_root(const std::function<TetMesh()> &make,
-                       MPI_Comm                        communicator,
-                       std::vector<NodeIndex>         *with_it)
+  TetMesh
+  make_on_root(const std::function<TetMesh()> &make, MPI_Comm communicator, std::vector<NodeIndex> *with_it)
   {
     TetMesh     mesh;
     std::string failure;

@@ -155,10 +155,8 @@ namespace retroforge
                     dealii::ExcMessage("a contact pair refers to a node, die or feature that is not there"));
       for (const SolveRecord &solve : increment.solves)
       {
-        AssertThrow(solve.V.size() == n_nodes,
-                    dealii::ExcDimensionMismatch(solve.V.size(), n_nodes));
-        AssertThrow(solve.P.size() == n_nodes,
-                    dealii::ExcDimensionMismatch(solve.P.size(), n_nodes));
+        AssertThrow(solve.V.size() == n_nodes, dealii::ExcDimensionMismatch(solve.V.size(), n_nodes));
+        AssertThrow(solve.P.size() == n_nodes, dealii::ExcDimensionMismatch(solve.P.size(), n_nodes));
         AssertThrow(solve.active.size() == increment.pairs.size(),
                     dealii::ExcDimensionMismatch(solve.active.size(), increment.pairs.size()));
       }
@@ -245,7 +243,8 @@ namespace retroforge
       return flags;
     }
 
-    std::vector<ContactPair> read_pairs(const hid_t group, const RecordShape &shape, const unsigned int n_nodes)
+    std::vector<ContactPair>
+    read_pairs(const hid_t group, const RecordShape &shape, const unsigned int n_nodes)
     {
       const auto               indices  = hdf5::read_array<unsigned int>(group, "pairs", {hdf5::any, 2});
       const auto               touching = read_flags(group, "touching", {indices.size() / 2});
@@ -266,9 +265,9 @@ namespace retroforge
                               std::to_string(shape.die_facets[pairs[i].die]) + " facets and " +
                               std::to_string(DieFeature::n_kinds) + " kinds, counted from 0");
         throw hdf5::Failure(pair + "node " + std::to_string(pairs[i].node) + " and die " +
-                            std::to_string(pairs[i].die) + " where there are " +
-                            std::to_string(n_nodes) + " nodes and " +
-                            std::to_string(shape.die_facets.size()) + " dies, counted from 0");
+                            std::to_string(pairs[i].die) + " where there are " + std::to_string(n_nodes) +
+                            " nodes and " + std::to_string(shape.die_facets.size()) +
+                            " dies, counted from 0");
       }
       return pairs;
     }
@@ -335,8 +334,8 @@ namespace retroforge
     header.die_facets = hdf5::read_array<unsigned int>(group, "die_facets", {hdf5::any});
     if (std::count(header.die_facets.begin(), header.die_facets.end(), 0u) > 0)
       throw hdf5::Failure("die_facets holds a die without facets");
-    header.mesh       = read_mesh(group);
-    header.X_0        = read_vectors(group, "X_0", header.mesh.n_nodes());
+    header.mesh = read_mesh(group);
+    header.X_0  = read_vectors(group, "X_0", header.mesh.n_nodes());
     check_mesh(header.mesh, file_name);
     return header;
   }
@@ -347,7 +346,7 @@ namespace retroforge
                        const RecordShape     &shape)
   {
     const unsigned int n_nodes = check_increment(increment, shape);
-    const hdf5::Handle group = hdf5::create_group(file, increment_name(i));
+    const hdf5::Handle group   = hdf5::create_group(file, increment_name(i));
     hdf5::write_attribute(group, "run", &shape.run);
     hdf5::write_attribute(group, "stroke", &increment.stroke);
     hdf5::write_attribute(group, "step", &increment.step);

@@ -63,9 +63,8 @@ namespace retroforge
     return state;
   }
 
-  bool Forging::acceptable(const Leg                  &leg,
-                           const NodalVectors<double> &X,
-                           const NodalVectors<double> &X_next) const
+  bool
+  Forging::acceptable(const Leg &leg, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const
   {
     const TetMesh &mesh = leg.scene.mesh;
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
@@ -100,7 +99,7 @@ namespace retroforge
   void Forging::remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const
   {
     const auto timing = timings_.scope("remeshing");
-    record.remesh     = remesher_.remesh(state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies);
+    record.remesh = remesher_.remesh(state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies);
     change_mesh(*record.remesh, state);
     state.X = record.remesh->mesh.X; // J X + c to the last bit
   }
@@ -147,11 +146,9 @@ namespace retroforge
         remesh(process, state, record);
         frozen = remesher_.frozen(state.leg->scene.mesh);
       };
-      if (remesher_.enabled() && remesher_.due(state.leg->scene.mesh,
-                                               state.X,
-                                               process.at_stroke(state.stroke).dies,
-                                               frozen,
-                                               since_remeshing()))
+      if (remesher_.enabled() &&
+          remesher_.due(
+            state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies, frozen, since_remeshing()))
         renew();
       record.stroke = state.stroke;
       record.step   = std::min(whole / (1 << state.depth), press_.stroke - state.stroke);
@@ -174,8 +171,9 @@ namespace retroforge
                       "an increment at stroke " + std::to_string(state.stroke) + " mm was halved " +
                         std::to_string(press_.max_cuts) + " times and still inverts an element",
                       "elements must keep a positive volume",
-                      remesher_.enabled() ? "shorten the stroke or use a finer mesh"
-                                          : "the mesh is too distorted to go on: set Remeshing/when = quality");
+                      remesher_.enabled()
+                        ? "shorten the stroke or use a finer mesh"
+                        : "the mesh is too distorted to go on: set Remeshing/when = quality");
       }
       const NodalVectors<double> X_before = state.X;
       state.W                             = std::move(solution);
@@ -221,11 +219,10 @@ namespace retroforge
       record.newton = record.krylov = record.linear_solves = 0;
       if (record.remesh)
         change_mesh(*record.remesh, state);
-      state.W   = Field<double>(state.leg->scene.mesh);
-      state.W.V = record.solves[0].V;
-      state.W.P = record.solves[0].P;
-      NodalVectors<double> X_next =
-        state.leg->increment.forward(process, state.X, true, record, state.W);
+      state.W                     = Field<double>(state.leg->scene.mesh);
+      state.W.V                   = record.solves[0].V;
+      state.W.P                   = record.solves[0].P;
+      NodalVectors<double> X_next = state.leg->increment.forward(process, state.X, true, record, state.W);
       finish_increment(process, record, std::move(X_next), state);
     }
   }

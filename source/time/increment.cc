@@ -169,10 +169,10 @@ namespace retroforge
         const auto timing = timings_.scope("contact");
         record.pairs = find_contact_pairs(scene_.topology, scene_.dies, physics.dies, X, model_.ramp, reach);
       }
-      const ContactSet<double> contact  = contact_set(physics, X, record, dt);
-      Field<double>            trial    = W;
-      NodalVectors<double>     position = X;
-      bool                     repeat   = false;
+      const ContactSet<double> contact       = contact_set(physics, X, record, dt);
+      Field<double>            trial         = W;
+      NodalVectors<double>     position      = X;
+      bool                     repeat        = false;
       const unsigned int       solves_before = system_.n_solves;
       for (unsigned int s = 0; s < solves.size() && !repeat; ++s)
       {

@@ -19,12 +19,14 @@ namespace retroforge
   {
     using namespace dealii::Patterns;
     prm.enter_subsection("Remeshing");
-    prm.add_parameter("when",
-                      when,
-                      "quality: when an angle between two faces of a cell falls below the trigger angle, or an "
-                      "increment would invert a cell, or when the surface no longer fits a curved die. increments: that, and after every so many increments. "
-                      "Units: none.",
-                      Selection("never|quality|increments"));
+    prm.add_parameter(
+      "when",
+      when,
+      "quality: when an angle between two faces of a cell falls below the trigger angle, or an "
+      "increment would invert a cell, or when the surface no longer fits a curved die. increments: that, and "
+      "after every so many increments. "
+      "Units: none.",
+      Selection("never|quality|increments"));
     prm.add_parameter("every", every, "Increments between remeshings. Units: none.", Integer(1));
     prm.add_parameter("method",
                       method,
@@ -35,28 +37,31 @@ namespace retroforge
                       element_size,
                       "Wanted length of the edges; 0 for that of the billet. Units: mm.",
                       Double(0.));
-    prm.add_parameter("chord error",
-                      chord_error,
-                      "Wanted distance between a surface edge and a curved die, r its radius there: edges are "
-                      "sqrt(8 r error) long. 0: the same length everywhere. Units: mm.",
-                      Double(0.));
-    prm.add_parameter("smallest size",
-                      smallest_size,
-                      "Edges near curved dies are not wanted shorter than this part of the element size. Units: "
-                      "none.",
-                      Double(1e-3, 1.));
-    prm.add_parameter("growth",
-                      growth,
-                      "Most by which the wanted length grows per distance from where it is small. Units: none.",
-                      Double(1e-3));
-    prm.add_parameter("die fit",
-                      fit,
-                      "Remesh when a surface edge with both ends on a curved die is deeper inside it than this "
-                      "part of the element size. Units: none.",
-                      Double(1e-6));
-    prm.add_parameter("first mesh",
-                      first_mesh,
-                      "Improve the billet's mesh by one pass before the run begins. Units: none.");
+    prm.add_parameter(
+      "chord error",
+      chord_error,
+      "Wanted distance between a surface edge and a curved die, r its radius there: edges are "
+      "sqrt(8 r error) long. 0: the same length everywhere. Units: mm.",
+      Double(0.));
+    prm.add_parameter(
+      "smallest size",
+      smallest_size,
+      "Edges near curved dies are not wanted shorter than this part of the element size. Units: "
+      "none.",
+      Double(1e-3, 1.));
+    prm.add_parameter(
+      "growth",
+      growth,
+      "Most by which the wanted length grows per distance from where it is small. Units: none.",
+      Double(1e-3));
+    prm.add_parameter(
+      "die fit",
+      fit,
+      "Remesh when a surface edge with both ends on a curved die is deeper inside it than this "
+      "part of the element size. Units: none.",
+      Double(1e-6));
+    prm.add_parameter(
+      "first mesh", first_mesh, "Improve the billet's mesh by one pass before the run begins. Units: none.");
     prm.leave_subsection();
     local.add_parameters(prm);
   }
@@ -70,7 +75,11 @@ namespace retroforge
                      const double              element_size,
                      const std::vector<Die>   &dies,
                      MPI_Comm                  comm)
-      : parameters_(parameters), element_size_(element_size), dies_(dies), comm_(comm), facet_size_(dies.size())
+      : parameters_(parameters)
+      , element_size_(element_size)
+      , dies_(dies)
+      , comm_(comm)
+      , facet_size_(dies.size())
   {
     if (parameters_.chord_error == 0.)
       return;
@@ -105,9 +114,7 @@ namespace retroforge
     return frozen_cells(mesh, parameters_.local);
   }
 
-  double Remesher::misfit(const TetMesh              &mesh,
-                          const NodalVectors<double> &X,
-                          const DieStates            &states) const
+  double Remesher::misfit(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const
   {
     double deepest = 0.;
     for (unsigned int d = 0; d < dies_.size(); ++d)
@@ -128,7 +135,8 @@ namespace retroforge
         for (const BoundaryFace &face : mesh.faces)
           if (mesh.is_surface(face))
             for (unsigned int e = 0; e < 3; ++e)
-              if (const NodeIndex a = face.nodes[e], b = face.nodes[(e + 1) % 3]; a < b && on_die[a] && on_die[b])
+              if (const NodeIndex a = face.nodes[e], b = face.nodes[(e + 1) % 3];
+                  a < b && on_die[a] && on_die[b])
                 deepest = std::max(deepest, -delta(0.5 * (X[a] + X[b])));
       }
     return deepest;
@@ -171,10 +179,8 @@ namespace retroforge
         }
     Box region(low);
     region.include(high);
-    return GradedSize(region,
-                      wanted,
-                      points,
-                      {parameters_.smallest_size * element_size_, element_size_, parameters_.growth});
+    return GradedSize(
+      region, wanted, points, {parameters_.smallest_size * element_size_, element_size_, parameters_.growth});
   }
 
   PushOut Remesher::push_out(const DieStates &states) const
@@ -215,7 +221,8 @@ namespace retroforge
     if (parameters_.method == "local" && !inverted)
       return remesh_locally(mesh, X, size, parameters_.local, push_out, touches);
     const RebuiltMesh rebuilt = rebuild_inside(mesh, X, size, "Remeshing");
-    RemeshedMesh      local = remesh_locally(rebuilt.mesh, rebuilt.mesh.X, size, parameters_.local, push_out, touches);
+    RemeshedMesh      local =
+      remesh_locally(rebuilt.mesh, rebuilt.mesh.X, size, parameters_.local, push_out, touches);
     for (NodeIndex &k : local.old_node)
       if (k != invalid_index)
         k = rebuilt.old_node[k];

@@ -28,14 +28,14 @@ namespace retroforge
   /// What the backward pass and a replay need of one increment. Positions follow from X_0 and the velocities.
   struct IncrementRecord
   {
-    double                   stroke = 0.; ///< of the leading die at the start [mm]
-    double                   step   = 0.; ///< [mm]
-    unsigned int             cuts   = 0;  ///< times the step was halved
+    double       stroke = 0.; ///< of the leading die at the start [mm]
+    double       step   = 0.; ///< [mm]
+    unsigned int cuts   = 0;  ///< times the step was halved
     /// Made just before the increment; null when it goes on with the mesh there was.
     std::shared_ptr<const RemeshRecord> remesh;
     std::vector<ContactPair>            pairs;
-    std::vector<SolveRecord> solves;                                        ///< one per stage of the scheme
-    double                   deformation_energy = 0., friction_energy = 0.; ///< of this increment [mJ]
+    std::vector<SolveRecord>            solves;           ///< one per stage of the scheme
+    double deformation_energy = 0., friction_energy = 0.; ///< of this increment [mJ]
     /// Told, and of no use to the backward pass: force of each die on the workpiece [N], iterations.
     std::vector<Vec3> forces;
     unsigned int      newton = 0, krylov = 0, linear_solves = 0;

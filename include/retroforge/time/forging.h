@@ -53,7 +53,10 @@ namespace retroforge
     using Watch  = std::function<void(const IncrementEvent &)>;
     using Source = std::function<const IncrementRecord &(unsigned int)>;
 
-    Forging(const ForgingModel &model, const PressParameters &press, const Remesher &remesher, Timings &timings);
+    Forging(const ForgingModel    &model,
+            const PressParameters &press,
+            const Remesher        &remesher,
+            Timings               &timings);
 
     /// Before the first increment.
     ForgingState start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0) const;
@@ -69,7 +72,8 @@ namespace retroforge
                  const Watch           &watch) const;
 
     /// Obeys the decisions of n recorded increments, and starts each solve from the recorded one.
-    void replay(const Process<double> &process, unsigned int n, const Source &source, ForgingState &state) const;
+    void
+    replay(const Process<double> &process, unsigned int n, const Source &source, ForgingState &state) const;
 
     /// Changes the mesh as recorded: positions X' = J X + c, strain through the nodes.
     void change_mesh(const RemeshRecord &remesh, ForgingState &state) const;

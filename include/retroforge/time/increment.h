@@ -70,8 +70,9 @@ namespace retroforge
                  ProcessBar                 &process_bar);
 
     /// X_{i+1} of a recorded increment, to the bit.
-    NodalVectors<double>
-    advance(const Process<double> &process, const NodalVectors<double> &X, const IncrementRecord &record) const;
+    NodalVectors<double> advance(const Process<double>      &process,
+                                 const NodalVectors<double> &X,
+                                 const IncrementRecord      &record) const;
 
     /// Solution of the last stage of a recorded increment, its bubbles recovered from nothing: the same bits
     /// as at the end of forward.

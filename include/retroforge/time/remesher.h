@@ -68,15 +68,17 @@ namespace retroforge
     double misfit(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const;
 
   private:
-    RemeshedMesh
-    make(const TetMesh &mesh, const NodalVectors<double> &X, const SizeField &size, const DieStates &states) const;
-    PushOut    push_out(const DieStates &states) const;
-    TouchesDie touches(const DieStates &states) const;
+    RemeshedMesh make(const TetMesh              &mesh,
+                      const NodalVectors<double> &X,
+                      const SizeField            &size,
+                      const DieStates            &states) const;
+    PushOut      push_out(const DieStates &states) const;
+    TouchesDie   touches(const DieStates &states) const;
 
-    RemesherParameters       parameters_;
-    double                   element_size_;
-    const std::vector<Die>  &dies_;
-    MPI_Comm                 comm_;
+    RemesherParameters               parameters_;
+    double                           element_size_;
+    const std::vector<Die>          &dies_;
+    MPI_Comm                         comm_;
     std::vector<std::vector<double>> facet_size_; ///< of each curved die: the length its curvature asks for
   };
 } // namespace retroforge

@@ -159,13 +159,12 @@ NodeCase<double> random_case(Random &random, const double m, const double v0)
   return c;
 }
 
-double
-check_nodes(const std::string &title,
-            const double       m,
-            const double       v0,
-            const bool         sliding,
-            const double       Sf,
-            const double       layer = 0.)
+double check_nodes(const std::string &title,
+                   const double       m,
+                   const double       v0,
+                   const bool         sliding,
+                   const double       Sf,
+                   const double       layer = 0.)
 {
   Random       random;
   Errors       errors;

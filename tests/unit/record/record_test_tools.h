@@ -165,8 +165,9 @@ namespace retroforge
     bool equal = same_bits(a.stroke, b.stroke) && same_bits(a.step, b.step) && a.cuts == b.cuts &&
                  same_bits(a.deformation_energy, b.deformation_energy) &&
                  same_bits(a.friction_energy, b.friction_energy) && a.newton == b.newton &&
-                 a.krylov == b.krylov && a.linear_solves == b.linear_solves && same_bits(a.forces, b.forces) &&
-                 !a.remesh == !b.remesh && (!a.remesh || same(*a.remesh, *b.remesh)) && a.pairs.size() == b.pairs.size() &&
+                 a.krylov == b.krylov && a.linear_solves == b.linear_solves &&
+                 same_bits(a.forces, b.forces) && !a.remesh == !b.remesh &&
+                 (!a.remesh || same(*a.remesh, *b.remesh)) && a.pairs.size() == b.pairs.size() &&
                  a.solves.size() == b.solves.size();
     for (std::size_t p = 0; equal && p < a.pairs.size(); ++p)
       equal = a.pairs[p].node == b.pairs[p].node && a.pairs[p].die == b.pairs[p].die &&

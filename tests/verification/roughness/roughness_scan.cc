@@ -50,10 +50,15 @@ namespace
       const std::vector<double>    value   = {mu};
       const Process<double>        process = design.process(value);
       std::vector<IncrementRecord> records;
-      ForgingState                 forged  = forging.start(leg, design.positions(value));
+      ForgingState                 forged = forging.start(leg, design.positions(value));
       forging.run(process, forged, [&](const IncrementEvent &event) { records.push_back(event.record); });
       const AdjointResult result = adjoint_sweep(
-        model, leg, process, forged, [&](const unsigned int i) -> const IncrementRecord & { return records[i]; }, timings);
+        model,
+        leg,
+        process,
+        forged,
+        [&](const unsigned int i) -> const IncrementRecord & { return records[i]; },
+        timings);
       std::printf("%.17g,%.17g,%.17g,%u,%u\n",
                   mu,
                   forged.energy.total(),

@@ -15,8 +15,8 @@ namespace retroforge
   /// dV/dX_k. P_k takes out the normals of the symmetry planes and of the flat faces at k: what is flat (on a
   /// flat die, say) stays flat, and its rim moves inside it. When nothing is curved, flat faces move too.
   /// Errors of rounding (1e-13 of the volume; 1e-12 when nothing is curved) are left alone.
-  /// A step that would leave a cell less than a fifth of its volume is halved until none does, and the rest of
-  /// the error stays.
+  /// A step that would leave a cell less than a fifth of its volume is halved until none does, and the rest
+  /// of the error stays.
   /// @param held  nodes that must not move
   /// @return the farthest a node moved [length]
   double correct_volume(TetMesh &mesh, double wanted_volume, const std::vector<bool> &held);

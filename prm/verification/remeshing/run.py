@@ -1,0 +1,49 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""Remeshing again and again a cylinder and a gear-like star that are upset to a third: angles, nodes kept, volume, and what
+becomes of a Gaussian, by local remeshing and by rebuilding:   run.py BUILD quick | many | diffusion | diffusion_10k"""
+import os
+import subprocess
+import sys
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "..", ".."))
+import case_tools  # noqa: E402
+
+
+def study(build, shape, size, remeshings, method):
+    program = os.path.join(build, "tests", "verification", "remeshing", "remeshing_study")
+    done = subprocess.run([program, shape, str(size), str(remeshings), method], capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(f"{shape}, {method}: {done.stderr}")
+    table = np.genfromtxt(done.stdout.splitlines(), delimiter=",", names=True, ndmin=1)
+    for row in table:
+        print(f"| {shape} | {method} | {row['nodes']:.0f} | {row['remeshings']:.0f} | {row['L2']:.4f} | {row['angle']:.1f} "
+              f"| {row['kept']:.1%} | {row['volume']:.1e} | {row['microseconds']:.1f} |", flush=True)
+    return table[-1]
+
+
+def main():
+    build, what = sys.argv[1:3]
+    print("| shape | method | nodes | remeshings | L2 error | least angle | nodes kept | volume per remeshing | us per tet |\n" + "| --- " * 9 + "|")
+    if what == "quick":
+        last = study(build, "cylinder", 6, 20, "local")
+        case_tools.figure("angle_quick", last["angle"])
+        case_tools.figure("kept_quick", last["kept"])
+        case_tools.figure("volume_quick", last["volume"])
+    elif what == "many":
+        rows = [study(build, shape, 4, 100, "local") for shape in ("cylinder", "star")]
+        case_tools.figure("angle_100", min(row["angle"] for row in rows))
+        case_tools.figure("kept_100", min(row["kept"] for row in rows))
+        case_tools.figure("volume_100", max(row["volume"] for row in rows))
+    else:
+        size = 4 if what == "diffusion" else 1.9
+        case_tools.figure(f"{what}_local", study(build, "cylinder", size, 60, "local")["L2"])
+        case_tools.figure(f"{what}_rebuilt", study(build, "cylinder", size, 60, "rebuild")["L2"])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+//
+// Many remeshings of a workpiece that moves in a known way, and a nodal field carried through all of them:
+//   remeshing_study cylinder|star ELEMENT_SIZE REMESHINGS local|rebuild
+// A billet of height 60 is upset to 20, z -> f z, x, y -> f^(-1/2) x, y with a slight barrel, in equal
+// logarithmic steps, and remeshed after each. The star is a prism of eight teeth, like a gear. The field is a
+// Gaussian of width 2h in the material: at a node its exact value is known from where the node was at the
+// start. One line of CSV at remeshings 10, 30, 60, 100 and the last.
+
+#include <deal.II/base/mpi.h>
+
+#include <retroforge/core/error.h>
+#include <retroforge/mesh/billet.h>
+#include <retroforge/mesh/gmsh_mesher.h>
+#include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/mesh/remeshing/trigger.h>
+#include <retroforge/time/remesher.h>
+
+#include <ctime>
+#include <fstream>
+#include <iostream>
+
+using namespace retroforge;
+
+namespace
+{
+  constexpr double height = 60., final_height = 20.;
+
+  /// Radial stretch of a step by f at the relative height zeta; the mean of its square is 1/f.
+  double stretch(const double f, const double zeta)
+  {
+    return (1. + 0.005 * (zeta * (1. - zeta) - 1. / 6.)) / std::sqrt(f);
+  }
+
+  void deform(NodalVectors<double> &X, const double before, const double f)
+  {
+    for (Vec3 &x : X)
+    {
+      const double s = stretch(f, x[2] / before);
+      x              = Vec3({s * x[0], s * x[1], f * x[2]});
+    }
+  }
+
+  /// A prism with a star of eight teeth as base, written as an extruded Gmsh geometry would be: its mesh
+  /// comes from the mesher's own cylinder, each node moved radially onto the star.
+  void make_star(TetMesh &mesh, const double radius)
+  {
+    const auto move = [&](const Vec3 &x) {
+      const double r      = std::hypot(x[0], x[1]),
+                   factor = 1. + 0.12 * std::cos(8. * std::atan2(x[1], x[0])) * std::pow(r / radius, 4);
+      return Vec3({factor * x[0], factor * x[1], x[2]});
+    };
+    for (Vec3 &x : mesh.X)
+      x = move(x);
+  }
+
+  double gaussian(const Vec3 &x, const double width)
+  {
+    const Vec3 d = x - Vec3({5., 3., 0.5 * height});
+    return std::exp(-d.norm_square() / (width * width));
+  }
+
+  struct Study
+  {
+    double n_steps, worst_angle = 180., worst_kept = 1., worst_volume = 0., seconds = 0., n_cells = 0.;
+    int    done = 0;
+
+    double before(const int step) const { return height * std::pow(final_height / height, step / n_steps); }
+
+    /// Where a point of the last configuration was at the start.
+    Vec3 material_point(Vec3 x) const
+    {
+      const double zeta = x[2] / before(done);
+      for (int step = done; step-- > 0;)
+      {
+        const double f = before(step + 1) / before(step), s = stretch(f, zeta);
+        x = Vec3({x[0] / s, x[1] / s, x[2] / f});
+      }
+      return x;
+    }
+
+    /// Relative L2 error with lumped masses.
+    double error(const TetMesh              &mesh,
+                 const NodalVectors<double> &X,
+                 const std::vector<double>  &q,
+                 const double                width) const
+    {
+      double square = 0., reference = 0.;
+      for (const auto &cell : mesh.cells)
+        for (const NodeIndex k : cell)
+        {
+          const double exact = gaussian(material_point(X[k]), width), V = tet_volume(corners(cell, X));
+          square += V * (q[k] - exact) * (q[k] - exact);
+          reference += V * exact * exact;
+        }
+      return std::sqrt(square / reference);
+    }
+  };
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  if (argc != 5)
+    return 1;
+  const std::string shape = argv[1], method = argv[4];
+  const double      size = std::stod(argv[2]);
+  const int         n    = std::stoi(argv[3]);
+
+  BilletParameters billet;
+  billet.shape        = "cylinder";
+  billet.radius       = 20.;
+  billet.height       = height;
+  billet.element_size = size;
+  TetMesh mesh        = make_billet(billet, MPI_COMM_WORLD);
+  if (shape == "star")
+    make_star(mesh, billet.radius);
+  double h = 0.;
+  for (const auto &cell : mesh.cells)
+    for (unsigned int a = 0; a < 4; ++a)
+      for (unsigned int b = 0; b < a; ++b)
+        h += (mesh.X[cell[a]] - mesh.X[cell[b]]).norm() / (6. * mesh.n_cells());
+
+  RemesherParameters parameters;
+  parameters.when   = "increments";
+  parameters.method = "local";
+  const std::vector<Die> dies;
+  mesh              = Remesher(parameters, h, dies, MPI_COMM_WORLD).remesh(mesh, mesh.X, {})->mesh;
+  parameters.method = method;
+  const Remesher remesher(parameters, h, dies, MPI_COMM_WORLD);
+
+  Study                study{1. * n};
+  const double         V0 = volume(mesh.cells, mesh.X), width = 2. * h;
+  NodalVectors<double> X = mesh.X;
+  std::vector<double>  q;
+  for (const Vec3 &x : X)
+    q.push_back(gaussian(x, width));
+  std::cout << "remeshings,nodes,L2,angle,kept,volume,microseconds\n";
+  for (int step = 0; step < n; ++step)
+  {
+    const double z = study.before(step), f = study.before(step + 1) / z;
+    deform(X, z, f);
+    ++study.done;
+    const double before = volume(mesh.cells, X);
+    const auto   start  = std::clock();
+    const auto   record = remesher.remesh(mesh, X, {});
+    study.seconds += double(std::clock() - start) / CLOCKS_PER_SEC;
+    q                 = record->transfer.apply(q);
+    mesh              = record->mesh;
+    X                 = mesh.X;
+    unsigned int kept = 0;
+    for (unsigned int k = 0; k < mesh.n_nodes(); ++k)
+      kept += record->transfer.begin[k + 1] == record->transfer.begin[k] + 1;
+    study.worst_kept   = std::min(study.worst_kept, double(kept) / mesh.n_nodes());
+    study.worst_angle  = std::min(study.worst_angle, minimum_free_angle(mesh, X));
+    study.worst_volume = std::max(study.worst_volume, std::abs(volume(mesh.cells, X) / before - 1.));
+    study.n_cells += mesh.n_cells();
+    if (const int done = step + 1; done == 10 || done == 30 || done == 60 || done == n)
+      std::cout << done << ',' << mesh.n_nodes() << ',' << study.error(mesh, X, q, width) << ','
+                << study.worst_angle << ',' << study.worst_kept << ',' << study.worst_volume << ','
+                << 1e6 * study.seconds / study.n_cells << std::endl;
+  }
+  std::cerr << "volume from first to last " << volume(mesh.cells, X) / V0 - 1. << "\n";
+}
