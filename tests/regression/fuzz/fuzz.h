@@ -130,10 +130,11 @@ namespace fuzz
         while (next_ < n_)
           run_child();
       const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-      std::cerr << kind_ << ": " << n_ << " trials in " << time.count() << " s, accepted "
-                << std::count(outcomes_.begin(), outcomes_.end(), 'a') << ", refused "
-                << std::count(outcomes_.begin(), outcomes_.end(), 'r') << ", slowest trial " << slowest_
-                << " s\n";
+      if (std::getenv("FUZZ_TRIALS") != nullptr)
+        std::cerr << kind_ << ": " << n_ << " trials in " << time.count() << " s, accepted "
+                  << std::count(outcomes_.begin(), outcomes_.end(), 'a') << ", refused "
+                  << std::count(outcomes_.begin(), outcomes_.end(), 'r') << ", slowest trial " << slowest_
+                  << " s\n";
       std::cout << kind_ << ": defects " << std::count(outcomes_.begin(), outcomes_.end(), 'd')
                 << ", some refused: " << (has('r') ? "yes" : "NO")
                 << ", some accepted: " << (has('a') ? "yes" : "NO") << std::endl;
