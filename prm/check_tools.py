@@ -10,7 +10,8 @@ def check_rows(summary):
 
 def errors(row, key):
     """[(step, |difference/adjoint - 1|)] of one kind of differences, largest step first."""
-    return sorted(((s["step"], abs(s[key] / row["adjoint"] - 1.0)) for s in row["steps"]), reverse=True)
+    return sorted(((s["step"], float("inf") if s[key] is None else abs(s[key] / row["adjoint"] - 1.0))
+                   for s in row["steps"]), reverse=True)
 
 
 def worst_over_decades(row, key="replayed_central", decades=3):

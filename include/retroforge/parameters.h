@@ -12,7 +12,7 @@ namespace retroforge
   {
     std::string law           = "smooth";
     double      approach      = 1.;
-    double      layer         = 0.4;
+    double      layer         = 0.45;
     double      ramp_width    = 1.;
     double      penetration   = 3e-7;
     double      penalty       = 0.;

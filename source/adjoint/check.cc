@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/adjoint/check.h>
+#include <retroforge/core/error.h>
 
 #include <iomanip>
 #include <iostream>
@@ -69,6 +70,21 @@ namespace retroforge
       }
     };
 
+    /// A run that decides everything anew may also fail anew: then there is no difference, and the rest of the
+    /// check goes on.
+    double free_difference(const Line &line, const ObjectiveOracle &oracle, const double h)
+    {
+      try
+      {
+        return (line(oracle.free, h) - line(oracle.free, -h)) / (2. * h);
+      }
+      catch (const Error &error)
+      {
+        std::cerr << "  free difference of step " << h << ": " << error.what() << std::endl;
+        return NAN;
+      }
+    }
+
     CheckRow check_line(const CheckParameters &parameters,
                         const Line            &line,
                         const double           value,
@@ -83,7 +99,7 @@ namespace retroforge
         const double  plus = line(oracle.replayed, h), minus = line(oracle.replayed, -h);
         DifferenceRow d{step, (plus - minus) / (2. * h), (plus - value) / h, (value - minus) / h, NAN};
         if (parameters.free)
-          d.free_central = (line(oracle.free, h) - line(oracle.free, -h)) / (2. * h);
+          d.free_central = free_difference(line, oracle, h);
         row.steps.push_back(d);
       }
       double last = 0.;

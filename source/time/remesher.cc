@@ -71,6 +71,22 @@ namespace retroforge
     local.check();
   }
 
+  namespace
+  {
+    /// Positions rounded to about 1e-10 of the workpiece's size. Decisions must not hang on rounding, which is
+    /// another one on another number of ranks: edges of equal length would be taken in another order.
+    NodalVectors<double> on_grid(const NodalVectors<double> &X)
+    {
+      const auto [low, high]     = bounding_box(X);
+      const double         grid  = std::ldexp(1., std::ilogb((high - low).norm()) - 33);
+      NodalVectors<double> rounded = X;
+      for (Vec3 &x : rounded)
+        for (unsigned int i = 0; i < 3; ++i)
+          x[i] = grid * std::round(x[i] / grid);
+      return rounded;
+    }
+  } // namespace
+
   Remesher::Remesher(const RemesherParameters &parameters,
                      const double              element_size,
                      const std::vector<Die>   &dies,
@@ -235,7 +251,11 @@ namespace retroforge
     auto                   record = std::make_shared<RemeshRecord>();
     std::vector<NodeIndex> old_node;
     const auto             make_numbered = [&]() {
-      RemeshedMesh made = make(mesh, X, size_field(X, states), states);
+      const NodalVectors<double> rounded = on_grid(X);
+      RemeshedMesh               made    = make(mesh, rounded, size_field(rounded, states), states);
+      for (NodeIndex k = 0; k < made.mesh.n_nodes(); ++k)
+        if (const NodeIndex old = made.old_node[k]; old != invalid_index)
+          made.mesh.X[k] += X[old] - rounded[old];
       check_mesh(made.mesh, "Remeshing");
       const std::vector<NodeIndex> number = renumber(made.mesh);
       old_node.resize(number.size());

@@ -22,9 +22,9 @@ namespace retroforge
   class Die
   {
   public:
-    /// @param facing  unit normal of the working face, from the die towards the workpiece
+    /// @param facing  normal of the working face, from the die towards the workpiece
     Die(std::string name, const Vec3 &point, const Vec3 &facing)
-        : name(std::move(name)), point_(point), into_(-facing)
+        : name(std::move(name)), point_(point), into_(-facing / facing.norm())
     {
     }
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/objective/path_objective.h>
+
+namespace retroforge
+{
+  /// Smooth maximum over nodes and time of the contact pressure p_k = rho h_k on a die [MPa],
+  ///   ( sum_i dt_i sum_k S_k p_k^q / sum_i dt_i sum_k S_k w_k )^(1/q),
+  /// k the nodes pressed by the die, S_k a third of the surface at k, w_k the friction ramp: the mean over
+  /// the surface in contact, never above the largest pressure. The set of pressed nodes is frozen, as
+  /// everywhere. Zero before any contact.
+  class ContactPressure : public PathObjectiveOf<ContactPressure>
+  {
+  public:
+    static constexpr unsigned int n_terms = 2;
+
+    /// @param exponent   q >= 1, 10 to 50 for a maximum
+    /// @param reference  a pressure of the expected size, so that p^q neither overflows nor vanishes: it
+    /// cancels [MPa]  @throws Error
+    ContactPressure(unsigned int die, double exponent, double reference);
+
+    std::string name() const override { return "contact pressure"; }
+    std::string unit() const override { return "MPa"; }
+
+    /// The largest pressure on this rank's nodes, for the report [MPa].
+    double largest(const StageView<double> &view) const;
+
+    void reverse_integrals(const StageView<double>   &view,
+                           const std::vector<double> &weights,
+                           StageBar                  &bar) const override;
+
+    template <typename Number>
+    std::vector<Number> compute_integrals(const StageView<Number> &view) const;
+
+    template <typename Number>
+    std::vector<Number> terms(const PathRow<Number> &row, double) const
+    {
+      return {Number(row.dt * row.integrals[0]), Number(row.dt * row.integrals[1])};
+    }
+
+    template <typename Number>
+    Number combine(const std::vector<Number> &sums, double) const
+    {
+      if (value_of(sums[1]) <= 0.)
+        return Number(0.);
+      return reference_ * power(Number(sums[0] / sums[1]), Number(1. / exponent_));
+    }
+
+  private:
+    unsigned int die_;
+    double       exponent_, reference_;
+  };
+} // namespace retroforge

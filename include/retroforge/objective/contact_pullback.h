@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/objective/path_objective.h>
+
+namespace retroforge
+{
+  /// Takes derivatives of single contact nodes, and hands them on to unknowns, positions, contact data and
+  /// physics.
+  class ContactPullback
+  {
+  public:
+    ContactPullback(const StageView<double> &view, StageBar &bar);
+
+    /// Derivatives of a scalar in what contact_node(p) returned.
+    void add(unsigned int p, const ContactNodeBar &node_bar);
+
+    /// Derivative in the excess h = u·n - a(delta) of pair p.
+    void add_excess(unsigned int p, const ContactNode<double> &node, double h_bar);
+
+    /// Passes the areas' derivatives on to the positions. Once, at the end.
+    void finish();
+
+  private:
+    const StageView<double> &view_;
+    StageBar                &bar_;
+    ContactAreas<double>     areas_bar_;
+  };
+} // namespace retroforge

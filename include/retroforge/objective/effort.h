@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/objective/path_objective.h>
+#include <retroforge/objective/smooth_maximum.h>
+
+#include <limits>
+
+/// The force that the press must bring up, averaged over a window of the run or its maximum there.
+namespace retroforge
+{
+  /// A part of the run, by time or by stroke. An increment counts with that part of it that lies inside.
+  /// Strokes are fixed by decision; times follow the die's speed, and so does an increment's part of a window
+  /// of time, with a kink where an increment begins or ends on the window's edge.
+  struct PathWindow
+  {
+    enum class Over
+    {
+      time,  ///< [s]
+      stroke ///< [mm]
+    };
+
+    Over   over  = Over::stroke;
+    double begin = 0.;
+    double end   = std::numeric_limits<double>::max();
+
+    /// @throws Error
+    void check(const std::string &where) const;
+
+    /// Length of the increment's part inside [s or mm].
+    template <typename Number>
+    Number overlap(const PathRow<Number> &row) const;
+  };
+
+  /// The force of one increment [N].
+  class Effort
+  {
+  public:
+    enum class By
+    {
+      power, ///< (int s:eps + int tau·dv) / |v_die|
+      force  ///< of the die on the workpiece, along its velocity: contact and friction
+    };
+
+    /// @param die  the one that moves
+    explicit Effort(const unsigned int die, const By by = By::power) : die_(die), by_(by) {}
+
+    /// This rank's part.
+    template <typename Number>
+    Number operator()(const StageView<Number> &view) const;
+
+    /// Adds the derivatives of weight times it, this rank's part.
+    void reverse(const StageView<double> &view, double weight, StageBar &bar) const;
+
+  private:
+    unsigned int die_;
+    By           by_;
+  };
+
+  /// Mean effort over a window [N],  sum_i F_i l_i / sum_i l_i,  l_i the increment's part of the window. By
+  /// power and with one moving die it is the mean of the die's reaction, up to the penalty (relative order
+  /// 1/rho) and the approach of nodes that are about to touch.  @cite Laroussi2003, Eq. (99), (120)
+  class MeanEffort : public PathObjectiveOf<MeanEffort>
+  {
+  public:
+    static constexpr unsigned int n_terms = 2;
+
+    MeanEffort(const Effort &effort, const PathWindow &window);
+
+    std::string name() const override { return "mean effort"; }
+    std::string unit() const override { return "N"; }
+
+    void reverse_integrals(const StageView<double>   &view,
+                           const std::vector<double> &weights,
+                           StageBar                  &bar) const override;
+
+    template <typename Number>
+    std::vector<Number> compute_integrals(const StageView<Number> &view) const;
+    template <typename Number>
+    std::vector<Number> terms(const PathRow<Number> &row, double) const;
+    template <typename Number>
+    Number combine(const std::vector<Number> &sums, double) const;
+
+  private:
+    Effort     effort_;
+    PathWindow window_;
+  };
+
+  /// Smooth maximum of the effort over a window [N], increments weighted with their part of it.
+  /// @cite Laroussi2003, Eq. (100)
+  class MaximumEffort : public PathObjectiveOf<MaximumEffort>
+  {
+  public:
+    static constexpr unsigned int n_terms = 2;
+
+    MaximumEffort(const Effort &effort, const PathWindow &window, const SmoothMaximum &maximum);
+
+    std::string name() const override { return "maximum effort"; }
+    std::string unit() const override { return "N"; }
+
+    /// The largest effort of an increment in the window, what value() stays below [N]; 0 if there is none.
+    double true_maximum(const PathRows<double> &rows) const;
+
+    void reverse_integrals(const StageView<double>   &view,
+                           const std::vector<double> &weights,
+                           StageBar                  &bar) const override;
+
+    double scale(const PathRows<double> &rows) const { return true_maximum(rows); }
+    template <typename Number>
+    std::vector<Number> compute_integrals(const StageView<Number> &view) const;
+    template <typename Number>
+    std::vector<Number> terms(const PathRow<Number> &row, double scale) const;
+    template <typename Number>
+    Number combine(const std::vector<Number> &sums, double scale) const;
+
+  private:
+    Effort        effort_;
+    PathWindow    window_;
+    SmoothMaximum maximum_;
+  };
+} // namespace retroforge

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/objective/path_objective.h>
+
+#include <utility>
+
+namespace retroforge
+{
+  /// Energy spent [mJ],
+  ///   sum_i dt_i [ int s:eps + sum_k tau_k·dv_k S^f_k ],
+  /// as the equilibrium has stress and friction, regularisations included. The integrals are deformation and
+  /// friction power [mJ/s].  @cite Laroussi2003, Eq. (97)-(98)
+  class EnergyObjective : public PathObjectiveOf<EnergyObjective>
+  {
+  public:
+    static constexpr unsigned int n_terms = 1;
+
+    std::string name() const override { return "energy"; }
+    std::string unit() const override { return "mJ"; }
+
+    /// Deformation and friction [mJ].
+    static std::pair<double, double> split(const PathRows<double> &rows);
+
+    void reverse_integrals(const StageView<double>   &view,
+                           const std::vector<double> &weights,
+                           StageBar                  &bar) const override;
+
+    template <typename Number>
+    std::vector<Number> compute_integrals(const StageView<Number> &view) const;
+
+    template <typename Number>
+    std::vector<Number> terms(const PathRow<Number> &row, double) const
+    {
+      return {Number(row.dt * (row.integrals[0] + row.integrals[1]))};
+    }
+
+    template <typename Number>
+    Number combine(const std::vector<Number> &sums, double) const
+    {
+      return sums[0];
+    }
+  };
+
+  /// Adds the derivatives of  deformation * int s:eps + friction * sum_k tau_k·dv_k S^f_k.
+  void reverse_powers(const StageView<double> &view, double deformation, double friction, StageBar &bar);
+} // namespace retroforge

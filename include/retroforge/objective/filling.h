@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/objective/target_surface.h>
+#include <retroforge/objective/workpiece_surface.h>
+
+namespace retroforge
+{
+  /// Which features the two projections of FillingObjective see, and the workpiece's surface at that moment.
+  struct FillingDecisions
+  {
+    std::vector<SeenFeature> by_workpiece; ///< nodes of the workpiece, features of the target
+    std::vector<SeenFeature> by_target;    ///< vertices of the target, features of the workpiece's surface
+    WorkpieceSurface         workpiece;
+  };
+
+  /// Volume between the workpiece and the desired shape by double projection [mm^3],
+  ///   1/2 ( sum_k |delta_k| S_k  +  sum_l |delta_l| S_l ),
+  /// k the nodes of the workpiece's surface, delta_k their distance from the target, S_k a third of the areas
+  /// around them; l the vertices of the target, delta_l their distance from the workpiece's surface. All
+  /// surface nodes count, those in contact included. |delta| may be rounded to  sqrt(delta^2 + r^2) - r.
+  /// Frozen: closest features, and which points see any. Moves of an open target's rim past the workpiece are
+  /// such decisions.  @cite Laroussi2003, Eq. (109), (111)
+  class FillingObjective : public FinalObjectiveOf<FillingObjective>
+  {
+  public:
+    /// @param rounding  r [mm]; 0 has a kink where a node lies on the target, with derivative zero at it
+    explicit FillingObjective(TargetSurface target, double rounding = 0.);
+
+    std::string name() const override { return "filling"; }
+    std::string unit() const override { return "mm^3"; }
+
+    /// @throws Error  when the workpiece's surface is folded onto itself (see TriangleSurface)
+    void                    decide(const FinalView<double> &view) override;
+    const FillingDecisions &decisions() const { return decisions_; }
+
+    /// The weights' meaning: integrals are the two sums, workpiece -> target and target -> workpiece.
+    void reverse_integrals(const FinalView<double>   &view,
+                           const std::vector<double> &weights,
+                           FinalBar                  &bar) const override;
+
+    template <typename Number>
+    std::vector<Number> compute_integrals(const FinalView<Number> &view) const;
+
+    template <typename Number>
+    Number combine(const std::vector<Number> &integrals) const
+    {
+      return 0.5 * (integrals[0] + integrals[1]);
+    }
+
+  private:
+    template <typename Number>
+    Number rounded(const Number &delta) const;
+    double slope(double delta) const;
+
+    void reverse_by_workpiece(const FinalView<double> &view, double weight, FinalBar &bar) const;
+    void reverse_by_target(const FinalView<double> &view, double weight, FinalBar &bar) const;
+
+    TargetSurface    target_;
+    double           rounding_;
+    FillingDecisions decisions_;
+  };
+} // namespace retroforge

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/solver/stage.h>
+
+#include <string>
+
+/// Objectives of what happens during a forging, in two levels:
+///   a_ik = integrals of increment i over the workpiece, at its last stage,
+///   Phi  = F( sum_i g(a_i, dt_i, t_i) ).
+/// The integrals are all that touches the mesh: each objective writes their reverse in closed form. g and F
+/// are functions of a few numbers, and their derivatives come from dual numbers. A run keeps the rows a_i
+/// (some doubles per increment), so that nothing is evaluated twice and smooth maxima can be scaled by the
+/// largest value before they are summed.
+///
+/// Backwards:  reverse_value() gives dPhi/d(a_i, dt_i, t_i) for all increments at once;  at increment i
+/// reverse_integrals() adds what follows from a_i, and dt_bar() is added to PhysicsBar::dt on one rank.
+namespace retroforge
+{
+  /// The last stage of an increment and its solution.
+  template <typename Number>
+  struct StageView
+  {
+    const Stage<Number> &stage;
+    const Field<Number> &W;
+    const ActiveSet     &active;
+  };
+
+  /// Where derivatives go. Sums are this rank's part, as those of reverse_residual.
+  struct StageBar
+  {
+    Field<double>        &W;
+    NodalVectors<double> &X; ///< positions of the stage
+    ContactSetBar        &contact;
+    PhysicsBar           &physics;
+    ShapeDerivatives      shape = {}; ///< of the energy's derivative in X
+  };
+
+  /// One increment as objectives see it, the same on every rank.
+  template <typename Number>
+  struct PathRow
+  {
+    std::vector<Number> integrals; ///< completed over ranks
+    Number              dt;        ///< [s]
+    Number              time;      ///< at the increment's start, stroke / speed [s]
+    double              stroke;    ///< at the increment's start [mm], fixed by decision
+    double              step;      ///< [mm], fixed by decision
+  };
+
+  template <typename Number>
+  using PathRows = std::vector<PathRow<Number>>;
+
+  /// Derivative in dt of what depends on dt and time: both are strokes over the one speed, so that
+  /// d time = stroke/step d dt.
+  inline double dt_bar(const PathRow<double> &row, const PathRow<double> &row_bar)
+  {
+    return row_bar.dt + row_bar.time * row.stroke / row.step;
+  }
+
+  class PathObjective
+  {
+  public:
+    virtual ~PathObjective() = default;
+
+    virtual std::string name() const = 0;
+    virtual std::string unit() const = 0;
+
+    /// a_i: this rank's part of the sums, to be completed by sum_over_ranks().
+    virtual std::vector<double> integrals(const StageView<double> &view) const = 0;
+    virtual std::vector<Dual>   integrals(const StageView<Dual> &view) const   = 0;
+
+    /// Adds the derivatives of weights·integrals, this rank's part.
+    virtual void reverse_integrals(const StageView<double>   &view,
+                                   const std::vector<double> &weights,
+                                   StageBar                  &bar) const = 0;
+
+    /// @throws Error  when Phi is not defined for these increments (an empty window)
+    virtual double value(const PathRows<double> &rows) const = 0;
+    virtual Dual   value(const PathRows<Dual> &rows) const   = 0;
+
+    /// dPhi/d(a_i, dt_i, t_i) of each increment.
+    virtual PathRows<double> reverse_value(const PathRows<double> &rows) const = 0;
+  };
+
+  /// Completes integrals: sums over the ranks of `comm`, the derivatives of dual numbers included.
+  std::vector<double> sum_over_ranks(std::vector<double> parts, MPI_Comm comm);
+  std::vector<Dual>   sum_over_ranks(std::vector<Dual> parts, MPI_Comm comm);
+
+  PathRow<double>  values_of(const PathRow<Dual> &row);
+  PathRows<double> values_of(const PathRows<Dual> &rows);
+  PathRow<Dual>    constant(const PathRow<double> &row);
+
+  /// A PathObjective made from class T, which has the number of its terms and for any Number
+  ///   static constexpr unsigned int n_terms;
+  ///   std::vector<Number> compute_integrals(const StageView<Number> &) const;
+  ///   std::vector<Number> terms(const PathRow<Number> &, double scale) const;                g
+  ///   Number              combine(const std::vector<Number> &sums, double scale) const;      F
+  /// and, if it needs one,  double scale(const PathRows<double> &) const:  a number that g and F use to avoid
+  /// overflow and on which Phi does not depend; it is not differentiated.
+  template <typename T>
+  class PathObjectiveOf : public PathObjective
+  {
+  public:
+    std::vector<double> integrals(const StageView<double> &view) const override
+    {
+      return self().template compute_integrals<double>(view);
+    }
+
+    std::vector<Dual> integrals(const StageView<Dual> &view) const override
+    {
+      return self().template compute_integrals<Dual>(view);
+    }
+
+    double value(const PathRows<double> &rows) const override { return evaluate(rows, self().scale(rows)); }
+    Dual   value(const PathRows<Dual> &rows) const override
+    {
+      return evaluate(rows, self().scale(values_of(rows)));
+    }
+
+    PathRows<double> reverse_value(const PathRows<double> &rows) const override
+    {
+      const double              scale = self().scale(rows);
+      const std::vector<double> bar   = sums_bar(sum_terms(rows, scale), scale);
+      PathRows<double>          rows_bar;
+      for (const PathRow<double> &row : rows)
+        rows_bar.push_back(row_bar(row, bar, scale));
+      return rows_bar;
+    }
+
+    double scale(const PathRows<double> &) const { return 1.; }
+
+  private:
+    const T &self() const { return static_cast<const T &>(*this); }
+
+    template <typename Number>
+    std::vector<Number> sum_terms(const PathRows<Number> &rows, const double scale) const
+    {
+      std::vector<Number> sums(T::n_terms, Number(0.));
+      for (const PathRow<Number> &row : rows)
+      {
+        const std::vector<Number> terms = self().template terms<Number>(row, scale);
+        for (unsigned int j = 0; j < T::n_terms; ++j)
+          sums[j] += terms[j];
+      }
+      return sums;
+    }
+
+    template <typename Number>
+    Number evaluate(const PathRows<Number> &rows, const double scale) const
+    {
+      return self().template combine<Number>(sum_terms(rows, scale), scale);
+    }
+
+    std::vector<double> sums_bar(const std::vector<double> &sums, const double scale) const
+    {
+      std::vector<double> bar;
+      std::vector<Dual>   at(sums.begin(), sums.end());
+      for (Dual &sum : at)
+      {
+        sum.fastAccessDx(0) = 1.;
+        bar.push_back(self().template combine<Dual>(at, scale).dx(0));
+        sum.fastAccessDx(0) = 0.;
+      }
+      return bar;
+    }
+
+    PathRow<double>
+    row_bar(const PathRow<double> &row, const std::vector<double> &bar, const double scale) const
+    {
+      PathRow<Dual> at         = constant(row);
+      const auto    derivative = [&](Dual &input) {
+        input.fastAccessDx(0)         = 1.;
+        const std::vector<Dual> terms = self().template terms<Dual>(at, scale);
+        input.fastAccessDx(0)         = 0.;
+        double sum                    = 0.;
+        for (unsigned int j = 0; j < T::n_terms; ++j)
+          sum += bar[j] * terms[j].dx(0);
+        return sum;
+      };
+      PathRow<double> result{{}, derivative(at.dt), derivative(at.time), row.stroke, row.step};
+      for (Dual &integral : at.integrals)
+        result.integrals.push_back(derivative(integral));
+      return result;
+    }
+  };
+} // namespace retroforge

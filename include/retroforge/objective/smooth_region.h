@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/contact/contact.h>
+#include <retroforge/objective/box.h>
+
+namespace retroforge
+{
+  /// A weight that is 1 in a box and falls smoothly to 0 within `width` [mm] around it, so that what enters
+  /// the box changes nothing suddenly:  prod_i w(low_i - x_i) w(x_i - high_i),  w the smooth FrictionRamp.
+  struct SmoothRegion
+  {
+    Box    box;
+    double width;
+
+    /// @throws Error
+    void check(const std::string &where) const;
+
+    template <typename Number>
+    Number operator()(const Vector3<Number> &x) const;
+
+    /// Gradient in x.
+    Vec3 gradient(const Vec3 &x) const;
+  };
+} // namespace retroforge

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/objective/final_objective.h>
+#include <retroforge/objective/smooth_maximum.h>
+
+/// How much, how evenly and how locally the workpiece was deformed: statistics of the accumulated equivalent
+/// strain q_N over the final volume, each cell weighted with its volume at X_N. Dimensionless.
+namespace retroforge
+{
+  enum class StrainStatistic
+  {
+    mean,     ///< int q / V
+    variance, ///< int (q - mean)^2 / V; its square root has no derivative where all is even
+    maximum   ///< smooth
+  };
+
+  class StrainObjective : public FinalObjectiveOf<StrainObjective>
+  {
+  public:
+    /// @param smooth  of the maximum, and else ignored
+    explicit StrainObjective(StrainStatistic statistic, const SmoothMaximum &smooth = {});
+
+    std::string name() const override;
+    std::string unit() const override { return "none"; }
+
+    /// The reference to which strains are taken: the mean for mean and variance (what is small would else be
+    /// a difference of large numbers), the true maximum for the maximum. Phi does not depend on it; frozen.
+    void decide(const FinalView<double> &view) override;
+
+    double true_maximum() const { return reference_; }
+
+    void reverse_integrals(const FinalView<double>   &view,
+                           const std::vector<double> &weights,
+                           FinalBar                  &bar) const override;
+
+    template <typename Number>
+    std::vector<Number> compute_integrals(const FinalView<Number> &view) const;
+    template <typename Number>
+    Number combine(const std::vector<Number> &integrals) const;
+
+  private:
+    /// What of a cell's strain is integrated: two functions and their slopes.
+    template <typename Number>
+    std::array<Number, 2> integrands(const Number &q) const;
+    std::array<double, 2> slopes(double q) const;
+
+    StrainStatistic statistic_;
+    SmoothMaximum   smooth_;
+    double          reference_ = 0.;
+  };
+} // namespace retroforge

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/objective/target_surface.h>
+#include <retroforge/objective/workpiece_surface.h>
+
+namespace retroforge
+{
+  /// Where the material should be: within a closed surface (the shape desired, normals outwards), or in front
+  /// of a die's face.
+  enum class Cavity
+  {
+    within,
+    in_front
+  };
+
+  /// Volume of a cavity that the workpiece does not reach [mm^3], by samples on a grid:
+  ///   sum_g dV H(c_g) H(u_g),   H(x) = 1 - w(x + l/2),
+  /// c_g the depth of sample g in the cavity, u_g its distance from the workpiece, both > 0 where it counts,
+  /// and H a step smoothed over the layer l (w the smooth FrictionRamp of width l). Symmetric about the
+  /// surfaces, so the layer's error is of second order in it, and a plane has none but that of the grid.
+  ///
+  /// Unlike the double projection it is a volume also where both surfaces are far apart. Samples lie in the
+  /// target's region, whose sides cut sharply, or around the whole target if it has none. The surface of the
+  /// workpiece is open at symmetry planes: the region should end there.
+  /// Frozen: the samples, those that count, and their closest features.
+  class UnfilledVolume : public FinalObjectiveOf<UnfilledVolume>
+  {
+  public:
+    /// @param n_samples  along the longest edge of the grid
+    /// @param layer      l, in spacings of the samples: at least 1, or they would jump
+    /// @throws Error
+    UnfilledVolume(TargetSurface target, Cavity cavity, unsigned int n_samples, double layer = 2.);
+
+    std::string name() const override { return "unfilled volume"; }
+    std::string unit() const override { return "mm^3"; }
+
+    /// @throws Error  when the workpiece's surface is folded onto itself
+    void decide(const FinalView<double> &view) override;
+
+    void reverse_integrals(const FinalView<double>   &view,
+                           const std::vector<double> &weights,
+                           FinalBar                  &bar) const override;
+
+    template <typename Number>
+    std::vector<Number> compute_integrals(const FinalView<Number> &view) const;
+
+    template <typename Number>
+    Number combine(const std::vector<Number> &integrals) const
+    {
+      return integrals[0];
+    }
+
+  private:
+    struct Sample
+    {
+      Vec3       x;
+      DieFeature target, workpiece; ///< a target of none: deep in a cavity within
+    };
+
+    void   lay_grid(const FinalView<double> &view);
+    double sign() const { return cavity_ == Cavity::within ? -1. : 1.; }
+
+    template <typename Number>
+    Number step(const Number &x) const;
+    double slope(double x) const;
+
+    TargetSurface               target_;
+    Cavity                      cavity_;
+    unsigned int                n_samples_;
+    double                      layer_, width_ = 0.; ///< in spacings, and l [mm]
+    std::array<unsigned int, 3> n_ = {};
+    Vec3                        origin_, spacing_;
+    WorkpieceSurface            workpiece_;
+    std::vector<Sample>         samples_;
+  };
+} // namespace retroforge

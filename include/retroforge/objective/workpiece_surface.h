@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/objective/final_objective.h>
+
+#include <memory>
+
+namespace retroforge
+{
+  /// The surface of the workpiece, symmetry planes left out, as a TriangleSurface whose normals point
+  /// outwards. Who is next to whom, and the rounding at edges, stay as they were when it was made.
+  class WorkpieceSurface
+  {
+  public:
+    WorkpieceSurface() = default;
+
+    /// @throws Error  when the surface is folded onto itself (see TriangleSurface)
+    explicit WorkpieceSurface(const FinalView<double> &view);
+
+    const TriangleSurface &shape() const { return *shape_; }
+
+    /// Where its vertices are.
+    template <typename Number>
+    NodalVectors<Number> vertices(const FinalView<Number> &view) const
+    {
+      NodalVectors<Number> x;
+      for (const NodeIndex k : nodes_)
+        x.push_back(view.X[k]);
+      return x;
+    }
+
+    /// The shape with its vertices there.
+    TriangleSurface moved(const FinalView<double> &view) const;
+
+    /// Adds derivatives in its vertices to those in the nodes.
+    void add(const NodalVectors<double> &vertices_bar, FinalBar &bar) const;
+
+  private:
+    std::vector<NodeIndex>                 nodes_; ///< of each vertex
+    std::shared_ptr<const TriangleSurface> shape_;
+  };
+
+  /// Entries that this rank works on, of n known to all: begin and end.
+  std::pair<std::size_t, std::size_t> share_of_rank(std::size_t n, MPI_Comm comm);
+} // namespace retroforge

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/objective/contact_pullback.h>
+
+namespace retroforge
+{
+  ContactPullback::ContactPullback(const StageView<double> &view, StageBar &bar) : view_(view), bar_(bar)
+  {
+    areas_bar_.S.assign(view.stage.contact.pairs.size(), 0.);
+    areas_bar_.Sf.assign(view.stage.contact.pairs.size(), 0.);
+  }
+
+  void ContactPullback::add(const unsigned int p, const ContactNodeBar &node_bar)
+  {
+    const ContactPair  &pair = view_.stage.contact.pairs[p];
+    ContactSensitivity &law  = bar_.physics.contact;
+    DieState<double>   &die  = law.dies[pair.die];
+    bar_.W.V[pair.node] += node_bar.u;
+    die.velocity -= node_bar.u;
+    die.friction += node_bar.alpha;
+    areas_bar_.S[p] += node_bar.S;
+    areas_bar_.Sf[p] += node_bar.Sf;
+    bar_.contact.delta[p] += node_bar.delta;
+    bar_.contact.n[p] += node_bar.n;
+    law.tau += node_bar.tau;
+    law.K += node_bar.K;
+    law.m += node_bar.m;
+    law.rho += node_bar.rho;
+    law.v0 += node_bar.v0;
+  }
+
+  void ContactPullback::add_excess(const unsigned int p, const ContactNode<double> &node, const double h_bar)
+  {
+    const double   s = node.layer == 0. ? 0. : node.delta / node.layer;
+    ContactNodeBar node_bar;
+    node_bar.u     = h_bar * node.n;
+    node_bar.n     = h_bar * node.u;
+    node_bar.delta = -h_bar / (node.tau * std::sqrt(1. + s * s));
+    node_bar.tau   = h_bar * approach_speed(node.delta, node.tau, node.layer) / node.tau;
+    add(p, node_bar);
+  }
+
+  void ContactPullback::finish()
+  {
+    const Stage<double> &stage = view_.stage;
+    reverse_contact_areas(
+      stage.scene.mesh, stage.scene.topology, stage.contact, stage.X, areas_bar_, bar_.X, bar_.contact);
+  }
+} // namespace retroforge

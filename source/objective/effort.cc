@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/objective/contact_pullback.h>
+#include <retroforge/objective/effort.h>
+#include <retroforge/objective/energy.h>
+
+namespace retroforge
+{
+  namespace
+  {
+    template <typename Number>
+    Number speed(const StageView<Number> &view, const unsigned int die)
+    {
+      using std::sqrt;
+      const Vector3<Number> &v  = view.stage.physics.dies[die].velocity;
+      const Number           v2 = v * v;
+      if (value_of(v2) == 0.)
+        throw Error("Effort",
+                    "die " + view.stage.scene.dies[die].name + " stands still",
+                    "effort is power over the speed of a die that moves",
+                    "name the die that does");
+      return sqrt(v2);
+    }
+
+    template <typename Number>
+    Number total_power(const StageView<Number> &view)
+    {
+      const auto [deformation, friction] = view.stage.power(view.W, view.active);
+      return deformation + friction;
+    }
+
+    /// f·v_die, f the die's force on the workpiece [mJ/s].
+    template <typename Number>
+    Number power_of_die(const StageView<Number> &view, const unsigned int die)
+    {
+      const Stage<Number> &stage = view.stage;
+      Number               power(0.);
+      for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
+        if (stage.contact.pairs[p].die == die && stage.scene.partition.owns(stage.contact.pairs[p].node))
+          power -= contact_force(
+                     stage.contact_node(p, view.W, view.active), stage.physics.law, stage.physics.contact) *
+                   stage.physics.dies[die].velocity;
+      return power;
+    }
+
+    void reverse_power_of_die(const StageView<double> &view,
+                              const unsigned int       die,
+                              const double             weight,
+                              StageBar                &bar)
+    {
+      const Stage<double> &stage = view.stage;
+      const Vec3          &v     = stage.physics.dies[die].velocity;
+      ContactPullback      pullback(view, bar);
+      for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
+        if (stage.contact.pairs[p].die == die && stage.scene.partition.owns(stage.contact.pairs[p].node))
+        {
+          const ContactNode<double> node = stage.contact_node(p, view.W, view.active);
+          pullback.add(p, reverse_contact_force(node, stage.physics.law, stage.physics.contact, -weight * v));
+          bar.physics.contact.dies[die].velocity -=
+            weight * contact_force(node, stage.physics.law, stage.physics.contact);
+        }
+      pullback.finish();
+    }
+
+    template <typename Number>
+    void check_length(const Number &length)
+    {
+      if (value_of(length) == 0.)
+        throw Error("Effort",
+                    "no increment lies in the window",
+                    "the window must overlap the run",
+                    "let it end with the stroke, or after it began");
+    }
+  } // namespace
+
+  void PathWindow::check(const std::string &where) const
+  {
+    if (!(begin < end))
+      throw Error(where,
+                  "the window goes from " + std::to_string(begin) + " to " + std::to_string(end),
+                  "it must end after it begins",
+                  "swap the two, or leave the end away");
+  }
+
+  template <typename Number>
+  Number PathWindow::overlap(const PathRow<Number> &row) const
+  {
+    const Number from = over == Over::time ? row.time : Number(row.stroke);
+    const Number to   = over == Over::time ? Number(row.time + row.dt) : Number(row.stroke + row.step);
+    const Number low  = value_of(from) < begin ? Number(begin) : from;
+    const Number high = value_of(to) > end ? Number(end) : to;
+    return value_of(high) > value_of(low) ? Number(high - low) : Number(0.);
+  }
+
+  template <typename Number>
+  Number Effort::operator()(const StageView<Number> &view) const
+  {
+    return (by_ == By::power ? total_power(view) : power_of_die(view, die_)) / speed(view, die_);
+  }
+
+  void Effort::reverse(const StageView<double> &view, const double weight, StageBar &bar) const
+  {
+    const double v = speed(view, die_);
+    if (by_ == By::power)
+      reverse_powers(view, weight / v, weight / v, bar);
+    else
+      reverse_power_of_die(view, die_, weight / v, bar);
+    bar.physics.contact.dies[die_].velocity -=
+      weight * (*this)(view) / (v * v) * view.stage.physics.dies[die_].velocity;
+  }
+
+  MeanEffort::MeanEffort(const Effort &effort, const PathWindow &window) : effort_(effort), window_(window)
+  {
+    window.check("Mean effort");
+  }
+
+  void MeanEffort::reverse_integrals(const StageView<double>   &view,
+                                     const std::vector<double> &weights,
+                                     StageBar                  &bar) const
+  {
+    effort_.reverse(view, weights[0], bar);
+  }
+
+  template <typename Number>
+  std::vector<Number> MeanEffort::compute_integrals(const StageView<Number> &view) const
+  {
+    return {effort_(view)};
+  }
+
+  template <typename Number>
+  std::vector<Number> MeanEffort::terms(const PathRow<Number> &row, double) const
+  {
+    const Number length = window_.overlap(row);
+    return {Number(row.integrals[0] * length), length};
+  }
+
+  template <typename Number>
+  Number MeanEffort::combine(const std::vector<Number> &sums, double) const
+  {
+    check_length(sums[1]);
+    return sums[0] / sums[1];
+  }
+
+  MaximumEffort::MaximumEffort(const Effort &effort, const PathWindow &window, const SmoothMaximum &maximum)
+      : effort_(effort), window_(window), maximum_(maximum)
+  {
+    window.check("Maximum effort");
+    maximum.check("Maximum effort");
+  }
+
+  double MaximumEffort::true_maximum(const PathRows<double> &rows) const
+  {
+    bool   found   = false;
+    double largest = 0.;
+    for (const PathRow<double> &row : rows)
+      if (window_.overlap(row) > 0.)
+      {
+        largest = found ? std::max(largest, row.integrals[0]) : row.integrals[0];
+        found   = true;
+      }
+    return largest;
+  }
+
+  void MaximumEffort::reverse_integrals(const StageView<double>   &view,
+                                        const std::vector<double> &weights,
+                                        StageBar                  &bar) const
+  {
+    effort_.reverse(view, weights[0], bar);
+  }
+
+  template <typename Number>
+  std::vector<Number> MaximumEffort::compute_integrals(const StageView<Number> &view) const
+  {
+    return {effort_(view)};
+  }
+
+  template <typename Number>
+  std::vector<Number> MaximumEffort::terms(const PathRow<Number> &row, const double scale) const
+  {
+    const Number length = window_.overlap(row);
+    if (value_of(length) == 0.)
+      return {Number(0.), Number(0.)}; // outside, an effort above the scale must not overflow
+    return {maximum_.term(row.integrals[0], length, scale), length};
+  }
+
+  template <typename Number>
+  Number MaximumEffort::combine(const std::vector<Number> &sums, const double scale) const
+  {
+    check_length(sums[1]);
+    return maximum_.combine(sums[0], sums[1], scale);
+  }
+
+#define RETROFORGE_INSTANTIATE(Number)                                                            \
+  template Number PathWindow::overlap(const PathRow<Number> &) const;                             \
+  template Number Effort::     operator()(const StageView<Number> &) const;                       \
+  template std::vector<Number> MeanEffort::compute_integrals(const StageView<Number> &) const;    \
+  template std::vector<Number> MeanEffort::terms(const PathRow<Number> &, double) const;          \
+  template Number              MeanEffort::combine(const std::vector<Number> &, double) const;    \
+  template std::vector<Number> MaximumEffort::compute_integrals(const StageView<Number> &) const; \
+  template std::vector<Number> MaximumEffort::terms(const PathRow<Number> &, double) const;       \
+  template Number              MaximumEffort::combine(const std::vector<Number> &, double) const;
+  RETROFORGE_INSTANTIATE(double)
+  RETROFORGE_INSTANTIATE(Dual)
+#undef RETROFORGE_INSTANTIATE
+} // namespace retroforge

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/objective/filling.h>
+#include <retroforge/objective/surface_areas.h>
+
+namespace retroforge
+{
+  FillingObjective::FillingObjective(TargetSurface target, const double rounding)
+      : target_(std::move(target)), rounding_(rounding)
+  {
+    if (!(rounding >= 0.))
+      throw Error("Filling",
+                  "the rounding of distances is " + std::to_string(rounding) + " mm",
+                  "it must not be negative",
+                  "use 0, or a thousandth of an element's edge");
+  }
+
+  void FillingObjective::decide(const FinalView<double> &view)
+  {
+    decisions_              = {};
+    decisions_.by_workpiece = target_.seen_by_workpiece(view);
+    decisions_.workpiece    = WorkpieceSurface(view);
+    const ClosestFeature       closest(decisions_.workpiece.shape());
+    const NodalVectors<double> vertices = target_.vertices(view);
+    for (unsigned int l = 0; l < vertices.size(); ++l)
+    {
+      const Vec3 x = vertices[l] + target_.displacement(view);
+      if (target_.region() && !is_inside(*target_.region(), x))
+        continue;
+      if (const DieFeature feature = closest(x); feature.found())
+        decisions_.by_target.push_back({l, feature});
+    }
+  }
+
+  template <typename Number>
+  Number FillingObjective::rounded(const Number &delta) const
+  {
+    using std::sqrt;
+    if (rounding_ == 0.)
+      return value_of(delta) > 0. ? delta : value_of(delta) < 0. ? Number(-delta) : Number(0.);
+    return sqrt(Number(delta * delta + rounding_ * rounding_)) - rounding_;
+  }
+
+  double FillingObjective::slope(const double delta) const
+  {
+    if (rounding_ == 0.)
+      return delta > 0. ? 1. : delta < 0. ? -1. : 0.;
+    return delta / std::sqrt(delta * delta + rounding_ * rounding_);
+  }
+
+  template <typename Number>
+  std::vector<Number> FillingObjective::compute_integrals(const FinalView<Number> &view) const
+  {
+    std::vector<Number> sums(2, Number(0.));
+    const auto          S = lumped_areas(surface_triangles(view.scene.mesh), view.X);
+    for (const SeenFeature &seen : decisions_.by_workpiece)
+      if (view.scene.partition.owns(seen.point))
+        sums[0] += rounded(target_.distance(view, view.X[seen.point], seen.feature)) * S[seen.point];
+    const auto vertices     = target_.vertices(view);
+    const auto workpiece    = decisions_.workpiece.vertices(view);
+    const auto S_target     = lumped_areas(target_.shape().triangles(), vertices);
+    const auto [begin, end] = share_of_rank(decisions_.by_target.size(), view.scene.partition.comm);
+    for (std::size_t l = begin; l < end; ++l)
+    {
+      const SeenFeature    &seen = decisions_.by_target[l];
+      const Vector3<Number> x    = vertices[seen.point] + target_.displacement(view);
+      const auto            projection =
+        project_on_feature(decisions_.workpiece.shape(), workpiece, seen.feature, x, Vector3<Number>());
+      sums[1] += rounded(projection.delta) * S_target[seen.point];
+    }
+    return sums;
+  }
+
+  void FillingObjective::reverse_by_workpiece(const FinalView<double> &view,
+                                              const double             weight,
+                                              FinalBar                &bar) const
+  {
+    const auto            triangles = surface_triangles(view.scene.mesh);
+    const auto            S         = lumped_areas(triangles, view.X);
+    const TriangleSurface moved     = target_.moved(view);
+    std::vector<double>   S_bar(S.size(), 0.);
+    for (const SeenFeature &seen : decisions_.by_workpiece)
+      if (view.scene.partition.owns(seen.point))
+      {
+        const double delta = target_.distance(view, view.X[seen.point], seen.feature);
+        S_bar[seen.point] += weight * rounded(delta);
+        target_.reverse_distance(view,
+                                 moved,
+                                 view.X[seen.point],
+                                 seen.feature,
+                                 weight * slope(delta) * S[seen.point],
+                                 bar.X[seen.point],
+                                 bar);
+      }
+    reverse_lumped_areas(triangles, view.X, S_bar, bar.X);
+  }
+
+  void
+  FillingObjective::reverse_by_target(const FinalView<double> &view, const double weight, FinalBar &bar) const
+  {
+    const auto            vertices  = target_.vertices(view);
+    const auto            S         = lumped_areas(target_.shape().triangles(), vertices);
+    const TriangleSurface workpiece = decisions_.workpiece.moved(view);
+    NodalVectors<double>  workpiece_bar(workpiece.vertices().size()), vertices_bar(vertices.size());
+    std::vector<double>   S_bar(S.size(), 0.);
+    const auto [begin, end] = share_of_rank(decisions_.by_target.size(), view.scene.partition.comm);
+    for (std::size_t l = begin; l < end; ++l)
+    {
+      const SeenFeature &seen = decisions_.by_target[l];
+      const Vec3         x    = vertices[seen.point] + target_.displacement(view);
+      const double delta = project_on_feature(workpiece, workpiece.vertices(), seen.feature, x, Vec3()).delta;
+      Vec3         x_bar, unused;
+      reverse_project_on_feature(workpiece,
+                                 seen.feature,
+                                 x,
+                                 Vec3(),
+                                 weight * slope(delta) * S[seen.point],
+                                 Vec3(),
+                                 x_bar,
+                                 unused,
+                                 &workpiece_bar);
+      S_bar[seen.point] += weight * rounded(delta);
+      vertices_bar[seen.point] += x_bar;
+      target_.add_displacement_bar(x_bar, bar);
+    }
+    decisions_.workpiece.add(workpiece_bar, bar);
+    if (bar.target.size() != vertices.size())
+      return;
+    reverse_lumped_areas(target_.shape().triangles(), vertices, S_bar, vertices_bar);
+    for (std::size_t v = 0; v < vertices.size(); ++v)
+      bar.target[v] += vertices_bar[v];
+  }
+
+  void FillingObjective::reverse_integrals(const FinalView<double>   &view,
+                                           const std::vector<double> &weights,
+                                           FinalBar                  &bar) const
+  {
+    reverse_by_workpiece(view, weights[0], bar);
+    reverse_by_target(view, weights[1], bar);
+  }
+
+  template std::vector<double> FillingObjective::compute_integrals(const FinalView<double> &) const;
+  template std::vector<Dual>   FillingObjective::compute_integrals(const FinalView<Dual> &) const;
+} // namespace retroforge

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/objective/strain_statistics.h>
+#include <retroforge/objective/volume.h>
+
+#include <algorithm>
+
+namespace retroforge
+{
+  StrainObjective::StrainObjective(const StrainStatistic statistic, const SmoothMaximum &smooth)
+      : statistic_(statistic), smooth_(smooth)
+  {
+    if (statistic == StrainStatistic::maximum)
+      smooth.check("Maximum strain");
+  }
+
+  std::string StrainObjective::name() const
+  {
+    switch (statistic_)
+    {
+      case StrainStatistic::mean:
+        return "mean strain";
+      case StrainStatistic::variance:
+        return "strain variance";
+      default:
+        return "maximum strain";
+    }
+  }
+
+  void StrainObjective::decide(const FinalView<double> &view)
+  {
+    // Over all cells on every rank: the same bits everywhere.
+    if (statistic_ == StrainStatistic::maximum)
+    {
+      reference_ = view.q.empty() ? 0. : *std::max_element(view.q.begin(), view.q.end());
+      return;
+    }
+    double strain = 0., volume = 0.;
+    for (CellIndex c = 0; c < view.scene.mesh.n_cells(); ++c)
+    {
+      strain += cell_volume(view, c) * view.q[c];
+      volume += cell_volume(view, c);
+    }
+    reference_ = strain / volume;
+  }
+
+  template <typename Number>
+  std::array<Number, 2> StrainObjective::integrands(const Number &q) const
+  {
+    if (statistic_ == StrainStatistic::maximum)
+      return {{smooth_.term(q, Number(1.), reference_), Number(0.)}};
+    const Number x = q - reference_;
+    return {{x, Number(x * x)}};
+  }
+
+  std::array<double, 2> StrainObjective::slopes(const double q) const
+  {
+    if (statistic_ == StrainStatistic::maximum)
+      return {{smooth_.slope(q, reference_), 0.}};
+    return {{1., 2. * (q - reference_)}};
+  }
+
+  template <typename Number>
+  std::vector<Number> StrainObjective::compute_integrals(const FinalView<Number> &view) const
+  {
+    const Partition    &partition = view.scene.partition;
+    std::vector<Number> sums(3, Number(0.));
+    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+    {
+      const Number volume = cell_volume(view, c);
+      const auto   f      = integrands(view.q[c]);
+      sums[0] += volume;
+      sums[1] += volume * f[0];
+      sums[2] += volume * f[1];
+    }
+    return sums;
+  }
+
+  template <typename Number>
+  Number StrainObjective::combine(const std::vector<Number> &b) const
+  {
+    if (statistic_ == StrainStatistic::maximum)
+      return smooth_.combine(b[1], b[0], reference_);
+    const Number mean = b[1] / b[0];
+    return statistic_ == StrainStatistic::mean ? Number(reference_ + mean)
+                                               : Number(b[2] / b[0] - mean * mean);
+  }
+
+  void StrainObjective::reverse_integrals(const FinalView<double>   &view,
+                                          const std::vector<double> &weights,
+                                          FinalBar                  &bar) const
+  {
+    const Partition &partition = view.scene.partition;
+    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+    {
+      const auto f = integrands(view.q[c]), slope = slopes(view.q[c]);
+      reverse_cell_volume(view, c, weights[0] + weights[1] * f[0] + weights[2] * f[1], bar.X);
+      bar.q[c] += cell_volume(view, c) * (weights[1] * slope[0] + weights[2] * slope[1]);
+    }
+  }
+
+#define RETROFORGE_INSTANTIATE(Number)                                                              \
+  template std::vector<Number> StrainObjective::compute_integrals(const FinalView<Number> &) const; \
+  template Number              StrainObjective::combine(const std::vector<Number> &) const;
+  RETROFORGE_INSTANTIATE(double)
+  RETROFORGE_INSTANTIATE(Dual)
+#undef RETROFORGE_INSTANTIATE
+} // namespace retroforge

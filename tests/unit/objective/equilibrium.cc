@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// Objectives on solved increments: a block with friction, m = 0.3, upset between flat dies.
+// - The energy is the one that the run itself counts.
+// - The mean effort, power over die speed, is the mean of the die's reaction, up to what the penalty lets the
+//   die sink in: ten times the penetration, ten times the difference. That ratio is the test.
+
+#include <deal.II/base/mpi.h>
+
+#include <retroforge/objective/effort.h>
+#include <retroforge/objective/energy.h>
+
+#include "../adjoint/recorded_run.h"
+#include "objective_test_tools.h"
+
+using namespace retroforge;
+
+Parameters flat_dies(const double penetration)
+{
+  Parameters p;
+  p.billet.size         = Vec3({30, 30, 30});
+  p.billet.element_size = 14;
+  p.dies                = {DieParameters("lower"), DieParameters("upper")};
+  p.dies[0].facing      = Vec3({0, 0, 1});
+  p.dies[1].point       = Vec3({0, 0, 30});
+  p.dies[1].facing      = Vec3({0, 0, -1});
+  p.dies[1].velocity    = Vec3({0, 0, -100});
+  for (DieParameters &die : p.dies)
+    die.friction = 0.4;
+  p.material.sensitivity         = 0.3;
+  p.material.minimal_strain_rate = 0.01;
+  p.press.stroke                 = 3.;
+  p.press.increments             = 4;
+  p.contact.penetration          = penetration;
+  p.newton.tolerance             = 1e-12;
+  p.linear_solver.method         = "direct";
+  return p;
+}
+
+/// The run's increments as an objective sees them.
+PathRows<double> rows(const RecordedRun &run, const PathObjective &objective)
+{
+  PathRows<double>     rows;
+  NodalVectors<double> X = run.scene.mesh.X;
+  for (const IncrementRecord &record : run.records)
+  {
+    const Physics<double>      physics = run.process.at_stroke(record.stroke);
+    const double               speed = run.process.speed(), dt = record.step / speed;
+    const NodalVectors<double> position = run.leg->increment.stage_positions(run.process, X, record);
+    const Field<double>        W        = run.leg->increment.last_field(run.process, X, record);
+    const auto                 contact  = make_contact_set(run.scene.mesh,
+                                          run.scene.topology,
+                                          run.scene.dies,
+                                          physics.dies,
+                                          record.pairs,
+                                          run.model.step.ramp,
+                                          run.model.step.approach * dt,
+                                          X,
+                                          run.model.step.layer);
+    const Stage<double>        stage(run.scene, physics, contact, position);
+    rows.push_back(
+      {sum_over_ranks(objective.integrals({stage, W, record.solves.back().active}), MPI_COMM_WORLD),
+       dt,
+       record.stroke / speed,
+       record.stroke,
+       record.step});
+    X = run.leg->increment.advance(run.process, X, record);
+  }
+  return rows;
+}
+
+/// Relative difference of the two mean efforts over the last two thirds of the stroke.
+double difference(const double penetration)
+{
+  const RecordedRun     run(flat_dies(penetration));
+  const EnergyObjective energy;
+  const auto            energy_rows  = rows(run, energy);
+  const auto [deformation, friction] = EnergyObjective::split(energy_rows);
+  Errors errors;
+  errors.compare("deformation energy", deformation, run.forged.energy.deformation);
+  errors.compare("friction energy", friction, run.forged.energy.friction);
+  errors.compare("energy", energy.value(energy_rows), run.forged.energy.total());
+  std::cout << "penetration " << penetration << std::endl;
+  errors.print(1e-12);
+  const unsigned int upper = run.process.leading_die;
+  const PathWindow   window{PathWindow::Over::stroke, 1., 3.};
+  const MeanEffort   by_power(Effort(upper), window), by_force(Effort(upper, Effort::By::force), window);
+  const double       power = by_power.value(rows(run, by_power)), force = by_force.value(rows(run, by_force));
+  return force / power - 1.;
+}
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const double                             soft = difference(1e-3), hard = difference(1e-4);
+  std::cout << "die's reaction against power over speed" << std::endl
+            << "  within 1e-4 and 1e-5: " << (std::abs(soft) < 1e-4 && std::abs(hard) < 1e-5 ? "yes" : "NO")
+            << std::endl
+            << "  ratio between 9.5 and 10.5: " << (soft / hard > 9.5 && soft / hard < 10.5 ? "yes" : "NO")
+            << std::endl
+            << "FIGURE effort_against_reaction " << std::abs(hard) << std::endl;
+}

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// Objectives of the final shape and strain.
+// - By hand: a box of 2 x 3 x 4 has the volume 24; strain 0.3 everywhere has the mean 0.3, no variance and
+//   the maximum 0.3; strain 0.2 on part of the cells and 0.7 on the rest, of volume fraction f, has mean 0.2
+//   + 0.5 f and variance 0.25 f (1 - f). A cube of edge 1 within a target that is larger by d all round:
+//   every surface node is d away, every corner of the target sqrt(3) d, so the two projections give 6 d and
+//   sqrt(3) d 6 (1 + 2d)^2 and the mean square is d^2; it vanishes on the cube itself. Side faces of a
+//   cylinder of radius 5 stretched by 1.2: radius 6, no variance.
+// - The reverse against dual numbers in positions, strains, displacements of the dies and vertices of the
+//   target, each alone, and the Taylor order along all, the closest features kept: under an open, wavy die
+//   that follows its displacement and inside a closed, bumpy surface.
+
+#include <deal.II/base/mpi.h>
+
+#include <retroforge/core/error.h>
+#include <retroforge/mesh/billet.h>
+#include <retroforge/objective/filling.h>
+#include <retroforge/objective/path_objective.h>
+#include <retroforge/objective/shape_distance.h>
+#include <retroforge/objective/strain_statistics.h>
+#include <retroforge/objective/unfilled_volume.h>
+#include <retroforge/objective/volume.h>
+
+#include "../geometry/geometry_test_tools.h"
+#include "objective_test_tools.h"
+
+using namespace retroforge;
+
+/// All that a final objective's value depends on.
+template <typename Number>
+struct FinalInputs
+{
+  NodalVectors<Number>          X;
+  std::vector<Number>           q;
+  std::vector<DieState<Number>> dies;
+  NodalVectors<Number>          target;
+
+  std::vector<Group<Number>> groups()
+  {
+    std::vector<Group<Number>> groups = {{"X", {}}, {"q", {}}, {"displacement", {}}, {"target", {}}};
+    append(X, groups[0].second);
+    for (Number &value : q)
+      groups[1].second.push_back(&value);
+    for (auto &die : dies)
+      for (unsigned int i = 0; i < 3; ++i)
+        groups[2].second.push_back(&die.displacement[i]);
+    append(target, groups[3].second);
+    return groups;
+  }
+};
+
+struct FinalProblem
+{
+  Scene               scene;
+  FinalInputs<double> at;
+
+  FinalProblem(TetMesh mesh, NodalVectors<double> target, MPI_Comm comm = MPI_COMM_WORLD)
+      : scene(std::move(mesh), {Die("lower", Vec3(), Vec3({0., 0., 1.}))}, comm)
+      , at{scene.mesh.X,
+           std::vector<double>(scene.mesh.n_cells(), 0.3),
+           {{Vec3(), Vec3(), 0.}},
+           std::move(target)}
+  {
+  }
+
+  template <typename Number>
+  FinalView<Number> view(const FinalInputs<Number> &inputs) const
+  {
+    return {scene, inputs.X, inputs.q, inputs.dies, inputs.target.empty() ? nullptr : &inputs.target};
+  }
+
+  template <typename Number>
+  std::vector<Number> integrals(const FinalObjective &objective, const FinalInputs<Number> &inputs) const
+  {
+    return sum_over_ranks(objective.integrals(view(inputs)), scene.partition.comm);
+  }
+
+  double value(FinalObjective &objective) const
+  {
+    objective.decide(view(at));
+    return objective.value(integrals(objective, at));
+  }
+
+  FinalInputs<double> reverse(const FinalObjective &objective, const FinalInputs<double> &inputs) const
+  {
+    FinalBar bar(scene, inputs.target.size());
+    objective.reverse_integrals(view(inputs), objective.reverse_value(integrals(objective, inputs)), bar);
+    FinalInputs<double> result{bar.X, bar.q, {{Vec3(), bar.displacements[0], 0.}}, bar.target};
+    for (const auto &[name, entries] : result.groups())
+      for (double *entry : entries)
+        *entry = scene.partition.sum(*entry);
+    return result;
+  }
+
+  FinalInputs<Dual> dual_shape() const
+  {
+    return {NodalVectors<Dual>(at.X.size()),
+            std::vector<Dual>(at.q.size(), Dual(0.)),
+            {DieState<Dual>{Vector3<Dual>(), Vector3<Dual>(), Dual(0.)}},
+            NodalVectors<Dual>(at.target.size())};
+  }
+};
+
+TetMesh box(const Vec3 &base, const Vec3 &size, const double element_size, const bool half = false)
+{
+  BilletParameters parameters;
+  parameters.base_centre  = base;
+  parameters.size         = size;
+  parameters.element_size = element_size;
+  if (half)
+    parameters.symmetry_planes = {Vec3({-1., 0., 0.})};
+  return make_billet(parameters, MPI_COMM_WORLD);
+}
+
+std::shared_ptr<TriangleSurface> scaled(const TriangleSurface &shape, const double factor, const Vec3 &shift)
+{
+  NodalVectors<double> x = shape.vertices();
+  for (Vec3 &vertex : x)
+    vertex = factor * vertex + shift;
+  return std::make_shared<TriangleSurface>("target", x, shape.triangles());
+}
+
+void check_volume_and_strain(Errors &errors)
+{
+  FinalProblem    problem(box(Vec3(), Vec3({2., 3., 4.}), 1.), {});
+  VolumeObjective volume;
+  StrainObjective mean(StrainStatistic::mean), variance(StrainStatistic::variance);
+  StrainObjective p_norm(StrainStatistic::maximum, {SmoothMaximum::Kind::p_norm, 30.});
+  StrainObjective exponential(StrainStatistic::maximum, {SmoothMaximum::Kind::log_sum_exp, 100.});
+  errors.compare("volume", problem.value(volume), 24.);
+  errors.compare("even strain, mean", problem.value(mean), 0.3);
+  errors.compare("even strain, variance", problem.value(variance), 0.);
+  errors.compare("even strain, p-norm", problem.value(p_norm), 0.3);
+  errors.compare("even strain, log-sum-exp", problem.value(exponential), 0.3);
+  double fraction = 0.;
+  for (CellIndex c = 0; c < problem.scene.mesh.n_cells(); ++c)
+  {
+    problem.at.q[c] = c % 3 ? 0.2 : 0.7;
+    fraction += c % 3 ? 0. : cell_volume(problem.view(problem.at), c) / 24.;
+  }
+  errors.compare("two strains, mean", problem.value(mean), 0.2 + 0.5 * fraction);
+  errors.compare("two strains, variance", problem.value(variance), 0.25 * fraction * (1. - fraction));
+  errors.compare("two strains, p-norm",
+                 problem.value(p_norm),
+                 std::pow(fraction * std::pow(0.7, 30.) + (1. - fraction) * std::pow(0.2, 30.), 1. / 30.));
+  errors.compare("two strains, log-sum-exp",
+                 problem.value(exponential),
+                 std::log(fraction * std::exp(70.) + (1. - fraction) * std::exp(20.)) / 100.);
+  errors.compare("two strains, true maximum", exponential.true_maximum(), 0.7);
+  for (double &q : problem.at.q)
+    q = 0.;
+  errors.compare("no strain, p-norm", problem.value(p_norm), 0.);
+  bool finite = true;
+  for (const double bar : problem.reverse(p_norm, problem.at).q)
+    finite = finite && std::isfinite(bar);
+  std::cout << "  no strain, derivatives finite: " << yes(finite) << std::endl;
+}
+
+void check_shapes(Errors &errors)
+{
+  const double d = 0.07;
+  FinalProblem problem(box(Vec3({0.5, 0.5, 0.}), Vec3({1., 1., 1.}), 0.4), {});
+  const auto   larger = scaled(cube(), 1. + 2. * d, Vec3({-d, -d, -d}));
+  for (const double rounding : {0., 0.02})
+  {
+    FillingObjective filling{TargetSurface(larger), rounding};
+    problem.value(filling);
+    const auto sums    = problem.integrals(filling, problem.at);
+    const auto rounded = [&](const double x) { return std::sqrt(x * x + rounding * rounding) - rounding; };
+    errors.compare("workpiece to target", sums[0], 6. * rounded(d));
+    errors.compare(
+      "target to workpiece", sums[1], rounded(std::sqrt(3.) * d) * 6. * (1. + 2. * d) * (1. + 2. * d));
+  }
+  ShapeDistance    distance{TargetSurface(larger)};
+  FillingObjective full{TargetSurface(scaled(cube(), 1., Vec3()))};
+  ShapeDistance    same{TargetSurface(scaled(cube(), 1., Vec3()))};
+  errors.compare("mean square distance", problem.value(distance), d * d);
+  errors.compare("filled", problem.value(full), 0.);
+  errors.compare("same shape", problem.value(same), 0.);
+}
+
+/// Unfilled volume of a cube of edge 1.5 around one of edge 1, and of the space between a flat die and it.
+void check_unfilled()
+{
+  FinalProblem problem(box(Vec3({0.5, 0.5, 0.}), Vec3({1., 1., 1.}), 0.5), {});
+  const auto   larger = scaled(cube(), 1.5, Vec3({-0.25, -0.25, -0.25}));
+  std::cout << "  unfilled, parts in a thousand off:";
+  for (const unsigned int n : {20u, 40u, 80u})
+  {
+    UnfilledVolume unfilled(TargetSurface(larger), Cavity::within, n);
+    std::cout << ' ' << std::round(1e5 * (problem.value(unfilled) / 2.375 - 1.)) / 100.;
+  }
+  // Half of the scene, its symmetry plane the end of the region.
+  const Box      half_space(Vec3({0., -2., -2.}), Vec3({2., 2., 2.}));
+  FinalProblem   half(box(Vec3({0., 0., -0.5}), Vec3({1., 1., 1.}), 0.5, true), {});
+  const auto     centred = scaled(cube(), 1.5, Vec3({-0.75, -0.75, -0.75}));
+  UnfilledVolume of_half(TargetSurface(centred, invalid_index, half_space), Cavity::within, 80);
+  std::cout << std::endl
+            << "  half of the scene: " << std::round(1e5 * (half.value(of_half) / (0.5 * 2.375) - 1.)) / 100.
+            << std::endl;
+  // A sheet z = 0 facing up, the box above it lifted by 0.3: 0.3 times the region's base.
+  const auto     flat = scaled(sheet(4, [](double, double) { return 0.; }), 2., Vec3());
+  const Box      base(Vec3({-0.4, -0.4, -0.5}), Vec3({0.4, 0.4, 0.5}));
+  FinalProblem   lifted(box(Vec3({0., 0., 0.3}), Vec3({1.6, 1.6, 1.}), 0.5), {});
+  UnfilledVolume above(TargetSurface(flat, 0, base), Cavity::in_front, 50);
+  std::cout << "  above a die: " << std::round(1e5 * (lifted.value(above) / (0.3 * 0.64) - 1.)) / 100.;
+  lifted.at.dies[0].displacement = Vec3({0., 0., 0.1});
+  std::cout << ", nearer: " << std::round(1e5 * (lifted.value(above) / (0.2 * 0.64) - 1.)) / 100.
+            << std::endl;
+}
+
+void check_cylinder(Errors &errors)
+{
+  BilletParameters parameters;
+  parameters.shape        = "cylinder";
+  parameters.radius       = 5.;
+  parameters.height       = 8.;
+  parameters.element_size = 3.;
+  FinalProblem     problem(make_billet(parameters, MPI_COMM_WORLD), {});
+  CylinderDistance distance({"side"}, Vec3({0., 0., 3.}), Vec3({0., 0., 2.}));
+  for (Vec3 &x : problem.at.X)
+    x = Vec3({1.2 * x[0], 1.2 * x[1], x[2]});
+  errors.compare("cylinder", problem.value(distance), 0.);
+  errors.compare("radius", distance.radius(problem.integrals(distance, problem.at)), 6.);
+  const double change = 0.1;
+  for (Vec3 &x : problem.at.X)
+    x *= 1. + change;
+  errors.compare("larger cylinder", problem.value(distance), 0.);
+  errors.compare("larger radius", distance.radius(problem.integrals(distance, problem.at)), 6.6);
+}
+
+double check_all_derivatives()
+{
+  Random     random;
+  double     worst = 0.;
+  const auto check = [&](const std::string &name, FinalObjective &objective, const FinalProblem &problem) {
+    problem.value(objective);
+    const auto evaluate = [&](const auto &inputs) {
+      return objective.value(problem.integrals(objective, inputs));
+    };
+    const auto reverse = [&](const auto &inputs) { return problem.reverse(objective, inputs); };
+    worst              = std::max(
+      worst,
+      check_derivatives<FinalInputs>(name, problem.at, evaluate, reverse, problem.dual_shape(), random));
+  };
+  const auto shake = [&](FinalProblem &problem) {
+    for (Vec3 &x : problem.at.X)
+      x += 0.03 * random.vector();
+    for (double &q : problem.at.q)
+      q = 0.5 + 0.4 * random.scalar();
+  };
+  const auto wave = [](const double x, const double y) {
+    return 0.1 + 0.1 * std::sin(4. * x) * std::cos(3. * y);
+  };
+  const auto die   = scaled(sheet(9, wave), 1.5, Vec3());
+  const auto bumpy = scaled(bumpy_sphere(2), 1.1, Vec3());
+
+  FinalProblem under_die(box(Vec3({0., 0., 0.2}), Vec3({1.6, 1.4, 1.}), 0.4, true), die->vertices());
+  FinalProblem inside(box(Vec3({0., 0., -0.6}), Vec3({1.2, 1.2, 1.2}), 0.4), bumpy->vertices());
+  shake(under_die);
+  shake(inside);
+  under_die.at.dies[0].displacement = Vec3({0.02, -0.01, -0.05});
+
+  VolumeObjective  volume;
+  StrainObjective  mean(StrainStatistic::mean), variance(StrainStatistic::variance);
+  StrainObjective  p_norm(StrainStatistic::maximum, {SmoothMaximum::Kind::p_norm, 15.});
+  StrainObjective  exponential(StrainStatistic::maximum, {SmoothMaximum::Kind::log_sum_exp, 30.});
+  const Box        low(Vec3({-1., -1., -1.}), Vec3({1., 1., 0.6}));
+  FillingObjective die_filling(TargetSurface(die, 0, low)), closed_filling{TargetSurface(bumpy), 1e-2};
+  ShapeDistance    die_distance(TargetSurface(die, 0, low)), closed_distance{TargetSurface(bumpy)};
+  UnfilledVolume   die_unfilled(TargetSurface(die, 0, low), Cavity::in_front, 30, 4.);
+  UnfilledVolume   closed_unfilled(TargetSurface(bumpy), Cavity::within, 24, 4.);
+  CylinderDistance side({"side +x", "side +y"}, Vec3({-3., 0., 0.}), Vec3({0.1, 0.2, 1.}));
+  check("volume", volume, inside);
+  check("mean strain", mean, inside);
+  check("variance of the strain", variance, inside);
+  check("maximum strain, p-norm", p_norm, inside);
+  check("maximum strain, log-sum-exp", exponential, inside);
+  check("filling of a die", die_filling, under_die);
+  check("filling of a closed shape, rounded", closed_filling, inside);
+  check("unfilled volume before a die", die_unfilled, under_die);
+  check("unfilled volume of a closed shape", closed_unfilled, inside);
+  check("distance from a die", die_distance, under_die);
+  check("distance from a closed shape", closed_distance, inside);
+  check("distance from a cylinder", side, inside);
+  unsigned int on_edges = 0;
+  for (const auto &seen : closed_filling.decisions().by_workpiece)
+    on_edges += seen.feature.kind > 0;
+  for (const auto &seen : closed_filling.decisions().by_target)
+    on_edges += seen.feature.kind > 0;
+  std::cout << "  faces, edges and vertices seen: "
+            << yes(on_edges > 10 && on_edges + 10 < closed_filling.decisions().by_workpiece.size() +
+                                                      closed_filling.decisions().by_target.size())
+            << std::endl;
+  return worst;
+}
+
+template <typename Action>
+void refused(const Action &action)
+{
+  try
+  {
+    action();
+    std::cout << "  NOT refused" << std::endl;
+  }
+  catch (const Error &error)
+  {
+    std::cout << "  " << error.what() << std::endl;
+  }
+}
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
+    std::cout.setstate(std::ios::failbit);
+  Errors errors;
+  std::cout << "by hand" << std::endl;
+  check_volume_and_strain(errors);
+  check_shapes(errors);
+  check_cylinder(errors);
+  check_unfilled();
+  errors.print(1e-12);
+  std::cout << "derivatives" << std::endl;
+  const double worst = check_all_derivatives();
+  std::cout << "refused" << std::endl;
+  refused([] { StrainObjective(StrainStatistic::maximum, {SmoothMaximum::Kind::p_norm, 0.5}); });
+  refused([] { FillingObjective{TargetSurface(scaled(cube(), 1., Vec3())), -1.}; });
+  refused([] { UnfilledVolume(TargetSurface(scaled(cube(), 1., Vec3())), Cavity::within, 50, 0.5); });
+  refused([] { UnfilledVolume(TargetSurface(scaled(cube(), 1., Vec3())), Cavity::within, 3); });
+  refused([] {
+    const auto open = scaled(sheet(2, [](double, double) { return 0.; }), 1., Vec3());
+    UnfilledVolume(TargetSurface(open), Cavity::within, 50);
+  });
+  refused([] { CylinderDistance({}, Vec3(), Vec3({0., 0., 1.})); });
+  refused([] { CylinderDistance({"side"}, Vec3(), Vec3()); });
+  refused([] {
+    FinalProblem     problem(box(Vec3(), Vec3({1., 1., 1.}), 1.), {});
+    CylinderDistance distance({"rim"}, Vec3(), Vec3({0., 0., 1.}));
+    problem.value(distance);
+  });
+  std::cout << "FIGURE final_objective_derivative_error " << worst << std::endl;
+}

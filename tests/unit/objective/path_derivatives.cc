@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// Derivatives of the objectives along a path, over three increments with any positions and velocities under
+// two tilted dies (sliding, pressed and free nodes, nodes within the ramp): the reverse of integrals and
+// value, put together as a backward sweep does it, against dual numbers in each group of inputs alone
+// (positions at the increment's start and at its stage, velocities, bubbles, laws, dies, approach time,
+// speed), and the Taylor order along all of them. Windows cut increments, so that an increment's part of the
+// window counts.
+
+#include <deal.II/base/mpi.h>
+
+#include <retroforge/mesh/billet.h>
+#include <retroforge/objective/contact_pressure.h>
+#include <retroforge/objective/effort.h>
+#include <retroforge/objective/energy.h>
+#include <retroforge/objective/fold.h>
+
+#include "objective_test_tools.h"
+
+using namespace retroforge;
+
+constexpr unsigned int n_increments = 3;
+constexpr double       steps[] = {0.3, 0.4, 0.2}, strokes[] = {0., 0.3, 0.7};
+
+/// All that an objective's value depends on.
+template <typename Number>
+struct PathInputs
+{
+  struct State
+  {
+    NodalVectors<Number> X, Y;
+    Field<Number>        W;
+  };
+
+  std::array<State, n_increments> states;
+  Physics<Number>                 physics;
+  Number                          tau, speed; ///< tau in increments
+
+  std::vector<Group<Number>> groups()
+  {
+    std::vector<Group<Number>> groups = {{"X", {}},
+                                         {"Y", {}},
+                                         {"V", {}},
+                                         {"bubbles", {}},
+                                         {"K", {&physics.law.K}},
+                                         {"m", {&physics.law.m}},
+                                         {"e0", {&physics.law.e0}},
+                                         {"rho", {&physics.contact.rho}},
+                                         {"v0", {&physics.contact.v0}},
+                                         {"v_die", {}},
+                                         {"displacement", {}},
+                                         {"friction", {}},
+                                         {"tau", {&tau}},
+                                         {"speed", {&speed}}};
+    for (State &state : states)
+    {
+      append(state.X, groups[0].second);
+      append(state.Y, groups[1].second);
+      append(state.W.V, groups[2].second);
+      append(state.W.beta, groups[3].second);
+    }
+    for (auto &die : physics.dies)
+    {
+      for (unsigned int i = 0; i < 3; ++i)
+      {
+        groups[9].second.push_back(&die.velocity[i]);
+        groups[10].second.push_back(&die.displacement[i]);
+      }
+      groups[11].second.push_back(&die.friction);
+    }
+    return groups;
+  }
+};
+
+template <typename Number>
+PathInputs<Number> empty_inputs(const Scene &scene)
+{
+  PathInputs<Number> inputs;
+  for (auto &state : inputs.states)
+  {
+    state.X.resize(scene.mesh.n_nodes());
+    state.Y.resize(scene.mesh.n_nodes());
+    state.W = Field<Number>(scene.mesh);
+  }
+  inputs.physics.law.K   = Number(0.);
+  inputs.physics.law.m   = Number(0.);
+  inputs.physics.contact = {Number(0.), Number(0.)};
+  inputs.tau             = Number(0.);
+  inputs.speed           = Number(0.);
+  inputs.physics.dies.resize(scene.dies.size());
+  for (auto &die : inputs.physics.dies)
+    die.friction = Number(0.);
+  return inputs;
+}
+
+struct PathProblem
+{
+  Scene                                              scene;
+  FrictionRamp                                       ramp{0.9, false};
+  PathInputs<double>                                 at;
+  std::array<std::vector<ContactPair>, n_increments> pairs;
+  std::array<ActiveSet, n_increments>                active;
+  double                                             layer = 0.4;
+
+  static TetMesh make_mesh()
+  {
+    BilletParameters parameters;
+    parameters.size            = Vec3({10., 8., 6.});
+    parameters.element_size    = 2.5;
+    parameters.symmetry_planes = {Vec3({-1., 0., 0.})};
+    return make_billet(parameters, MPI_COMM_WORLD);
+  }
+
+  static std::vector<Die> make_dies()
+  {
+    const Vec3 up = Vec3({0.1, -0.15, 1.}), side = Vec3({-1., 0.1, 0.2});
+    return {Die("lower", Vec3({0., 0., 0.1}), up / up.norm()),
+            Die("side", Vec3({5., 0., 0.}), side / side.norm())};
+  }
+
+  explicit PathProblem(Random &random)
+      : scene(make_mesh(), make_dies(), MPI_COMM_WORLD), at(empty_inputs<double>(scene))
+  {
+    at.physics.law     = {1.3, 0.4, 0.2};
+    at.physics.contact = {2., 0.3};
+    at.tau             = 1.5;
+    at.speed           = 2.;
+    for (auto &die : at.physics.dies)
+      die = {2. * random.vector(), 0.1 * random.vector(), 0.3};
+    for (unsigned int i = 0; i < n_increments; ++i)
+    {
+      auto &state = at.states[i];
+      for (NodeIndex k = 0; k < scene.mesh.n_nodes(); ++k)
+      {
+        state.X[k]   = scene.mesh.X[k] + 0.1 * random.vector();
+        state.Y[k]   = state.X[k] + 0.1 * random.vector();
+        state.W.V[k] = (1. + i) * random.vector();
+      }
+      for (Vec3 &beta : state.W.beta)
+        beta = 0.3 * random.vector();
+      pairs[i] =
+        find_contact_pairs(scene.topology, scene.dies, at.physics.dies, state.X, ramp, 1.5 * ramp.width);
+      active[i] = Stage<double>(scene, at.physics, contact(at, i), state.Y).decide_active(state.W);
+    }
+  }
+
+  template <typename Number>
+  Number dt(const PathInputs<Number> &inputs, const unsigned int i) const
+  {
+    return steps[i] / inputs.speed;
+  }
+
+  template <typename Number>
+  ContactSet<Number> contact(const PathInputs<Number> &inputs, const unsigned int i) const
+  {
+    return make_contact_set(scene.mesh,
+                            scene.topology,
+                            scene.dies,
+                            inputs.physics.dies,
+                            pairs[i],
+                            ramp,
+                            Number(inputs.tau * dt(inputs, i)),
+                            inputs.states[i].X,
+                            layer);
+  }
+
+  template <typename Number>
+  PathRows<Number> rows(const PathObjective &objective, const PathInputs<Number> &inputs) const
+  {
+    PathRows<Number> rows;
+    for (unsigned int i = 0; i < n_increments; ++i)
+    {
+      const ContactSet<Number> set = contact(inputs, i);
+      const Stage<Number>      stage(scene, inputs.physics, set, inputs.states[i].Y);
+      rows.push_back(
+        {sum_over_ranks(objective.integrals(StageView<Number>{stage, inputs.states[i].W, active[i]}),
+                        scene.partition.comm),
+         dt(inputs, i),
+         Number(strokes[i] / inputs.speed),
+         strokes[i],
+         steps[i]});
+    }
+    return rows;
+  }
+
+  PathInputs<double> reverse(const PathObjective &objective, const PathInputs<double> &inputs) const
+  {
+    PathInputs<double> bar      = empty_inputs<double>(scene);
+    const auto         forward  = rows(objective, inputs);
+    const auto         rows_bar = objective.reverse_value(forward);
+    for (unsigned int i = 0; i < n_increments; ++i)
+    {
+      const ContactSet<double> set = contact(inputs, i);
+      const Stage<double>      stage(scene, inputs.physics, set, inputs.states[i].Y);
+      ContactSetBar            set_bar(pairs[i].size());
+      PhysicsBar               physics_bar(scene.dies.size());
+      StageBar                 stage_bar{bar.states[i].W, bar.states[i].Y, set_bar, physics_bar};
+      objective.reverse_integrals({stage, inputs.states[i].W, active[i]}, rows_bar[i].integrals, stage_bar);
+      reverse_contact_set(scene.dies,
+                          inputs.physics.dies,
+                          set,
+                          ramp,
+                          inputs.states[i].X,
+                          set_bar,
+                          bar.states[i].X,
+                          physics_bar.contact);
+      bar.physics.law.K += physics_bar.contact.K;
+      bar.physics.law.m += physics_bar.contact.m;
+      bar.physics.law.e0 += physics_bar.e0;
+      bar.physics.contact.rho += physics_bar.contact.rho;
+      bar.physics.contact.v0 += physics_bar.contact.v0;
+      bar.tau += physics_bar.contact.tau * dt(inputs, i);
+      if (dealii::Utilities::MPI::this_mpi_process(scene.partition.comm) == 0)
+        physics_bar.dt += dt_bar(forward[i], rows_bar[i]);
+      bar.speed -=
+        (inputs.tau * physics_bar.contact.tau + physics_bar.dt) * steps[i] / (inputs.speed * inputs.speed);
+      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      {
+        bar.physics.dies[d].velocity += physics_bar.contact.dies[d].velocity;
+        bar.physics.dies[d].displacement += physics_bar.contact.dies[d].displacement;
+        bar.physics.dies[d].friction += physics_bar.contact.dies[d].friction;
+      }
+    }
+    for (const auto &[name, entries] : bar.groups())
+      for (double *entry : entries)
+        *entry = scene.partition.sum(*entry);
+    return bar;
+  }
+};
+
+/// Deformation and friction weighted unequally: what EnergyObjective itself never asks for.
+class WeightedEnergy : public PathObjectiveOf<WeightedEnergy>
+{
+public:
+  static constexpr unsigned int n_terms = 1;
+
+  std::string name() const override { return "weighted energy"; }
+  std::string unit() const override { return "mJ"; }
+
+  template <typename Number>
+  std::vector<Number> compute_integrals(const StageView<Number> &view) const
+  {
+    return energy_.integrals(view);
+  }
+
+  void reverse_integrals(const StageView<double>   &view,
+                         const std::vector<double> &weights,
+                         StageBar                  &bar) const override
+  {
+    energy_.reverse_integrals(view, weights, bar);
+  }
+
+  template <typename Number>
+  std::vector<Number> terms(const PathRow<Number> &row, double) const
+  {
+    return {Number(row.dt * (row.integrals[0] - 2. * row.integrals[1]))};
+  }
+
+  template <typename Number>
+  Number combine(const std::vector<Number> &sums, double) const
+  {
+    return sums[0];
+  }
+
+private:
+  EnergyObjective energy_;
+};
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
+    std::cout.setstate(std::ios::failbit);
+  Random            random;
+  const PathProblem problem(random);
+  double            worst = 0.;
+
+  const auto check = [&](const std::string &name, const PathObjective &objective) {
+    const auto evaluate = [&](const auto &inputs) {
+      return objective.value(problem.rows(objective, inputs));
+    };
+    const auto reverse = [&](const auto &inputs) { return problem.reverse(objective, inputs); };
+    worst              = std::max(worst,
+                     check_derivatives<PathInputs>(
+                       name, problem.at, evaluate, reverse, empty_inputs<Dual>(problem.scene), random));
+  };
+  using Over = PathWindow::Over;
+  const SmoothMaximum p_norm{SmoothMaximum::Kind::p_norm, 12.},
+    exponential{SmoothMaximum::Kind::log_sum_exp, 1e-3};
+  const PathWindow late{Over::stroke, 0.5, 1e9}, part_of_time{Over::time, 0.1, 0.41};
+  const Effort     by_power(1), by_force(0, Effort::By::force);
+  check("energy", EnergyObjective());
+  check("energy, friction weighted apart", WeightedEnergy());
+  check("mean effort over stroke", MeanEffort(by_power, late));
+  check("mean effort over time", MeanEffort(by_power, part_of_time));
+  check("mean force over stroke", MeanEffort(by_force, late));
+  check("mean force over time", MeanEffort(by_force, part_of_time));
+  check("maximum effort, p-norm", MaximumEffort(by_power, part_of_time, p_norm));
+  check("maximum effort, log-sum-exp", MaximumEffort(by_power, late, exponential));
+  check("maximum force, log-sum-exp", MaximumEffort(by_force, part_of_time, exponential));
+  check("fold, alpha = 1", FoldObjective(1.));
+  check("fold, alpha = 4", FoldObjective(4.));
+  check("fold, alpha = 2.5, in a box",
+        FoldObjective(2.5, SmoothRegion{{Vec3({-9., -2., -1.}), Vec3({9., 2., 3.})}, 2.}));
+  check("dimensionless fold, alpha = 3", DimensionlessFold(3.));
+  check("contact pressure, q = 1", ContactPressure(0, 1., 5.));
+  check("contact pressure, q = 12", ContactPressure(1, 12., 5.));
+  std::cout << "FIGURE path_objective_derivative_error " << worst << std::endl;
+}

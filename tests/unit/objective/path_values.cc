@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// Objectives along a path on a flow known by hand: a cube of edge a = 50 between flat dies without friction,
+// Newtonian, K = 1.693, upset by 10 in 8 increments at v = 100 with V = v/h (x/2, y/2, -z), so that e = v/h
+// everywhere. With Euler's steps the height falls by v dt and the side q grows by the factor 1 + v dt/(2h).
+// By hand, increment by increment:
+//   power 3 K e^2 h q^2,   effort power / v_die,   fold e^alpha 4 h q,   dimensionless fold 1,
+// and, the upper die's velocity v_die being c = 2 above that of the top of the cube, the contact pressure rho
+// c everywhere. Effort is averaged from 4.1 to 8.6 of the stroke, within increments. Its smooth maxima keep
+// the bounds of SmoothMaximum; their distance from the true maximum is printed in percent. Then: nothing is
+// NaN where material rests, and what makes no sense is refused.
+
+#include <deal.II/base/mpi.h>
+
+#include <retroforge/core/error.h>
+#include <retroforge/mesh/billet.h>
+#include <retroforge/objective/contact_pressure.h>
+#include <retroforge/objective/effort.h>
+#include <retroforge/objective/energy.h>
+#include <retroforge/objective/fold.h>
+
+#include "objective_test_tools.h"
+
+using namespace retroforge;
+
+constexpr double edge = 50., v = 100., K = 1.693, rho = 3., faster = 2., stroke = 10.;
+constexpr int    n_increments = 8;
+
+TetMesh make_cube()
+{
+  BilletParameters parameters;
+  parameters.base_centre  = Vec3();
+  parameters.size         = Vec3({edge, edge, edge});
+  parameters.element_size = 20.;
+  return make_billet(parameters, MPI_COMM_WORLD);
+}
+
+/// The run above, with the flow given.
+class Upsetting
+{
+public:
+  Upsetting()
+      : scene_(
+          make_cube(),
+          {Die("lower", Vec3(), Vec3({0., 0., 1.})), Die("upper", Vec3({0., 0., edge}), Vec3({0., 0., -1.}))},
+          MPI_COMM_WORLD)
+  {
+  }
+
+  PathRows<double> rows(const PathObjective &objective, const double speed = v) const
+  {
+    NodalVectors<double> X = scene_.mesh.X;
+    PathRows<double>     rows;
+    for (int i = 0; i < n_increments; ++i)
+    {
+      const double  step = stroke / n_increments, dt = step / v, h = edge - i * step;
+      Field<double> W(scene_.mesh);
+      for (NodeIndex k = 0; k < X.size(); ++k)
+        W.V[k] = speed / h * Vec3({X[k][0] / 2., X[k][1] / 2., -X[k][2]});
+      const Vec3            lower({0., 0., 0.}), upper({0., 0., -v - faster});
+      const Physics<double> physics{
+        {K, 1., 0.}, {rho, 0.}, {{lower, Vec3(), 0.}, {upper, Vec3({0., 0., -i * step}), 0.}}};
+      const FrictionRamp ramp{0.1, false};
+      const auto         pairs = find_contact_pairs(scene_.topology, scene_.dies, physics.dies, X, ramp, 1.);
+      const auto         contact =
+        make_contact_set(scene_.mesh, scene_.topology, scene_.dies, physics.dies, pairs, ramp, 5. * dt, X);
+      const Stage<double> stage(scene_, physics, contact, X);
+      const ActiveSet     active = stage.decide_active(W);
+      rows.push_back({sum_over_ranks(objective.integrals({stage, W, active}), MPI_COMM_WORLD),
+                      dt,
+                      i * dt,
+                      i * step,
+                      step});
+      for (NodeIndex k = 0; k < X.size(); ++k)
+        X[k] += dt * W.V[k];
+    }
+    return rows;
+  }
+
+  double value(const PathObjective &objective) const { return objective.value(rows(objective)); }
+
+private:
+  Scene scene_;
+};
+
+/// What a hand computes of increment i.
+struct ByHand
+{
+  double h = edge, q = edge, e, effort, side, dt = stroke / n_increments / v;
+
+  ByHand() { update(); }
+
+  void advance()
+  {
+    q *= 1. + v * dt / (2. * h);
+    h -= v * dt;
+    update();
+  }
+
+  void update()
+  {
+    e      = v / h;
+    effort = 3. * K * e * e * h * q * q / (v + faster);
+    side   = 4. * h * q;
+  }
+};
+
+void check_values(const Upsetting &run)
+{
+  double              energy = 0., mean = 0., largest = 0.;
+  std::vector<double> fold(4, 0.);
+  ByHand              hand;
+  for (int i = 0; i < n_increments; ++i, hand.advance())
+  {
+    const double begin = i * stroke / n_increments, end = (i + 1) * stroke / n_increments;
+    energy += hand.dt * (v + faster) * hand.effort;
+    mean += hand.effort * std::max(0., std::min(8.6, end) - std::max(4.1, begin)) / 4.5;
+    largest = std::max(largest, hand.effort);
+    for (int alpha = 1; alpha <= 4; ++alpha)
+      fold[alpha - 1] += hand.dt * std::pow(hand.e, alpha) * hand.side;
+  }
+  using Over = PathWindow::Over;
+  Errors errors;
+  errors.compare("energy", run.value(EnergyObjective()), energy);
+  const Effort by_power(1);
+  errors.compare("mean effort over stroke", run.value(MeanEffort(by_power, {Over::stroke, 4.1, 8.6})), mean);
+  errors.compare("mean effort over time", run.value(MeanEffort(by_power, {Over::time, 0.041, 0.086})), mean);
+  for (int alpha = 1; alpha <= 4; ++alpha)
+    errors.compare("fold", run.value(FoldObjective(alpha)), fold[alpha - 1]);
+  for (const double alpha : {1., 2.5, 4., 10.})
+    errors.compare("dimensionless fold", run.value(DimensionlessFold(alpha)), 1.);
+  for (const double exponent : {1., 30.})
+    errors.compare("contact pressure", run.value(ContactPressure(1, exponent, 1.)), rho * faster);
+  errors.compare("die without pressure", run.value(ContactPressure(0, 8., 1.)), 0.);
+  const MaximumEffort maximum(by_power, {}, {});
+  errors.compare("true maximum of the effort", maximum.true_maximum(run.rows(maximum)), largest);
+  std::cout << "by hand" << std::endl;
+  errors.print(1e-12);
+}
+
+void check_maxima(const Upsetting &run)
+{
+  std::cout << "smooth maxima of the effort" << std::endl;
+  for (const auto kind : {SmoothMaximum::Kind::p_norm, SmoothMaximum::Kind::log_sum_exp})
+    for (const double sharpness : {10., 50., 200.})
+    {
+      const bool          p_norm = kind == SmoothMaximum::Kind::p_norm;
+      const MaximumEffort any(Effort(1), {}, {});
+      const double        largest = any.true_maximum(run.rows(any));
+      const MaximumEffort objective(Effort(1), {}, {kind, p_norm ? sharpness : sharpness / largest});
+      const double        smooth = run.value(objective);
+      const double        bound  = p_norm ? largest * std::pow(1. / n_increments, 1. / sharpness)
+                                          : largest * (1. - std::log(n_increments) / sharpness);
+      std::cout << "  " << (p_norm ? "p-norm" : "log-sum-exp") << ", sharpness " << sharpness << ": "
+                << 100. * (smooth / largest - 1.) << " % off, within its bounds: "
+                << (smooth <= largest * (1. + 1e-14) && smooth >= bound ? "yes" : "NO") << std::endl;
+    }
+}
+
+/// Values and derivatives in the integrals of a run in which nothing moves.
+void check_at_rest(const Upsetting &run)
+{
+  std::cout << "at rest, finite" << std::endl;
+  const EnergyObjective                    energy;
+  const MaximumEffort                      p_norm(Effort(1), {}, {});
+  const FoldObjective                      fold(1.);
+  const DimensionlessFold                  dimensionless(4.);
+  const ContactPressure                    pressure(0, 8., 1.);
+  const std::vector<const PathObjective *> objectives = {&energy, &p_norm, &fold, &dimensionless, &pressure};
+  for (const PathObjective *objective : objectives)
+  {
+    const auto rows   = run.rows(*objective, 0.);
+    bool       finite = objective->value(rows) == 0.;
+    for (const auto &row : objective->reverse_value(rows))
+      for (const double bar : row.integrals)
+        finite = finite && std::isfinite(bar);
+    std::cout << "  " << objective->name() << " [" << objective->unit() << "]: " << (finite ? "yes" : "NO")
+              << std::endl;
+  }
+}
+
+template <typename Action>
+void refused(const Action &action)
+{
+  try
+  {
+    action();
+    std::cout << "  NOT refused" << std::endl;
+  }
+  catch (const Error &error)
+  {
+    std::cout << "  " << error.what() << std::endl;
+  }
+}
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
+    std::cout.setstate(std::ios::failbit);
+  const Upsetting run;
+  check_values(run);
+  check_maxima(run);
+  check_at_rest(run);
+  std::cout << "refused" << std::endl;
+  using Over = PathWindow::Over;
+  refused([] { MeanEffort(Effort(1), {Over::time, 2., 1.}); });
+  refused([&] { run.value(MeanEffort(Effort(1), {Over::stroke, 11., 12.})); });
+  refused([&] { run.value(MeanEffort(Effort(0), {})); });
+  refused([] { FoldObjective(0.5); });
+  refused([] { FoldObjective(2., SmoothRegion{{Vec3(), Vec3({1., 1., 1.})}, 0.}); });
+  refused([] { FoldObjective(2., SmoothRegion{{Vec3(), Vec3({1., -1., 1.})}, 1.}); });
+  refused([] { ContactPressure(0, 0.5, 1.); });
+  refused([] { ContactPressure(0, 8., 0.); });
+  refused([] { MaximumEffort(Effort(1), {}, {SmoothMaximum::Kind::p_norm, 0.}); });
+  refused([] { MaximumEffort(Effort(1), {}, {SmoothMaximum::Kind::log_sum_exp, 0.}); });
+}
