@@ -70,8 +70,8 @@ namespace retroforge
       }
     };
 
-    /// A run that decides everything anew may also fail anew: then there is no difference, and the rest of the
-    /// check goes on.
+    /// A run that decides everything anew may also fail anew: then there is no difference, and the rest of
+    /// the check goes on.
     double free_difference(const Line &line, const ObjectiveOracle &oracle, const double h)
     {
       try

@@ -7,6 +7,7 @@
 #include <retroforge/mesh/rebuild.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace retroforge
@@ -33,7 +34,10 @@ namespace retroforge
     bool crosses(const Vec3 &a, const Vec3 &b, const Triangle &x)
     {
       const double at_a = tet_volume({{x[0], x[1], x[2], a}}), at_b = tet_volume({{x[0], x[1], x[2], b}});
-      if (!((at_a > 0 && at_b < 0) || (at_a < 0 && at_b > 0)))
+      // In one plane (a patch of symmetry) all these volumes are rounding.
+      const double area = cross_product_3d(x[1] - x[0], x[2] - x[0]).norm();
+      const double none = 1e-9 * area * ((b - a).norm() + std::sqrt(area));
+      if (!((at_a > none && at_b < -none) || (at_a < -none && at_b > none)))
         return false;
       double least = 0, most = 0;
       for (unsigned int i = 0; i < 3; ++i)

@@ -73,12 +73,12 @@ namespace retroforge
 
   namespace
   {
-    /// Positions rounded to about 1e-10 of the workpiece's size. Decisions must not hang on rounding, which is
-    /// another one on another number of ranks: edges of equal length would be taken in another order.
+    /// Positions rounded to about 1e-10 of the workpiece's size. Decisions must not hang on rounding, which
+    /// is another one on another number of ranks: edges of equal length would be taken in another order.
     NodalVectors<double> on_grid(const NodalVectors<double> &X)
     {
-      const auto [low, high]     = bounding_box(X);
-      const double         grid  = std::ldexp(1., std::ilogb((high - low).norm()) - 33);
+      const auto [low, high]       = bounding_box(X);
+      const double         grid    = std::ldexp(1., std::ilogb((high - low).norm()) - 33);
       NodalVectors<double> rounded = X;
       for (Vec3 &x : rounded)
         for (unsigned int i = 0; i < 3; ++i)
@@ -252,7 +252,7 @@ namespace retroforge
     std::vector<NodeIndex> old_node;
     const auto             make_numbered = [&]() {
       const NodalVectors<double> rounded = on_grid(X);
-      RemeshedMesh               made    = make(mesh, rounded, size_field(rounded, states), states);
+      RemeshedMesh               made = make(mesh, rounded, size_field(rounded, states), states);
       for (NodeIndex k = 0; k < made.mesh.n_nodes(); ++k)
         if (const NodeIndex old = made.old_node[k]; old != invalid_index)
           made.mesh.X[k] += X[old] - rounded[old];

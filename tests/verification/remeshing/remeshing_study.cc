@@ -5,8 +5,8 @@
 //   remeshing_study cylinder|star ELEMENT_SIZE REMESHINGS local|rebuild
 // A billet of height 60 is upset to 20, z -> f z, x, y -> f^(-1/2) x, y with a slight barrel, in equal
 // logarithmic steps, and remeshed after each. The star is a prism of eight teeth, like a gear. The field is a
-// Gaussian of standard deviation 2h in the material: at a node its exact value is known from where the node was at the
-// start. One line of CSV at remeshings 10, 30, 60, 100 and the last.
+// Gaussian of standard deviation 2h in the material: at a node its exact value is known from where the node
+// was at the start. One line of CSV at remeshings 10, 30, 60, 100 and the last.
 
 #include <deal.II/base/mpi.h>
 
