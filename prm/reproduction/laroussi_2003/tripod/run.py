@@ -59,7 +59,10 @@ def cost(build):
     solves = summary["linear_solves_forward"], summary["linear_solves_adjoint"]
     seconds = summary["wall_seconds"]
     forward = seconds["total"] - seconds["adjoint"]
-    formula = 56.0 * summary["mesh"]["nodes"] * solves[1]
+    # 56 n per solve, n that of the first mesh, and 24 + 96 bytes for each of the dies' vertices and triangles per increment;
+    # a triangulated surface has about half as many vertices as triangles.
+    triangles = sum((os.path.getsize(f"run_cost/die_{die}.stl") - 84) // 50 for die in ("lower", "upper"))
+    formula = 56.0 * summary["mesh"]["nodes"] * solves[1] + summary["increments"] * (12.0 + 96.0) * triangles
     print(f"{summary['increments']} increments, {summary['remeshings']} remeshings, record {summary['record_bytes'] / 1e6:.1f} MB; "
           f"forward {forward:.1f} s with {solves[0]} linear solves, adjoint {seconds['adjoint']:.1f} s with {solves[1]}; "
           f"remeshing {seconds['remeshing']:.2f} s")
