@@ -166,10 +166,7 @@ namespace retroforge
         system_.assemble(stage, W, start);
       statistics.residual = relative_residual(stage, W, start, r);
       if (start == frozen && statistics.residual <= parameters_.tolerance)
-      {
-        recover_bubbles(stage, W);
         return statistics;
-      }
       if (iteration > 0)
         system_.assemble(stage, W, start);
       const bool   linear = stage.physics.law.m == 1.;

@@ -187,6 +187,8 @@ namespace retroforge
         solves[s]              = {trial.V, trial.P, active};
         if (s + 1 == solves.size() && !repeat)
         {
+          // The next increment starts from what the record holds, resumed or not.
+          trial = recorded_field(stage, solves[s]);
           const auto [deformation, friction] = stage.power(trial, active);
           record.deformation_energy          = dt * scene_.partition.sum(deformation);
           record.friction_energy             = dt * scene_.partition.sum(friction);
@@ -197,7 +199,7 @@ namespace retroforge
       if (repeat)
         continue;
       record.solves = std::move(solves);
-      W             = recorded_field(Stage<double>(scene_, physics, contact, position), record.solves.back());
+      W             = std::move(trial);
       return advanced(X, dt, W.V);
     }
   }

@@ -29,7 +29,7 @@ namespace retroforge
   public:
     Newton(const Scene &scene, const NewtonParameters &parameters, LinearSystem &system);
 
-    /// @param W       in: initial guess; out: the solution, bubbles recovered from V and P to rounding
+    /// @param W       in: initial guess; out: the solution
     /// @param frozen  empty, or the recorded active set of a replay
     NewtonStatistics solve(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen);
 
