@@ -21,7 +21,7 @@ namespace
     {
       dealii::ParameterHandler prm;
       retroforge::Parameters   parameters;
-      parameters.add_parameters(prm, {"lower", "upper"});
+      parameters.add_parameters(prm, {"lower", "upper"}, {"energy"});
       retroforge::print_parameters(prm, std::cout);
     }
     return 0;

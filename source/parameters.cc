@@ -60,6 +60,12 @@ namespace retroforge
   void AdjointParameters::add_parameters(dealii::ParameterHandler &prm)
   {
     prm.enter_subsection("Adjoint");
+    prm.add_parameter(
+      "method",
+      method,
+      "How `gradient` differentiates: adjoint, one backward sweep for all parameters and every node; or direct, "
+      "one forward sweep per parameter for all objectives, without the nodes. Units: none.",
+      Selection("adjoint|direct"));
     prm.add_parameter("tolerance",
                       tolerance,
                       "Relative tolerance of the adjoint and tangent linear systems. Units: none.",
@@ -110,7 +116,32 @@ namespace retroforge
     prm.leave_subsection();
   }
 
-  void Parameters::add_parameters(dealii::ParameterHandler &prm, const std::vector<std::string> &die_names)
+  void ObjectivesParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Objectives");
+    prm.declare_entry("names",
+                      "energy",
+                      Anything(),
+                      "Names of the objectives; each has a section `Objective NAME`, and if the name is that "
+                      "of a type needs no more. Units: none.");
+    prm.add_parameter(
+      "gradients",
+      gradients,
+      "each: one adjoint per objective, all in one backward sweep; combined: one of their weighted sum. "
+      "Units: none.",
+      Selection("each|combined"));
+    prm.add_parameter(
+      "history every",
+      every,
+      "Evaluate the objectives of the run so far every so many increments; 0 for the end only. Units: none.");
+    prm.leave_subsection();
+    for (ObjectiveParameters &objective : all)
+      objective.add_parameters(prm);
+  }
+
+  void Parameters::add_parameters(dealii::ParameterHandler       &prm,
+                                  const std::vector<std::string> &die_names,
+                                  const std::vector<std::string> &objective_names)
   {
     billet.add_parameters(prm);
     prm.enter_subsection("Dies");
@@ -129,6 +160,10 @@ namespace retroforge
     linear_solver.add_parameters(prm);
     remeshing.add_parameters(prm);
     adjoint.add_parameters(prm);
+    objectives.all.clear();
+    for (const std::string &name : objective_names)
+      objectives.all.emplace_back(name);
+    objectives.add_parameters(prm);
     design.add_parameters(prm);
     check.add_parameters(prm);
     output.add_parameters(prm);
@@ -137,48 +172,59 @@ namespace retroforge
   namespace
   {
     /// Names become sections of the parameter file, names of files, and parts of the names of parameters.
-    void check_die_name(const std::string &name)
+    void check_name(const std::string &where, const std::string &name)
     {
       const bool is_sound = !name.empty() && name.size() <= 64 &&
                             std::all_of(name.begin(), name.end(), [](const unsigned char c) {
                               return std::isalnum(c) != 0 || c == ' ' || c == '_' || c == '-' || c == '.';
                             });
       if (!is_sound)
-        throw Error("Dies/names",
+        throw Error(where,
                     "holds the name '" + legible(name) + "'",
                     "a name has 1 to 64 of the characters a-z, A-Z, 0-9, blank, '_', '-' and '.'",
-                    "rename the die and its section");
+                    "rename it and its section");
     }
 
-    /// The dies' names must be known before their sections can be: they are looked for ahead of the real
-    /// reading.
-    std::vector<std::string> die_names(const std::string                                      &file,
-                                       const std::vector<std::pair<std::string, std::string>> &overrides)
+    /// Names of dies and objectives must be known before their sections can be: they are looked for ahead of
+    /// the real reading.
+    std::vector<std::string> names_ahead(const std::string                                      &section,
+                                         const std::string                                      &by_default,
+                                         const std::string                                      &file,
+                                         const std::vector<std::pair<std::string, std::string>> &overrides)
     {
-      std::string   names;
+      std::string   names = by_default;
       std::ifstream in(file);
-      for (std::string line, section; std::getline(in, line);)
+      for (std::string line, current; std::getline(in, line);)
       {
         std::istringstream words(line.substr(0, line.find('#')));
         std::string        first, second, equals;
         words >> first >> second;
         if (first == "subsection")
-          section = second;
-        else if (first == "set" && second == "names" && section == "Dies" && words >> equals && equals == "=")
+          current = second;
+        else if (first == "set" && second == "names" && current == section && words >> equals &&
+                 equals == "=")
+        {
+          names.clear();
           std::getline(words, names);
+        }
       }
       for (const auto &[path, value] : overrides)
-        if (path == "Dies/names")
+        if (path == section + "/names")
           names = value;
-      const std::vector<std::string> all  = dealii::Utilities::split_string_list(names);
-      constexpr std::size_t          most = 100;
+      const std::vector<std::string> all   = dealii::Utilities::split_string_list(names);
+      const std::string              where = section + "/names";
+      constexpr std::size_t          most  = 100;
       if (all.size() > most)
-        throw Error("Dies/names",
-                    "names " + std::to_string(all.size()) + " dies",
+        throw Error(where,
+                    "holds " + std::to_string(all.size()) + " names",
                     "there may be " + std::to_string(most),
-                    "name each die once");
-      for (const std::string &name : all)
-        check_die_name(name);
+                    "name each once");
+      for (unsigned int i = 0; i < all.size(); ++i)
+      {
+        check_name(where, all[i]);
+        if (std::find(all.begin(), all.begin() + i, all[i]) != all.begin() + i)
+          throw Error(where, "'" + all[i] + "' stands twice", "names must differ", "rename one");
+      }
       return all;
     }
   } // namespace
@@ -189,7 +235,8 @@ namespace retroforge
   {
     Parameters               parameters;
     dealii::ParameterHandler prm;
-    parameters.add_parameters(prm, die_names(file, overrides));
+    parameters.add_parameters(
+      prm, names_ahead("Dies", "", file, overrides), names_ahead("Objectives", "energy", file, overrides));
     read_parameters(prm, file, overrides);
     parameters.check_all();
     std::ostringstream text;
@@ -206,12 +253,14 @@ namespace retroforge
     if (dies.empty())
       throw Error(
         "Dies/names", "names no die", "a billet is forged by at least one die", "set names = lower, upper");
+    if (objectives.all.empty())
+      throw Error("Objectives/names",
+                  "names no objective",
+                  "a run is judged by at least one",
+                  "leave the line out for the energy");
     for (unsigned int d = 0; d < dies.size(); ++d)
     {
       dies[d].check();
-      for (unsigned int e = 0; e < d; ++e)
-        if (dies[e].name == dies[d].name)
-          throw Error("Dies/names", "'" + dies[d].name + "' stands twice", "names must differ", "rename one");
       if (dies[d].friction > 0. && material.sensitivity < 1. && contact.slip_fraction == 0.)
         throw Error("Contact/slip regularisation",
                     "is 0 with friction and a strain rate sensitivity below 1",
@@ -298,6 +347,23 @@ namespace retroforge
     process.contact.rho   = contact.penalty > 0. ? contact.penalty : pressure / (contact.penetration * speed);
     process.contact.v0    = contact.slip_fraction * speed;
     return process;
+  }
+
+  Objectives Parameters::make_objectives(const std::vector<Die> &made_dies) const
+  {
+    std::vector<DieState<double>> states;
+    for (const DieParameters &die : dies)
+      states.push_back(die.initial_state());
+    Objectives made;
+    for (const ObjectiveParameters &objective : objectives.all)
+      made.push_back(objective.make({made_dies, states, leading_die(), press.stroke, material.consistency}));
+    return made;
+  }
+
+  std::vector<Combination> Parameters::combinations(const Objectives &made_objectives) const
+  {
+    return objectives.gradients == "each" ? each(made_objectives)
+                                          : std::vector<Combination>{combined(made_objectives)};
   }
 
   StepModel Parameters::step_model() const

@@ -36,7 +36,7 @@ namespace retroforge
 
     bool changes_the_run(const std::string &path)
     {
-      for (const char *section : {"Adjoint/", "Check/", "Design/", "Output/"})
+      for (const char *section : {"Adjoint/", "Check/", "Design/", "Objective", "Output/"})
         if (path.rfind(section, 0) == 0)
           return false;
       return true;

@@ -12,9 +12,13 @@
 #include <retroforge/simulation.h>
 #include <retroforge/solver/rigid_modes.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <iostream>
+#include <numeric>
 #include <sstream>
+#include <utility>
 
 namespace retroforge
 {
@@ -34,6 +38,15 @@ namespace retroforge
       for (const Die &die : dies)
         n.push_back(die.n_facets());
       return n;
+    }
+
+    /// For names of fields.
+    std::string as_identifier(std::string name)
+    {
+      for (char &c : name)
+        if (std::isalnum(static_cast<unsigned char>(c)) == 0)
+          c = '_';
+      return name;
     }
 
     NodalVectors<double> sum(NodalVectors<double> a, const NodalVectors<double> &b)
@@ -83,12 +96,15 @@ namespace retroforge
                parameters_.linear_solver,
                comm}
       , design_(parameters_.design.names, parameters_.billet, parameters_.dies, nominal_, billet_.X)
+      , objectives_(parameters_.make_objectives(model_.dies))
+      , combinations_(parameters_.combinations(objectives_))
       , first_leg_(std::make_shared<Leg>(billet_, model_, timings_))
       , remesher_(parameters_.remeshing, parameters_.edge_length(billet_), model_.dies, comm)
       , forging_(model_, parameters_.press, remesher_, timings_)
       , mu_(design_.nominal())
       , process_(design_.process(mu_))
       , X_0_(design_.positions(mu_))
+      , trace_(objectives_, model_, process_)
   {
     check_billet_against_dies();
   }
@@ -169,7 +185,9 @@ namespace retroforge
     if (root_)
     {
       history_ = std::make_unique<History>(command_.output_directory + "/history.csv");
-      pvd_     = std::make_unique<PvdWriter>(command_.output_directory + "/fields.pvd");
+      objective_history_ =
+        std::make_unique<ObjectiveHistory>(command_.output_directory + "/objectives.csv");
+      pvd_ = std::make_unique<PvdWriter>(command_.output_directory + "/fields.pvd");
       std::cout
         << "  inc   stroke      force        energy        volume   quality newton krylov   time left\n";
     }
@@ -187,6 +205,7 @@ namespace retroforge
       watch(event);
     });
     forged_ = std::move(state);
+    values_ = trace_.values(forged_, true);
     if (record_)
     {
       const auto timing = timings_.scope("record");
@@ -222,6 +241,7 @@ namespace retroforge
     // A check reads the increments many times over; a gradient once, from the record.
     if (command_.command == "check" || (command_.command == "gradient" && !parameters_.output.record))
       records_.push_back(event.record);
+    trace(event);
     const auto          timing = timings_.scope("output");
     const ForgingState &state  = event.state;
     const TetMesh      &mesh   = state.leg->scene.mesh;
@@ -262,6 +282,28 @@ namespace retroforge
       write_fields(event);
   }
 
+  void Simulation::trace(const IncrementEvent &event)
+  {
+    const auto timing = timings_.scope("objectives");
+    trace_.add(event);
+    const unsigned int every  = parameters_.objectives.every;
+    const bool         at_end = event.state.stroke >= parameters_.press.stroke * (1. - 1e-9);
+    if (every == 0 || (event.state.increments % every != 0 && !at_end))
+      return;
+    const auto              values = trace_.values(event.state, true, false);
+    const auto              parts  = trace_.parts(event.state);
+    std::vector<NamedValue> columns;
+    for (std::size_t j = 0; j < objectives_.size(); ++j)
+    {
+      const std::string unit = " [" + objectives_[j].unit() + "]";
+      columns.emplace_back(objectives_[j].name + unit, values[j]);
+      for (const auto &[name, value] : parts[j])
+        columns.emplace_back(objectives_[j].name + ": " + name + unit, value);
+    }
+    if (root_)
+      objective_history_->add(event.state.stroke, columns);
+  }
+
   void Simulation::write_fields(const IncrementEvent &event)
   {
     const ForgingState  &run   = event.state;
@@ -270,18 +312,8 @@ namespace retroforge
     const Field<double> &W     = run.W;
     ScalarField pressure{"pressure", W.P}, state{"contact_state", std::vector<double>(mesh.n_nodes(), 0.)},
       contact_pressure{"contact_pressure", std::vector<double>(mesh.n_nodes(), 0.)}, rate{"strain_rate", {}};
-    const auto          physics  = process_.at_stroke(event.record.stroke);
-    const auto          position = run.leg->increment.stage_positions(process_, event.X_before, event.record);
-    ContactSet<double>  contact  = make_contact_set(mesh,
-                                                  scene.topology,
-                                                  scene.dies,
-                                                  physics.dies,
-                                                  event.record.pairs,
-                                                  model_.step.ramp,
-                                                  model_.step.approach * event.record.step / process_.speed(),
-                                                  event.X_before,
-                                                  model_.step.layer);
-    const Stage<double> stage(scene, physics, contact, position);
+    const LastStage      last(scene, model_.step, process_, event.X_before, event.record);
+    const Stage<double> &stage = last.stage;
     for (unsigned int p = 0; p < event.record.pairs.size(); ++p)
     {
       const auto      node = stage.contact_node(p, W, event.record.solves.back().active);
@@ -289,13 +321,13 @@ namespace retroforge
       if (node.active)
       {
         state.values[k] = event.record.pairs[p].die + 1.;
-        contact_pressure.values[k] += physics.contact.rho * approach_excess(node);
+        contact_pressure.values[k] += stage.physics.contact.rho * approach_excess(node);
       }
     }
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
       const auto e =
-        cell_strain_rates(cell_geometry(positions_of_cell(mesh, position, c)), W.on_cell(mesh, c));
+        cell_strain_rates(cell_geometry(positions_of_cell(mesh, stage.X, c)), W.on_cell(mesh, c));
       rate.values.push_back(0.25 * (e[0] + e[1] + e[2] + e[3]));
     }
     if (pvd_->steps().empty())
@@ -314,30 +346,108 @@ namespace retroforge
     pvd_->add(event.time, name);
   }
 
+  template <typename Number>
+  std::vector<Number> Simulation::combine(const std::vector<Number> &values) const
+  {
+    std::vector<Number> combined;
+    for (const Combination &combination : combinations_)
+      combined.push_back(combination(values));
+    return combined;
+  }
+
+  RecordedForging Simulation::recorded()
+  {
+    return {model_, first_leg_, process_, source(), forged_.increments, objectives_, timings_};
+  }
+
   void Simulation::differentiate()
   {
-    const auto timing              = timings_.scope("adjoint");
-    const auto result              = adjoint_sweep(model_, first_leg_, process_, forged_, source(), timings_);
-    X_0_bar_                       = result.X_0;
-    gradient_                      = design_.pull_back(mu_, X_0_bar_, result.process);
-    summary_.linear_solves_adjoint = result.linear_solves;
+    const auto timing = timings_.scope("adjoint");
+    const auto values = combine(values_);
+    for (std::size_t j = 0; j < combinations_.size(); ++j)
+      judged_.push_back(
+        {combinations_[j].name, combinations_[j].unit, values[j], std::vector<double>(mu_.size()), {}});
+    // A check compares the two methods.
+    if (parameters_.adjoint.method == "direct" && command_.command == "gradient")
+      differentiate_directly();
+    else
+      sweep_back();
     if (root_)
+      print_gradient();
+  }
+
+  void Simulation::sweep_back()
+  {
+    const AdjointSweep sweep       = adjoint_sweep(recorded(), trace_.rows(), forged_, combinations_);
+    summary_.linear_solves_adjoint = sweep.linear_solves;
+    for (std::size_t j = 0; j < judged_.size(); ++j)
     {
+      judged_[j].gradient = design_.pull_back(mu_, sweep.of[j].X_0, sweep.of[j].process);
+      judged_[j].shape    = {sweep.of[j].X_0, sweep.of[j].process.die_vertices};
+    }
+    if (root_)
       write_sensitivity();
-      std::cout << "\n  gradient of the energy\n";
-      for (std::size_t j = 0; j < mu_.size(); ++j)
-        std::printf("  %-24s %14.8g   d/d = %18.12g mJ/(%s)\n",
+  }
+
+  void Simulation::differentiate_directly()
+  {
+    const auto tangent = oracle().tangent;
+    for (std::size_t i = 0; i < mu_.size(); ++i)
+    {
+      std::vector<double> mu_dot(mu_.size(), 0.);
+      mu_dot[i]              = 1.;
+      const auto derivatives = tangent(mu_dot, {NodalVectors<double>(X_0_.size()), {}});
+      for (std::size_t j = 0; j < judged_.size(); ++j)
+        judged_[j].gradient[i] = derivatives[j];
+    }
+  }
+
+  void Simulation::print_gradient() const
+  {
+    for (const Judged &objective : judged_)
+    {
+      // What a forger would turn first: by what one per cent of the parameter's size does.
+      std::vector<std::size_t> order(mu_.size());
+      std::iota(order.begin(), order.end(), 0);
+      const std::string unit   = objective.unit == "none" ? "" : " " + objective.unit;
+      const auto        effect = [&](const std::size_t j) {
+        return 0.01 * design_.parameters()[j].scale * objective.gradient[j];
+      };
+      std::stable_sort(order.begin(), order.end(), [&](const std::size_t a, const std::size_t b) {
+        return std::abs(effect(a)) > std::abs(effect(b));
+      });
+      std::printf("\n  gradient of %s = %.10g%s\n  %-24s %14s   %18s   for +1 %%\n",
+                  objective.name.c_str(),
+                  objective.value,
+                  unit.c_str(),
+                  "parameter",
+                  "value",
+                  "derivative");
+      for (const std::size_t j : order)
+        std::printf("  %-24s %14.8g   %18.12g   %+.4g%s\n",
                     design_.parameters()[j].name.c_str(),
                     mu_[j],
-                    gradient_[j],
-                    design_.parameters()[j].unit.c_str());
+                    objective.gradient[j],
+                    effect(j),
+                    unit.c_str());
     }
   }
 
   void Simulation::write_sensitivity()
   {
-    write_vtu(
-      command_.output_directory + "/sensitivity.vtu", billet_, X_0_, {}, {{"denergy_dX0", X_0_bar_}}, {});
+    std::vector<VectorField> fields;
+    for (const Judged &objective : judged_)
+      fields.push_back({"d" + as_identifier(objective.name) + "_dX0", objective.shape.X_0});
+    write_vtu(command_.output_directory + "/sensitivity.vtu", billet_, X_0_, {}, fields, {});
+    for (std::size_t d = 0; d < model_.dies.size(); ++d)
+      if (const TriangleSurface *surface = model_.dies[d].surface())
+      {
+        fields.clear();
+        for (const Judged &objective : judged_)
+          fields.push_back({"d" + as_identifier(objective.name) + "_dXdie", objective.shape.dies[d]});
+        write_vtu(
+          command_.output_directory + "/sensitivity_die_" + model_.dies[d].name + ".vtu", *surface, fields);
+      }
   }
 
   Forging::Source Simulation::source()
@@ -356,44 +466,104 @@ namespace retroforge
     };
   }
 
+  namespace
+  {
+    /// Moves the vertices of the dies from where a process has them.
+    template <typename Number, typename Shift>
+    void move_dies(const std::vector<Die> &dies,
+                   const FreeForm         &shift,
+                   const Shift            &moved,
+                   Process<Number>        &process)
+    {
+      for (std::size_t d = 0; d < shift.dies.size(); ++d)
+      {
+        if (shift.dies[d].empty())
+          continue;
+        NodalVectors<Number> vertices;
+        for (std::size_t k = 0; k < shift.dies[d].size(); ++k)
+        {
+          Vector3<Number> x;
+          for (unsigned int i = 0; i < 3; ++i)
+            x[i] = moved(process.dies[d].vertices ? (*process.dies[d].vertices)[k][i]
+                                                  : Number(dies[d].surface()->vertices()[k][i]),
+                         shift.dies[d][k][i]);
+          vertices.push_back(x);
+        }
+        process.dies[d].vertices = std::make_shared<const NodalVectors<Number>>(std::move(vertices));
+      }
+    }
+
+    double sum_of(const double x, const double shift)
+    {
+      return x + shift;
+    }
+
+    Dual dual_of(Dual x, const double direction)
+    {
+      x.fastAccessDx(0) += direction;
+      return x;
+    }
+  } // namespace
+
+  std::vector<double> Simulation::forge_anew(const Process<double>      &process,
+                                             const NodalVectors<double> &X_0) const
+  {
+    ForgingModel    model   = model_;
+    Process<double> at_dies = process;
+    for (std::size_t d = 0; d < model.dies.size(); ++d)
+      if (const auto vertices = std::exchange(at_dies.dies[d].vertices, nullptr))
+        model.dies[d] = model.dies[d].moved(*vertices);
+    Timings          timings;
+    const Remesher   remesher(parameters_.remeshing, parameters_.edge_length(billet_), model.dies, comm_);
+    const Forging    forging(model, parameters_.press, remesher, timings);
+    const Objectives objectives = parameters_.make_objectives(model.dies);
+    ObjectiveTrace   trace(objectives, model, at_dies);
+    ForgingState     state = forging.start(std::make_shared<Leg>(billet_, model, timings), X_0);
+    forging.run(at_dies, state, [&](const IncrementEvent &event) { trace.add(event); });
+    return combine(trace.values(state, true));
+  }
+
   ObjectiveOracle Simulation::oracle()
   {
     ObjectiveOracle oracle;
-    const auto      source = this->source();
-    oracle.free            = [this](const std::vector<double> &mu, const NodalVectors<double> &shift) {
-      ForgingState state = forging_.start(first_leg_, sum(design_.positions(mu), shift));
-      forging_.run(design_.process(mu), state, {});
-      return state.energy.total();
+    const auto      recorded   = this->recorded();
+    const auto      process_at = [this](const std::vector<double> &mu, const FreeForm &shift) {
+      Process<double> process = design_.process(mu);
+      move_dies(model_.dies, shift, sum_of, process);
+      return process;
     };
-    oracle.replayed = [this, source](const std::vector<double> &mu, const NodalVectors<double> &shift) {
-      ForgingState state = forging_.start(first_leg_, sum(design_.positions(mu), shift));
-      forging_.replay(design_.process(mu), records_.size(), source, state);
-      return state.energy.total();
+    oracle.free = [this, process_at](const std::vector<double> &mu, const FreeForm &shift) {
+      return forge_anew(process_at(mu, shift), sum(design_.positions(mu), shift.X_0));
     };
-    oracle.tangent = [this, source](const std::vector<double>  &mu_dot,
-                                    const NodalVectors<double> &shift_dot) {
+    oracle.replayed = [this, recorded, process_at](const std::vector<double> &mu, const FreeForm &shift) {
+      const Process<double> process = process_at(mu, shift);
+      ObjectiveTrace        trace(objectives_, model_, process);
+      ForgingState          state = forging_.start(first_leg_, sum(design_.positions(mu), shift.X_0));
+      forging_.replay(
+        process, recorded.n, recorded.source, state, [&](const IncrementEvent &event) { trace.add(event); });
+      return combine(trace.values(state, false));
+    };
+    oracle.tangent = [this, recorded](const std::vector<double> &mu_dot, const FreeForm &shift_dot) {
       std::vector<Dual> mu;
       for (std::size_t j = 0; j < mu_.size(); ++j)
-      {
-        mu.emplace_back(mu_[j]);
-        mu.back().fastAccessDx(0) = mu_dot[j];
-      }
+        mu.push_back(dual_of(Dual(mu_[j]), mu_dot[j]));
       NodalVectors<Dual> X = design_.positions(mu);
       for (std::size_t k = 0; k < X.size(); ++k)
         for (unsigned int i = 0; i < 3; ++i)
-          X[k][i].fastAccessDx(0) += shift_dot[k][i];
-      return tangent_sweep(model_, first_leg_, design_.process(mu), X, records_.size(), source, timings_)
-        .total()
-        .dx(0);
+          X[k][i].fastAccessDx(0) += shift_dot.X_0[k][i];
+      Process<Dual> process = design_.process(mu);
+      move_dies(model_.dies, shift_dot, dual_of, process);
+      std::vector<double> derivatives;
+      for (const Dual &value : combine(tangent_sweep(recorded, process, X)))
+        derivatives.push_back(value.dx(0));
+      return derivatives;
     };
     return oracle;
   }
 
   bool Simulation::check()
   {
-    const double size = billet_size();
-    checks_           = check_gradient(
-      parameters_.check, design_, mu_, forged_.energy.total(), gradient_, X_0_bar_, size, oracle());
+    checks_ = check_gradient(parameters_.check, design_, mu_, judged_, billet_size(), oracle());
     if (root_)
       print(checks_, std::cout);
     return std::all_of(checks_.begin(), checks_.end(), [](const CheckRow &row) { return row.passed; });
@@ -417,23 +587,28 @@ namespace retroforge
     summary_.volume_initial        = volume(billet_.cells, X_0_);
     summary_.volume_final          = volume(forged_.leg->scene.mesh.cells, forged_.X);
     summary_.wall_seconds          = timings_.all();
-    summary_.objectives            = {
-                 {"energy",
-                  forged_.energy.total(),
-                  "mJ",
-                  {{"deformation", forged_.energy.deformation}, {"friction", forged_.energy.friction}}}};
-    for (std::size_t j = 0; j < mu_.size() && !gradient_.empty(); ++j)
-      summary_.parameters.push_back(
-        {design_.parameters()[j].name, mu_[j], design_.parameters()[j].unit, {{"energy", gradient_[j]}}});
+    const auto parts               = trace_.parts(forged_);
+    for (std::size_t o = 0; o < objectives_.size(); ++o)
+      summary_.objectives.push_back({objectives_[o].name, values_[o], objectives_[o].unit(), parts[o]});
+    if (parameters_.objectives.gradients == "combined")
+      summary_.objectives.push_back({combinations_[0].name, combine(values_)[0], combinations_[0].unit, {}});
+    for (std::size_t j = 0; j < mu_.size() && !judged_.empty(); ++j)
+    {
+      summary_.parameters.push_back({design_.parameters()[j].name, mu_[j], design_.parameters()[j].unit, {}});
+      for (const Judged &objective : judged_)
+        summary_.parameters.back().gradient[objective.name] = objective.gradient[j];
+    }
     for (const CheckRow &row : checks_)
     {
-      Summary::Check check{"energy",
+      Summary::Check check{row.objective,
                            row.parameter,
                            row.adjoint,
                            row.tangent,
                            {},
                            row.taylor_orders,
-                           row.passed ? "passed" : "failed"};
+                           row.is_zero  ? "zero"
+                           : row.passed ? "passed"
+                                        : "failed"};
       for (const auto &d : row.steps)
         check.steps.push_back(
           {d.step, d.replayed_central, d.replayed_forward, d.replayed_backward, d.free_central});
@@ -444,13 +619,17 @@ namespace retroforge
     if (record_)
       summary_.record_bytes = record_->bytes();
     summary_.write(command_.output_directory + "/summary.json");
-    std::printf(
-      "\n  energy %.12g mJ (deformation %.6g, friction %.6g), volume change %.3g, %.1f s\n  results in %s\n",
-      forged_.energy.total(),
-      forged_.energy.deformation,
-      forged_.energy.friction,
-      summary_.volume_final / summary_.volume_initial - 1.,
-      timings_.seconds("total"),
-      command_.output_directory.c_str());
+    std::printf("\n");
+    for (const Summary::Objective &objective : summary_.objectives)
+    {
+      std::printf("  %s %.12g %s", objective.name.c_str(), objective.value, objective.unit.c_str());
+      for (const auto &[name, value] : objective.parts)
+        std::printf("%s%s %.6g", name == objective.parts.begin()->first ? " (" : ", ", name.c_str(), value);
+      std::printf("%s\n", objective.parts.empty() ? "" : ")");
+    }
+    std::printf("  volume change %.3g, %.1f s\n  results in %s\n",
+                summary_.volume_final / summary_.volume_initial - 1.,
+                timings_.seconds("total"),
+                command_.output_directory.c_str());
   }
 } // namespace retroforge

@@ -158,7 +158,7 @@ class Markup(str):
 
 
 def verdict(text):
-    return text if text == "passed" else Markup(f'<span class="bad">{html.escape(str(text))}</span>')
+    return text if text in ("passed", "zero") else Markup(f'<span class="bad">{html.escape(str(text))}</span>')
 
 
 def number(value, digits=6):

@@ -4,6 +4,7 @@
 
 #include <retroforge/adjoint/check.h>
 #include <retroforge/design/design.h>
+#include <retroforge/objective/objective_parameters.h>
 #include <retroforge/time/forging.h>
 
 namespace retroforge
@@ -23,6 +24,7 @@ namespace retroforge
 
   struct AdjointParameters
   {
+    std::string method      = "adjoint";
     double      tolerance    = 1e-6;
     std::string derivatives  = "exact";
     double      perturbation = 1e-6;
@@ -47,6 +49,15 @@ namespace retroforge
     void add_parameters(dealii::ParameterHandler &prm);
   };
 
+  struct ObjectivesParameters
+  {
+    std::vector<ObjectiveParameters> all       = {ObjectiveParameters("energy")};
+    std::string                      gradients = "each";
+    unsigned int                     every     = 5;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+  };
+
   /// All that a parameter file says.
   struct Parameters
   {
@@ -57,14 +68,17 @@ namespace retroforge
     ContactParameters          contact;
     NewtonParameters           newton;
     LinearSolverParameters     linear_solver;
+    ObjectivesParameters       objectives;
     DesignParameters           design;
     CheckParameters            check;
     OutputParameters           output;
     AdjointParameters          adjoint;
     RemesherParameters         remeshing;
 
-    /// Declares everything; the dies are those of the names given.
-    void add_parameters(dealii::ParameterHandler &prm, const std::vector<std::string> &die_names);
+    /// Declares everything; dies and objectives are those of the names given.
+    void add_parameters(dealii::ParameterHandler       &prm,
+                        const std::vector<std::string> &die_names,
+                        const std::vector<std::string> &objective_names);
 
     /// Reads a file and overrides, and checks all of it.  @throws Error
     static Parameters read(const std::string                                      &file,
@@ -81,6 +95,10 @@ namespace retroforge
     Process<double> process(double size) const;
     /// Of settled parameters.
     StepModel step_model() const;
+    /// Of settled parameters.  @throws Error
+    Objectives make_objectives(const std::vector<Die> &made_dies) const;
+    /// What is differentiated: each objective, or their weighted sum.
+    std::vector<Combination> combinations(const Objectives &made_objectives) const;
     /// Wanted length of the edges in remeshing [mm]; of a billet from a file, the mean length there is.
     double edge_length(const TetMesh &billet) const;
 

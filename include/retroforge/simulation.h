@@ -4,6 +4,7 @@
 
 #include <retroforge/core/command_line.h>
 #include <retroforge/output/history.h>
+#include <retroforge/output/objective_history.h>
 #include <retroforge/output/pvd_writer.h>
 #include <retroforge/output/summary.h>
 #include <retroforge/parameters.h>
@@ -32,17 +33,27 @@ namespace retroforge
     /// The state after the last increment of the record in the output folder, which the run goes on from.
     void resume(ForgingState &state);
     void differentiate();
+    void sweep_back();
+    void differentiate_directly();
     bool check();
     void summarise();
 
     void   watch(const IncrementEvent &event);
+    void   trace(const IncrementEvent &event);
+    void   print_gradient() const;
     void   write_fields(const IncrementEvent &event);
     void   write_sensitivity();
     void   check_billet_against_dies() const;
     double billet_size() const;
     /// The recorded increments, from memory or from the record's file.
     Forging::Source source();
-    ObjectiveOracle oracle();
+    RecordedForging recorded();
+    /// Objectives of a run that decides everything anew, dies of other shape included.
+    std::vector<double> forge_anew(const Process<double> &process, const NodalVectors<double> &X_0) const;
+    ObjectiveOracle     oracle();
+    /// The combinations of objectives that are differentiated, at given values of the objectives.
+    template <typename Number>
+    std::vector<Number> combine(const std::vector<Number> &values) const;
 
     const CommandLine command_;
     MPI_Comm          comm_;
@@ -56,22 +67,26 @@ namespace retroforge
     ForgingModel    model_;
     Design          design_;
 
-    std::shared_ptr<Leg> first_leg_;
-    Remesher             remesher_;
-    Forging              forging_;
+    Objectives               objectives_;
+    std::vector<Combination> combinations_;
+    std::shared_ptr<Leg>     first_leg_;
+    Remesher                 remesher_;
+    Forging                  forging_;
 
     std::vector<double>          mu_;
     Process<double>              process_;
     NodalVectors<double>         X_0_;
     std::vector<IncrementRecord> records_;
     ForgingState                 forged_;
-    std::vector<double>          gradient_;
-    NodalVectors<double>         X_0_bar_;
+    ObjectiveTrace               trace_;
+    std::vector<double>          values_; ///< of the objectives
+    std::vector<Judged>          judged_; ///< each combination that was differentiated
     std::vector<CheckRow>        checks_;
 
-    std::unique_ptr<RecordWriter> record_;
-    std::unique_ptr<History>      history_;
-    std::unique_ptr<PvdWriter>    pvd_;
-    Summary                       summary_;
+    std::unique_ptr<RecordWriter>     record_;
+    std::unique_ptr<History>          history_;
+    std::unique_ptr<ObjectiveHistory> objective_history_;
+    std::unique_ptr<PvdWriter>        pvd_;
+    Summary                           summary_;
   };
 } // namespace retroforge

@@ -47,76 +47,110 @@ namespace retroforge
       return std::abs(a - b) / std::max({std::abs(a), std::abs(b), 1e-300});
     }
 
-    NodalVectors<double> times(const double s, NodalVectors<double> x)
+    FreeForm times(const double s, FreeForm x)
     {
-      for (Vec3 &v : x)
+      for (Vec3 &v : x.X_0)
         v *= s;
+      for (NodalVectors<double> &die : x.dies)
+        for (Vec3 &v : die)
+          v *= s;
       return x;
     }
 
-    /// The objective along one direction: t -> Phi(mu + t mu_dot, shift_dot t).
+    using Values = ObjectiveOracle::Values;
+
+    /// The objectives along one direction: t -> Phi(mu + t mu_dot, shift_dot t).
     struct Line
     {
       const std::vector<double> &mu;
       std::vector<double>        mu_dot;
-      NodalVectors<double>       shift_dot;
+      FreeForm                   shift_dot;
 
-      double operator()(const decltype(ObjectiveOracle::free) &objective, const double t) const
+      Values operator()(const decltype(ObjectiveOracle::free) &objectives, const double t) const
       {
         std::vector<double> at = mu;
         for (std::size_t j = 0; j < mu.size(); ++j)
           at[j] += t * mu_dot[j];
-        return objective(at, times(t, shift_dot));
+        return objectives(at, times(t, shift_dot));
       }
     };
 
     /// A run that decides everything anew may also fail anew: then there is no difference, and the rest of
     /// the check goes on.
-    double free_difference(const Line &line, const ObjectiveOracle &oracle, const double h)
+    Values
+    free_differences(const Line &line, const ObjectiveOracle &oracle, const double h, const std::size_t n)
     {
+      Values differences(n, NAN);
       try
       {
-        return (line(oracle.free, h) - line(oracle.free, -h)) / (2. * h);
+        const Values plus = line(oracle.free, h), minus = line(oracle.free, -h);
+        for (std::size_t o = 0; o < n; ++o)
+          differences[o] = (plus[o] - minus[o]) / (2. * h);
       }
       catch (const Error &error)
       {
         std::cerr << "  free difference of step " << h << ": " << error.what() << std::endl;
-        return NAN;
       }
+      return differences;
     }
 
-    CheckRow check_line(const CheckParameters &parameters,
-                        const Line            &line,
-                        const double           value,
-                        const double           scale,
-                        const ObjectiveOracle &oracle,
-                        CheckRow               row)
+    /// Completes the rows of one line, one per objective.
+    void check_line(const CheckParameters     &parameters,
+                    const Line                &line,
+                    const std::vector<Judged> &judged,
+                    const double               scale,
+                    const ObjectiveOracle     &oracle,
+                    std::vector<CheckRow>     &rows)
     {
-      row.tangent = oracle.tangent(line.mu_dot, line.shift_dot);
+      const Values tangents = oracle.tangent(line.mu_dot, line.shift_dot);
+      for (std::size_t o = 0; o < rows.size(); ++o)
+        rows[o].tangent = tangents[o];
       for (const double step : parameters.steps)
       {
-        const double  h    = step * scale;
-        const double  plus = line(oracle.replayed, h), minus = line(oracle.replayed, -h);
-        DifferenceRow d{step, (plus - minus) / (2. * h), (plus - value) / h, (value - minus) / h, NAN};
+        const double h    = step * scale;
+        const Values plus = line(oracle.replayed, h), minus = line(oracle.replayed, -h);
+        Values       free(rows.size(), NAN);
         if (parameters.free)
-          d.free_central = free_difference(line, oracle, h);
-        row.steps.push_back(d);
+          free = free_differences(line, oracle, h, rows.size());
+        for (std::size_t o = 0; o < rows.size(); ++o)
+        {
+          const double value = judged[o].value;
+          rows[o].steps.push_back(
+            {step, (plus[o] - minus[o]) / (2. * h), (plus[o] - value) / h, (value - minus[o]) / h, free[o]});
+        }
       }
-      double last = 0.;
+      std::vector<double> last(rows.size(), 0.);
       for (unsigned int i = 0; i <= parameters.taylor_halvings; ++i)
       {
-        const double h         = parameters.taylor_start * scale * std::pow(0.5, i);
-        const double remainder = std::abs(line(oracle.replayed, h) - value - h * row.adjoint);
-        if (i > 0)
-          row.taylor_orders.push_back(std::log2(last / remainder));
-        last = remainder;
+        const double h  = parameters.taylor_start * scale * std::pow(0.5, i);
+        const Values at = line(oracle.replayed, h);
+        for (std::size_t o = 0; o < rows.size(); ++o)
+        {
+          const double remainder = std::abs(at[o] - judged[o].value - h * rows[o].adjoint);
+          if (i > 0)
+            rows[o].taylor_orders.push_back(std::log2(last[o] / remainder));
+          last[o] = remainder;
+        }
       }
-      // A remainder at rounding has no order: the objective is linear in this parameter.
-      const bool linear = last <= 1e-9 * std::abs(parameters.taylor_start * scale * row.adjoint);
-      row.passed        = row.tangent_error() <= parameters.tangent_bar &&
-                   row.best_replayed_error() <= parameters.replayed_bar &&
-                   (linear || row.taylor_orders.back() >= parameters.taylor_bar);
-      return row;
+      for (std::size_t o = 0; o < rows.size(); ++o)
+      {
+        CheckRow &row = rows[o];
+        // What moves the objective by less than 1e-7 of itself while the parameter moves by all of its size
+        // is rounding, and differences do not see 1e-6 of 1e-6.
+        const double whole   = std::abs(judged[o].value) / scale;
+        row.is_zero          = std::max(std::abs(row.adjoint), std::abs(row.tangent)) <= 1e-7 * whole;
+        row.least_difference = 1e-6 * whole;
+        if (row.is_zero)
+        {
+          row.passed = true;
+          continue;
+        }
+        // A remainder at rounding has no order: the objective is linear in this parameter.
+        const bool linear = last[o] <= 1e-9 * std::abs(parameters.taylor_start * scale * row.adjoint);
+        row.passed        = row.tangent_error() <= parameters.tangent_bar &&
+                     row.best_replayed_error() <= parameters.replayed_bar &&
+                     (linear || row.taylor_orders.back() >= parameters.taylor_bar);
+      }
     }
   } // namespace
 
@@ -129,7 +163,10 @@ namespace retroforge
   {
     double best = std::numeric_limits<double>::max();
     for (const auto &step : steps)
-      best = std::min(best, relative(step.replayed_central, adjoint));
+      best =
+        std::min(best,
+                 std::abs(step.replayed_central - adjoint) /
+                   std::max({std::abs(step.replayed_central), std::abs(adjoint), least_difference, 1e-300}));
     return best;
   }
 
@@ -142,61 +179,108 @@ namespace retroforge
     return best;
   }
 
-  std::vector<CheckRow> check_gradient(const CheckParameters      &parameters,
-                                       const Design               &design,
-                                       const std::vector<double>  &mu,
-                                       const double                value,
-                                       const std::vector<double>  &gradient,
-                                       const NodalVectors<double> &X_0_bar,
-                                       const double                length,
-                                       const ObjectiveOracle      &oracle)
+  namespace
   {
-    std::vector<CheckRow>      rows;
-    const NodalVectors<double> still(X_0_bar.size());
+    NodalVectors<double> random_vectors(const std::size_t n, std::mt19937 &generator)
+    {
+      std::uniform_real_distribution<double> uniform(-1., 1.);
+      NodalVectors<double>                   vectors(n);
+      for (Vec3 &v : vectors)
+        for (unsigned int i = 0; i < 3; ++i)
+          v[i] = uniform(generator);
+      return vectors;
+    }
+
+    /// The derivative along a direction, and the root of the squares of its terms.
+    std::pair<double, double> along(const FreeForm &direction, const FreeForm &derivative)
+    {
+      double     slope = 0., slope2 = 0.;
+      const auto add = [&](const NodalVectors<double> &a, const NodalVectors<double> &b) {
+        for (std::size_t k = 0; k < a.size(); ++k)
+          for (unsigned int i = 0; i < 3; ++i)
+          {
+            const double term = a[k][i] * b[k][i];
+            slope += term;
+            slope2 += term * term;
+          }
+      };
+      add(direction.X_0, derivative.X_0);
+      for (std::size_t d = 0; d < direction.dies.size(); ++d)
+        add(direction.dies[d], derivative.dies[d]);
+      return {slope, std::sqrt(slope2)};
+    }
+  } // namespace
+
+  std::vector<CheckRow> check_gradient(const CheckParameters     &parameters,
+                                       const Design              &design,
+                                       const std::vector<double> &mu,
+                                       const std::vector<Judged> &judged,
+                                       const double               length,
+                                       const ObjectiveOracle     &oracle)
+  {
+    std::vector<std::vector<CheckRow>> of_lines;
+    const std::size_t                  n_nodes = judged[0].shape.X_0.size();
     for (std::size_t j = 0; j < mu.size(); ++j)
     {
       std::vector<double> mu_dot(mu.size(), 0.);
       mu_dot[j]             = 1.;
       const auto &parameter = design.parameters()[j];
-      rows.push_back(check_line(parameters,
-                                {mu, mu_dot, still},
-                                value,
-                                parameter.scale,
-                                oracle,
-                                {parameter.name, parameter.unit, gradient[j], 0., {}, {}, false, 0.}));
+      of_lines.emplace_back();
+      for (const Judged &objective : judged)
+        of_lines.back().push_back(
+          {objective.name, parameter.name, parameter.unit, objective.gradient[j], 0., {}, {}, false, 0.});
+      check_line(parameters,
+                 {mu, mu_dot, {NodalVectors<double>(n_nodes), {}}},
+                 judged,
+                 parameter.scale,
+                 oracle,
+                 of_lines.back());
     }
-    std::mt19937                           generator(1);
-    std::uniform_real_distribution<double> uniform(-1., 1.);
-    NodalVectors<double>                   direction(X_0_bar.size());
-    double                                 slope = 0., slope2 = 0.;
-    for (std::size_t k = 0; k < direction.size(); ++k)
-      for (unsigned int i = 0; i < 3; ++i)
-      {
-        direction[k][i]   = uniform(generator);
-        const double term = direction[k][i] * X_0_bar[k][i];
-        slope += term;
-        slope2 += term * term;
-      }
     CheckParameters small = parameters;
     for (double &step : small.steps)
       step *= 0.1;
     small.taylor_start *= 0.1;
-    rows.push_back(check_line(small,
-                              {mu, std::vector<double>(mu.size(), 0.), direction},
-                              value,
-                              length,
-                              oracle,
-                              {"X_0 (random direction)", "mm", slope, 0., {}, {}, false, std::sqrt(slope2)}));
+    const auto check_shape = [&](const std::string &name, const FreeForm &direction) {
+      of_lines.emplace_back();
+      for (const Judged &objective : judged)
+      {
+        const auto [slope, magnitude] = along(direction, objective.shape);
+        of_lines.back().push_back({objective.name, name, "mm", slope, 0., {}, {}, false, magnitude});
+      }
+      check_line(
+        small, {mu, std::vector<double>(mu.size(), 0.), direction}, judged, length, oracle, of_lines.back());
+    };
+    std::mt19937 generator(1);
+    FreeForm     direction;
+    direction.X_0 = random_vectors(n_nodes, generator);
+    direction.dies.resize(judged[0].shape.dies.size());
+    check_shape("X_0 (random direction)", direction);
+    direction.X_0 = NodalVectors<double>(n_nodes);
+    for (unsigned int d = 0; d < direction.dies.size(); ++d)
+      if (const std::size_t n = judged[0].shape.dies[d].size(); n > 0)
+      {
+        direction.dies[d] = random_vectors(n, generator);
+        check_shape(design.die_name(d) + " (random direction)", direction);
+        direction.dies[d].clear();
+      }
+    std::vector<CheckRow> rows;
+    for (std::size_t o = 0; o < judged.size(); ++o)
+      for (const auto &line : of_lines)
+        rows.push_back(line[o]);
     return rows;
   }
 
   void print(const std::vector<CheckRow> &rows, std::ostream &out)
   {
-    out << "\n  derivative of the energy          adjoint        adjoint/tangent-1  step     replayed   "
-           "forward    free       "
-           "Taylor orders\n"
-        << std::scientific;
+    out << std::scientific;
+    std::string objective;
     for (const CheckRow &row : rows)
+    {
+      if (row.objective != objective)
+        out << "\n  " << std::left << std::setw(31) << "derivative of " + row.objective
+            << "   adjoint        adjoint/tangent-1  step     replayed   forward    free       "
+               "Taylor orders\n";
+      objective = row.objective;
       for (std::size_t i = 0; i < std::max<std::size_t>(1, row.steps.size()); ++i)
       {
         if (i == 0)
@@ -221,10 +305,11 @@ namespace retroforge
           out << std::fixed << std::setprecision(2) << "  ";
           for (const double order : row.taylor_orders)
             out << ' ' << order;
-          out << (row.passed ? "  passed" : "  FAILED") << std::scientific;
+          out << (row.is_zero ? "  passed (zero)" : row.passed ? "  passed" : "  FAILED") << std::scientific;
         }
         out << '\n';
       }
+    }
     out << std::defaultfloat << std::setprecision(6);
   }
 } // namespace retroforge

@@ -1,70 +1,208 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/adjoint/sweep.h>
+#include <retroforge/element/strain_history.h>
+#include <retroforge/mesh/cell_to_node.h>
+
+#include <deal.II/base/mpi.h>
 
 namespace retroforge
 {
-  AdjointResult adjoint_sweep(const ForgingModel         &model,
-                              const std::shared_ptr<Leg> &first,
-                              const Process<double>      &process,
-                              const ForgingState         &end,
-                              const Forging::Source      &source,
-                              Timings                    &timings)
+  namespace
   {
-    AdjointResult             result{NodalVectors<double>(end.X.size()), ProcessBar(model.dies.size())};
-    NodalVectors<double>     &G        = result.X_0;
+    bool is_first(MPI_Comm comm)
+    {
+      return dealii::Utilities::MPI::this_mpi_process(comm) == 0;
+    }
+
+    void add(const double weight, const NodalVectors<double> &from, NodalVectors<double> &to)
+    {
+      for (std::size_t k = 0; k < to.size(); ++k)
+        to[k] += weight * from[k];
+    }
+
+    /// Derivatives of an objective of the end, complete but for the process.
+    FinalBar
+    reverse_at_end(const RecordedForging &run, const ForgingState &end, const FinalObjective &objective)
+    {
+      const MPI_Comm comm      = run.model.comm;
+      const auto     dies      = run.process.at_stroke(end.stroke).dies;
+      const auto     view      = final_view(objective, end.leg->scene, end.X, end.strain, dies);
+      const auto     integrals = sum_over_ranks(objective.integrals(view), comm);
+      const auto     d         = objective.target_die();
+      FinalBar bar(end.leg->scene, d == invalid_index ? 0 : run.model.dies[d].surface()->vertices().size());
+      objective.reverse_integrals(view, objective.reverse_value(integrals), bar);
+      MPI_Allreduce(MPI_IN_PLACE, bar.X.data()->begin_raw(), 3 * bar.X.size(), MPI_DOUBLE, MPI_SUM, comm);
+      bar.q = sum_over_ranks(std::move(bar.q), comm);
+      return bar;
+    }
+
+    bool is_zero(const std::vector<double> &x)
+    {
+      return std::all_of(x.begin(), x.end(), [](const double entry) { return entry == 0.; });
+    }
+
+    /// The costates of the workpiece at the end of the run.
+    std::vector<Costate> start_costates(const RecordedForging          &run,
+                                        const ForgingState             &end,
+                                        const std::vector<Combination> &combinations)
+    {
+      std::vector<Costate> costates(
+        combinations.size(), {NodalVectors<double>(end.X.size()), {}, ProcessBar(run.model.dies.size())});
+      for (std::size_t o = 0; o < run.objectives.size(); ++o)
+      {
+        if (!run.objectives[o].at_end)
+          continue;
+        const FinalBar bar        = reverse_at_end(run, end, *run.objectives[o].at_end);
+        const bool     has_strain = !is_zero(bar.q);
+        for (std::size_t j = 0; j < costates.size(); ++j)
+        {
+          const double weight = combinations[j].weights[o];
+          if (weight == 0.)
+            continue;
+          add(weight, bar.X, costates[j].X);
+          if (has_strain)
+            costates[j].strain.resize(bar.q.size(), 0.);
+          for (std::size_t c = 0; c < costates[j].strain.size(); ++c)
+            costates[j].strain[c] += weight * bar.q[c];
+          PhysicsBar physics_bar(run.model.dies);
+          if (const auto d = run.objectives[o].at_end->target_die(); d != invalid_index)
+            add(weight, bar.target, physics_bar.contact.die_vertices[d]);
+          for (std::size_t d = 0; d < run.model.dies.size(); ++d)
+            physics_bar.contact.dies[d].displacement = weight * bar.displacements[d];
+          costates[j].process.add(physics_bar, run.process, {end.stroke, 0.}, 0.);
+        }
+      }
+      return costates;
+    }
+
+    /// What objectives of the path give to increment i.
+    StageSource source_of(const RecordedForging               &run,
+                          const std::vector<PathRows<double>> &rows,
+                          const std::vector<PathRows<double>> &rows_bar,
+                          const std::vector<Combination>      &combinations,
+                          const unsigned int                   i)
+    {
+      return [&run, &rows, &rows_bar, &combinations, i](
+               const std::size_t j, const StageView<double> &view, StageBar &bar) {
+        for (std::size_t o = 0; o < run.objectives.size(); ++o)
+        {
+          const double weight = combinations[j].weights[o];
+          if (!run.objectives[o].path || weight == 0.)
+            continue;
+          std::vector<double> weights = rows_bar[o][i].integrals;
+          for (double &w : weights)
+            w *= weight;
+          run.objectives[o].path->reverse_integrals(view, weights, bar);
+          if (is_first(run.model.comm))
+            bar.physics.dt += weight * dt_bar(rows[o][i], rows_bar[o][i]);
+        }
+      };
+    }
+
+    /// From the new mesh back to the old: X' = J X + c, and the strain through the nodes.
+    void reverse_change_mesh(const RemeshRecord        &remesh,
+                             const TetMesh             &old_mesh,
+                             const std::vector<double> &strain_before,
+                             Costate                   &costate)
+    {
+      costate.X = remesh.transfer.apply_transpose(costate.X);
+      if (costate.strain.empty())
+        return;
+      std::vector<double> at_new(remesh.mesh.n_nodes(), 0.), strain(old_mesh.n_cells(), 0.);
+      reverse_node_to_cell(remesh.mesh, costate.strain, at_new);
+      reverse_cell_to_node(
+        old_mesh, remesh.X_before, strain_before, remesh.transfer.apply_transpose(at_new), strain, costate.X);
+      costate.strain = std::move(strain);
+    }
+  } // namespace
+
+  AdjointSweep adjoint_sweep(const RecordedForging               &run,
+                             const std::vector<PathRows<double>> &rows,
+                             const ForgingState                  &end,
+                             const std::vector<Combination>      &combinations)
+  {
+    std::vector<PathRows<double>> rows_bar(run.objectives.size());
+    for (std::size_t o = 0; o < run.objectives.size(); ++o)
+      if (run.objectives[o].path)
+        rows_bar[o] = run.objectives[o].path->reverse_value(rows[o]);
+    std::vector<Costate>      costates = start_costates(run, end, combinations);
     NodalVectors<double>      X        = end.X;
     std::vector<unsigned int> remeshed = end.remeshed;
     std::shared_ptr<Leg>      leg      = end.leg;
+    AdjointSweep              sweep;
     leg->increment.forget();
     for (unsigned int i = end.increments; i-- > 0;)
     {
-      const IncrementRecord &record = source(i);
-      const double           dt     = record.step / process.speed();
+      const IncrementRecord &record = run.source(i);
       const unsigned int     before = leg->system.n_solves;
-      for (std::size_t k = 0; k < X.size(); ++k)
-        X[k] -= dt * record.solves.back().V[k];
-      leg->increment.reverse(process, X, record, 1., G, result.process);
-      result.linear_solves += leg->system.n_solves - before;
+      add(-record.step / run.process.speed(), record.solves.back().V, X);
+      leg->increment.reverse(
+        run.process, X, record, source_of(run, rows, rows_bar, combinations, i), costates);
+      sweep.linear_solves += leg->system.n_solves - before;
       if (record.remesh)
       {
-        X = record.remesh->X_before;
-        G = record.remesh->transfer.apply_transpose(G);
+        const auto remesh = record.remesh;
         remeshed.pop_back();
-        leg = remeshed.empty() ? first
-                               : std::make_shared<Leg>(source(remeshed.back()).remesh->mesh, model, timings);
+        leg = remeshed.empty()
+                ? run.first
+                : std::make_shared<Leg>(run.source(remeshed.back()).remesh->mesh, run.model, run.timings);
         leg->increment.forget();
+        X = remesh->X_before;
+        for (Costate &costate : costates)
+          reverse_change_mesh(*remesh, leg->scene.mesh, end.strains_before[remeshed.size()], costate);
       }
     }
-    result.process.sum(model.comm);
-    return result;
+    for (Costate &costate : costates)
+    {
+      costate.process.sum(run.model.comm);
+      sweep.of.push_back({std::move(costate.X), std::move(costate.process)});
+    }
+    return sweep;
   }
 
-  Energy<Dual> tangent_sweep(const ForgingModel    &model,
-                             std::shared_ptr<Leg>   leg,
-                             const Process<Dual>   &process,
-                             NodalVectors<Dual>     X,
-                             const unsigned int     n,
-                             const Forging::Source &source,
-                             Timings               &timings)
+  std::vector<Dual>
+  tangent_sweep(const RecordedForging &run, const Process<Dual> &process, NodalVectors<Dual> X)
   {
-    Energy<Dual> energy;
-    for (unsigned int i = 0; i < n; ++i)
+    std::shared_ptr<Leg>        leg = run.first;
+    std::vector<PathRows<Dual>> rows(run.objectives.size());
+    std::vector<Dual>           strain(leg->scene.mesh.n_cells(), Dual(0.));
+    double                      end = 0.;
+    for (unsigned int i = 0; i < run.n; ++i)
     {
-      const IncrementRecord &record = source(i);
+      const IncrementRecord &record = run.source(i);
       if (record.remesh)
       {
-        X   = record.remesh->transfer.positions(X);
-        leg = std::make_shared<Leg>(record.remesh->mesh, model, timings);
+        const TransferOperator &J       = record.remesh->transfer;
+        const auto              at_node = J.apply(cell_to_node(leg->scene.mesh, X, strain));
+        X                               = J.positions(X);
+        strain                          = node_to_cell(record.remesh->mesh, at_node);
+        leg                             = std::make_shared<Leg>(record.remesh->mesh, run.model, run.timings);
       }
-      X = leg->increment.tangent(process, X, record, energy);
+      end = record.stroke + record.step;
+      X   = leg->increment.tangent(process, X, record, [&](const StageView<Dual> &view, const Dual &dt) {
+        const Dual time = record.stroke / process.speed();
+        for (std::size_t o = 0; o < run.objectives.size(); ++o)
+          if (const auto &objective = run.objectives[o].path)
+            rows[o].push_back({sum_over_ranks(objective->integrals(view), run.model.comm),
+                               dt,
+                               time,
+                               record.stroke,
+                               record.step});
+        strain = accumulate_strain(leg->scene.mesh, view.stage.X, view.W, dt, strain);
+      });
     }
-    for (Dual *part : {&energy.deformation, &energy.friction})
-    {
-      const double value = leg->scene.partition.sum(part->val()), dot = leg->scene.partition.sum(part->dx(0));
-      *part                 = Dual(value);
-      part->fastAccessDx(0) = dot;
-    }
-    return energy;
+    const auto        dies = process.at_stroke(end).dies;
+    std::vector<Dual> values;
+    for (std::size_t o = 0; o < run.objectives.size(); ++o)
+      if (run.objectives[o].path)
+        values.push_back(run.objectives[o].path->value(rows[o]));
+      else
+      {
+        const FinalObjective &objective = *run.objectives[o].at_end;
+        const auto            view      = final_view(objective, leg->scene, X, strain, dies);
+        values.push_back(objective.value(sum_over_ranks(objective.integrals(view), run.model.comm)));
+      }
+    return values;
   }
 } // namespace retroforge

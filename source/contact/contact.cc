@@ -98,7 +98,7 @@ namespace retroforge
           const DieFeature feature = dies[d].closest(X[k], states[d].displacement, reach);
           if (!feature.found())
             continue;
-          const double delta = dies[d].project(X[k], states[d].displacement, feature).delta;
+          const double delta = dies[d].project(X[k], states[d], feature).delta;
           if (delta <= reach)
             pairs.push_back({k, d, delta <= ramp.width, feature});
         }
@@ -124,8 +124,7 @@ namespace retroforge
     for (const ContactPair &pair : pairs)
     {
       index[{pair.die, pair.node}] = contact.projections.size();
-      contact.projections.push_back(
-        dies[pair.die].project(X[pair.node], states[pair.die].displacement, pair.feature));
+      contact.projections.push_back(dies[pair.die].project(X[pair.node], states[pair.die], pair.feature));
       contact.ramps.push_back(ramp(contact.projections.back().delta, pair.touching));
     }
     // A face is visited from its first pair of each die.

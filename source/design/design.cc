@@ -47,7 +47,8 @@ namespace retroforge
       const DesignParameter parameter = make(name);
       for (const DesignParameter &other : parameters_)
         if (other.kind == parameter.kind &&
-            (other.die == parameter.die || other.die == invalid_index || parameter.die == invalid_index))
+            (other.die == parameter.die || other.die == invalid_index || parameter.die == invalid_index) &&
+            other.measure == parameter.measure)
           throw Error("Design/parameters",
                       "'" + name + "' and '" + other.name + "' set the same number",
                       "parameters must be independent",
@@ -74,6 +75,8 @@ namespace retroforge
       if (die.velocity.norm() > 0.)
         names.push_back("die " + die.name + "/speed");
       names.push_back("die " + die.name + "/offset");
+      for (const std::string &measure : die.measures())
+        names.push_back("die " + die.name + "/" + measure);
     }
     if (friction)
       names.insert(names.end(), {"dies/friction", "contact/v0"});
@@ -129,6 +132,13 @@ namespace retroforge
         return {name, "mm/s", Kind::speed, d, speed, speed};
       if (name == "die " + dies_[d].name + "/offset")
         return {name, "mm", Kind::offset, d, 0., width_};
+      for (const std::string &measure : dies_[d].measures())
+        if (name == "die " + dies_[d].name + "/" + measure)
+        {
+          const double value = dies_[d].measure(measure);
+          return {
+            name, measure == "draft angle" ? "degrees" : "mm", Kind::die_shape, d, value, value, measure};
+        }
     }
     throw Error("Design/parameters", name, "unknown", "see the list of parameters");
   }
@@ -181,6 +191,7 @@ namespace retroforge
       state.friction = Number(die.friction);
       process.dies.push_back(state);
     }
+    std::vector<std::map<std::string, Number>> measures(dies_.size());
     for (unsigned int j = 0; j < parameters_.size(); ++j)
     {
       const DesignParameter &parameter = parameters_[j];
@@ -215,11 +226,18 @@ namespace retroforge
           for (unsigned int i = 0; i < 3; ++i)
             process.dies[parameter.die].displacement[i] += dies_[parameter.die].facing[i] * mu[j];
           break;
+        case Kind::die_shape:
+          measures[parameter.die][parameter.measure] = mu[j];
+          break;
         case Kind::stretch:
         case Kind::radius:
           break;
       }
     }
+    for (unsigned int d = 0; d < dies_.size(); ++d)
+      if (!measures[d].empty())
+        process.dies[d].vertices =
+          std::make_shared<const NodalVectors<Number>>(dies_[d].vertices(measures[d]));
     return process;
   }
 
@@ -246,6 +264,10 @@ namespace retroforge
       for (unsigned int d = 0; d < p.dies.size(); ++d)
       {
         sum += bar.dies[d].friction * p.dies[d].friction.dx(0);
+        if (p.dies[d].vertices && d < bar.die_vertices.size())
+          for (std::size_t k = 0; k < bar.die_vertices[d].size(); ++k)
+            for (unsigned int i = 0; i < 3; ++i)
+              sum += bar.die_vertices[d][k][i] * (*p.dies[d].vertices)[k][i].dx(0);
         for (unsigned int i = 0; i < 3; ++i)
           sum += bar.dies[d].velocity[i] * p.dies[d].velocity[i].dx(0) +
                  bar.dies[d].displacement[i] * p.dies[d].displacement[i].dx(0);

@@ -91,6 +91,8 @@ namespace retroforge
     double dt_bar = 0.;
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
+      if (q_bar[c] == 0.)
+        continue;
       const CellValues<double>   w          = W.on_cell(mesh, c);
       const CellGeometry<double> geometry   = cell_geometry(positions_of_cell(mesh, X, c));
       Four<Vec3>                 cell_V_bar = {}, cell_X_bar = {};

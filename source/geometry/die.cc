@@ -22,6 +22,13 @@ namespace retroforge
   {
   }
 
+  Die Die::moved(NodalVectors<double> vertices) const
+  {
+    TriangleSurface shape = surface_->shape;
+    shape.move_vertices(std::move(vertices));
+    return Die(name, std::move(shape), surface_->depth);
+  }
+
   DieFeature Die::closest(const Vec3 &X, const Vec3 &displacement, const double reach) const
   {
     if (!surface_)

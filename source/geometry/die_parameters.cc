@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <deal.II/physics/transformations.h>
 
+#include <retroforge/core/dual.h>
 #include <retroforge/core/error.h>
 #include <retroforge/geometry/die_parameters.h>
 #include <retroforge/geometry/stl_file.h>
@@ -130,30 +131,135 @@ namespace retroforge
         section() + "/rotation axis", "is the zero vector", "it must have a direction", "use 0, 0, 1");
   }
 
+  namespace
+  {
+    template <typename Number>
+    std::map<std::string, Number *> by_name(CavityProfile<Number> &profile)
+    {
+      return {{"depth", &profile.depth},
+              {"draft angle", &profile.draft},
+              {"edge radius", &profile.edge},
+              {"fillet radius", &profile.fillet}};
+    }
+
+    template <typename Number>
+    std::map<std::string, Number *> by_name(TripodShape<Number> &shape)
+    {
+      auto all = by_name(shape.profile);
+      all.insert({{"hub radius", &shape.hub},
+                  {"arm width", &shape.width},
+                  {"arm length", &shape.length},
+                  {"corner radius", &shape.corner},
+                  {"outer radius", &shape.outer}});
+      return all;
+    }
+
+    template <typename Number>
+    std::map<std::string, Number *> by_name(BellShape<Number> &shape)
+    {
+      auto all = by_name(shape.profile);
+      all.insert({{"mouth radius", &shape.mouth}, {"outer radius", &shape.outer}});
+      return all;
+    }
+
+    /// A shape of another number type, with some of its measures replaced.
+    template <template <typename> class Shape, typename Number>
+    Shape<Number> changed_shape(Shape<double> shape, const std::map<std::string, Number> &changed)
+    {
+      Shape<Number> result;
+      const auto    from = by_name(shape);
+      for (const auto &[name, to] : by_name(result))
+      {
+        const auto other = changed.find(name);
+        *to              = other == changed.end() ? Number(*from.at(name)) : other->second;
+      }
+      return result;
+    }
+
+    std::map<std::string, double *>
+    measures_of(const std::string &shape, TripodShape<double> &tripod, BellShape<double> &bell)
+    {
+      if (shape == "tripod")
+        return by_name(tripod);
+      if (shape == "bell")
+        return by_name(bell);
+      return {};
+    }
+  } // namespace
+
+  std::vector<std::string> DieParameters::measures() const
+  {
+    DieParameters            copy = *this;
+    std::vector<std::string> names;
+    for (const auto &[name, value] : measures_of(shape, copy.tripod, copy.bell))
+      names.push_back(name);
+    return names;
+  }
+
+  double DieParameters::measure(const std::string &name) const
+  {
+    DieParameters copy = *this;
+    return *measures_of(shape, copy.tripod, copy.bell).at(name);
+  }
+
+  template <typename Number>
+  ShapeMesh<Number> DieParameters::shape_mesh(const std::map<std::string, Number> &changed,
+                                              Segments                            &segments) const
+  {
+    segments.again();
+    if (shape == "tripod")
+      return make_tripod(section() + "/Tripod", changed_shape(tripod, changed), chord_error, segments);
+    return make_bell(section() + "/Bell", changed_shape(bell, changed), chord_error, segments);
+  }
+
+  template <typename Number>
+  NodalVectors<Number> DieParameters::vertices(const std::map<std::string, Number> &changed) const
+  {
+    Segments segments;
+    shape_mesh<double>({}, segments);
+    NodalVectors<Number>       vertices = shape_mesh(changed, segments).vertices;
+    const dealii::Tensor<2, 3> R        = turn();
+    for (Vector3<Number> &x : vertices)
+    {
+      Vector3<Number> y;
+      for (unsigned int i = 0; i < 3; ++i)
+        y[i] = point[i] + R[i][0] * x[0] + R[i][1] * x[1] + R[i][2] * x[2];
+      x = y;
+    }
+    return vertices;
+  }
+
+  template NodalVectors<double> DieParameters::vertices(const std::map<std::string, double> &) const;
+  template NodalVectors<Dual>   DieParameters::vertices(const std::map<std::string, Dual> &) const;
+
+  dealii::Tensor<2, 3> DieParameters::turn() const
+  {
+    return shape == "stl" ? scale * rotation(axis, angle)
+                          : rotation_to(facing) * rotation(Vec3({0., 0., 1.}), angle);
+  }
+
   TriangleSurface DieParameters::surface() const
   {
     NodalVectors<double>  vertices;
     std::vector<Triangle> triangles;
-    dealii::Tensor<2, 3>  turn;
     std::string           where = section();
     if (shape == "stl")
     {
       const TriangleSurface read = read_stl(file);
       vertices                   = read.vertices();
       triangles                  = read.triangles();
-      turn                       = scale * rotation(axis, angle);
       where += "/file (" + file + ")";
     }
     else
     {
-      const auto mesh = shape == "tripod" ? make_tripod(where + "/Tripod", tripod, chord_error)
-                                          : make_bell(where + "/Bell", bell, chord_error);
+      Segments   segments;
+      const auto mesh = shape_mesh<double>({}, segments);
       vertices        = mesh.vertices;
       triangles       = mesh.triangles;
-      turn            = rotation_to(facing) * rotation(Vec3({0., 0., 1.}), angle);
     }
+    const dealii::Tensor<2, 3> R = turn();
     for (Vec3 &x : vertices)
-      x = point + turn * x;
+      x = point + R * x;
     return TriangleSurface(where, vertices, triangles);
   }
 

@@ -28,14 +28,6 @@ namespace retroforge
     template <typename Number>
     using Outline = std::function<Points2<Number>(const Number &inwards)>;
 
-    /// Segments of an arc whose chords stay within `error` of it.
-    unsigned int n_segments(const double radius, const double angle, const double error)
-    {
-      if (error >= radius)
-        return 1;
-      return std::max(1., std::ceil(angle / (2. * std::acos(1. - error / radius)) - 1e-9));
-    }
-
     void require(const bool condition, const std::string &where, const std::string &what, const char *rule)
     {
       if (!condition)
@@ -71,8 +63,10 @@ namespace retroforge
     };
 
     template <typename Number>
-    Section<Number>
-    make_section(const std::string &where, const CavityProfile<Number> &profile, const double chord_error)
+    Section<Number> make_section(const std::string           &where,
+                                 const CavityProfile<Number> &profile,
+                                 const double                 chord_error,
+                                 Segments                    &segments)
     {
       using std::cos;
       using std::sin;
@@ -96,8 +90,8 @@ namespace retroforge
       Section<Number> section;
       section.reach_out           = profile.edge * tangent;
       section.reach_in            = profile.depth * slope + profile.fillet * tangent;
-      const unsigned int n_fillet = n_segments(value_of(profile.fillet), value_of(turn), chord_error),
-                         n_edge   = n_segments(value_of(profile.edge), value_of(turn), chord_error);
+      const unsigned int n_fillet = segments(value_of(profile.fillet), value_of(turn), chord_error),
+                         n_edge   = segments(value_of(profile.edge), value_of(turn), chord_error);
       for (unsigned int i = 0; i <= n_fillet; ++i)
       {
         const Number a = turn * (double(i) / n_fillet);
@@ -181,14 +175,24 @@ namespace retroforge
     }
   } // namespace
 
+  unsigned int Segments::operator()(const double radius, const double angle, const double error)
+  {
+    if (next_ == n_.size())
+      n_.push_back(
+        error >= radius ? 1 : std::max(1., std::ceil(angle / (2. * std::acos(1. - error / radius)) - 1e-9)));
+    return n_[next_++];
+  }
+
   template <typename Number>
-  ShapeMesh<Number>
-  make_tripod(const std::string &where, const TripodShape<Number> &shape, const double chord_error)
+  ShapeMesh<Number> make_tripod(const std::string         &where,
+                                const TripodShape<Number> &shape,
+                                const double               chord_error,
+                                Segments                  &segments)
   {
     const double error = 0.5 * chord_error; // chords in plan and in section add up
     using std::atan2;
     using std::sqrt;
-    const auto   section = make_section(where, shape.profile, error);
+    const auto   section = make_section(where, shape.profile, error, segments);
     const Number b = 0.5 * shape.width, in = section.reach_in, out = section.reach_out;
     const double hub = value_of(shape.hub), half = value_of(b), corner = value_of(shape.corner);
     require(half > value_of(in),
@@ -219,11 +223,10 @@ namespace retroforge
             where + "/outer radius",
             "is " + std::to_string(value_of(shape.outer)),
             "the face must surround the cavity");
-    const unsigned int n_cap = n_segments(value_of(Number(b + out)), 0.5 * pi, error),
+    const unsigned int n_cap = segments(value_of(Number(b + out)), 0.5 * pi, error),
                        n_corner =
-                         n_segments(value_of(Number(shape.corner + in)), pi / 2. - value_of(angle), error),
-                       n_hub =
-                         n_segments(value_of(Number(shape.hub + out)), pi / 3. - value_of(angle), error);
+                         segments(value_of(Number(shape.corner + in)), pi / 2. - value_of(angle), error),
+                       n_hub = segments(value_of(Number(shape.hub + out)), pi / 3. - value_of(angle), error);
     const Outline<Number> outline = [&](const Number &o) {
       const Number    zero(0.), right(0.5 * pi);
       Points2<Number> points;
@@ -238,11 +241,13 @@ namespace retroforge
   }
 
   template <typename Number>
-  ShapeMesh<Number>
-  make_bell(const std::string &where, const BellShape<Number> &shape, const double chord_error)
+  ShapeMesh<Number> make_bell(const std::string       &where,
+                              const BellShape<Number> &shape,
+                              const double             chord_error,
+                              Segments                &segments)
   {
     const double error   = 0.5 * chord_error; // chords in plan and in section add up
-    const auto   section = make_section(where, shape.profile, error);
+    const auto   section = make_section(where, shape.profile, error, segments);
     require(value_of(shape.mouth) > value_of(section.reach_in),
             where + "/mouth radius",
             "is " + std::to_string(value_of(shape.mouth)) + " where draft and fillet take " +
@@ -252,7 +257,7 @@ namespace retroforge
             where + "/outer radius",
             "is " + std::to_string(value_of(shape.outer)),
             "the face must surround the cavity");
-    const unsigned int    n = n_segments(value_of(Number(shape.mouth + section.reach_out)), 0.5 * pi, error);
+    const unsigned int    n = segments(value_of(Number(shape.mouth + section.reach_out)), 0.5 * pi, error);
     const Outline<Number> outline = [&](const Number &o) {
       const Number    zero(0.);
       Points2<Number> points;
@@ -262,9 +267,10 @@ namespace retroforge
     return make_rings(outline, section, shape.outer, 4);
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                                              \
-  template ShapeMesh<Number> make_tripod(const std::string &, const TripodShape<Number> &, double); \
-  template ShapeMesh<Number> make_bell(const std::string &, const BellShape<Number> &, double);
+#define RETROFORGE_INSTANTIATE(Number)                                     \
+  template ShapeMesh<Number> make_tripod(                                  \
+    const std::string &, const TripodShape<Number> &, double, Segments &); \
+  template ShapeMesh<Number> make_bell(const std::string &, const BellShape<Number> &, double, Segments &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE

@@ -27,6 +27,13 @@ namespace retroforge
     }
   }
 
+  std::map<std::string, double> StrainObjective::parts(const std::vector<double> &) const
+  {
+    if (statistic_ != StrainStatistic::maximum)
+      return {};
+    return {{"true maximum", true_maximum()}};
+  }
+
   void StrainObjective::decide(const FinalView<double> &view)
   {
     // Over all cells on every rank: the same bits everywhere.

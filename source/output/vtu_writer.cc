@@ -17,8 +17,8 @@ namespace retroforge
 {
   namespace
   {
-    constexpr std::size_t  block_size      = 1 << 18; // bytes compressed at a time
-    constexpr std::uint8_t vtk_tetrahedron = 10;
+    constexpr std::size_t  block_size   = 1 << 18; // bytes compressed at a time
+    constexpr std::uint8_t vtk_triangle = 5, vtk_tetrahedron = 10;
 
     template <typename T>
     std::string vtk_type()
@@ -101,22 +101,41 @@ namespace retroforge
       return arrays;
     }
 
-    std::string cell_arrays(const TetMesh &mesh)
+    template <std::size_t n_corners>
+    std::string cell_arrays(const std::vector<std::array<unsigned int, n_corners>> &cells)
     {
+      constexpr std::uint8_t    type = n_corners == 3 ? vtk_triangle : vtk_tetrahedron;
       std::vector<std::int32_t> connectivity, offsets;
-      for (const std::array<NodeIndex, 4> &cell : mesh.cells)
+      for (const auto &cell : cells)
       {
         connectivity.insert(connectivity.end(), cell.begin(), cell.end());
         offsets.push_back(connectivity.size());
       }
       return data_array("connectivity", 1, connectivity) + data_array("offsets", 1, offsets) +
-             data_array("types", 1, std::vector<std::uint8_t>(mesh.n_cells(), vtk_tetrahedron));
+             data_array("types", 1, std::vector<std::uint8_t>(cells.size(), type));
     }
 
     std::string byte_order()
     {
       const std::uint16_t one = 1;
       return *reinterpret_cast<const unsigned char *>(&one) == 1 ? "LittleEndian" : "BigEndian";
+    }
+    template <std::size_t n_corners>
+    void write_grid(const std::string                                      &file,
+                    const std::vector<std::array<unsigned int, n_corners>> &cells,
+                    const NodalVectors<double>                             &X,
+                    const std::string                                      &point_arrays,
+                    const std::string                                      &cell_fields)
+    {
+      write_file(file,
+                 "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" +
+                   byte_order() + "\" header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\">\n" +
+                   "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(X.size()) +
+                   "\" NumberOfCells=\"" + std::to_string(cells.size()) + "\">\n" + //
+                   "<PointData>\n" + point_arrays + "</PointData>\n<CellData>\n" + cell_fields +
+                   "</CellData>\n<Points>\n" + data_array("Points", 3, components<double>(X)) +
+                   "</Points>\n<Cells>\n" + cell_arrays(cells) +
+                   "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
     }
   } // namespace
 
@@ -128,15 +147,21 @@ namespace retroforge
                  const std::vector<ScalarField> &cell_scalars)
   {
     AssertThrow(X.size() == mesh.n_nodes(), dealii::ExcDimensionMismatch(X.size(), mesh.n_nodes()));
-    write_file(file,
-               "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" +
-                 byte_order() + "\" header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\">\n" +
-                 "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(X.size()) +
-                 "\" NumberOfCells=\"" + std::to_string(mesh.n_cells()) + "\">\n" + //
-                 "<PointData>\n" + scalar_arrays(nodal_scalars, X.size()) +
-                 vector_arrays(nodal_vectors, X.size()) + "</PointData>\n<CellData>\n" +
-                 scalar_arrays(cell_scalars, mesh.n_cells()) + "</CellData>\n<Points>\n" +
-                 data_array("Points", 3, components<double>(X)) + "</Points>\n<Cells>\n" + cell_arrays(mesh) +
-                 "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
+    write_grid(file,
+               mesh.cells,
+               X,
+               scalar_arrays(nodal_scalars, X.size()) + vector_arrays(nodal_vectors, X.size()),
+               scalar_arrays(cell_scalars, mesh.n_cells()));
+  }
+
+  void write_vtu(const std::string              &file,
+                 const TriangleSurface          &surface,
+                 const std::vector<VectorField> &vertex_vectors)
+  {
+    write_grid(file,
+               surface.triangles(),
+               surface.vertices(),
+               vector_arrays(vertex_vectors, surface.vertices().size()),
+               "");
   }
 } // namespace retroforge

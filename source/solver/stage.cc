@@ -5,6 +5,12 @@
 
 namespace retroforge
 {
+  PhysicsBar::PhysicsBar(const std::vector<Die> &dies) : PhysicsBar(dies.size())
+  {
+    for (const Die &die : dies)
+      contact.die_vertices.emplace_back(die.surface() ? die.surface()->vertices().size() : 0);
+  }
+
   template <typename Number>
   ContactNode<Number>
   Stage<Number>::contact_node(const unsigned int p, const Field<Number> &W, const ActiveSet &active) const

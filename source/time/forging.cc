@@ -87,9 +87,10 @@ namespace retroforge
     const TetMesh          &old     = state.leg->scene.mesh;
     std::vector<double>     at_node = J.apply(cell_to_node(old, state.X, state.strain));
     Field<double>           W(remesh.mesh);
-    W.V          = J.apply(state.W.V);
-    W.P          = J.apply(state.W.P);
-    state.X      = J.positions(state.X);
+    W.V     = J.apply(state.W.V);
+    W.P     = J.apply(state.W.P);
+    state.X = J.positions(state.X);
+    state.strains_before.push_back(std::move(state.strain));
     state.strain = node_to_cell(remesh.mesh, at_node);
     state.W      = std::move(W);
     state.leg    = std::make_shared<Leg>(remesh.mesh, model_, timings_);
@@ -211,7 +212,8 @@ namespace retroforge
   void Forging::replay(const Process<double> &process,
                        const unsigned int     n,
                        const Source          &source,
-                       ForgingState          &state) const
+                       ForgingState          &state,
+                       const Watch           &watch) const
   {
     for (unsigned int i = 0; i < n; ++i)
     {
@@ -223,7 +225,10 @@ namespace retroforge
       state.W.V                   = record.solves[0].V;
       state.W.P                   = record.solves[0].P;
       NodalVectors<double> X_next = state.leg->increment.forward(process, state.X, true, record, state.W);
+      const NodalVectors<double> X_before = state.X;
       finish_increment(process, record, std::move(X_next), state);
+      if (watch)
+        watch({record, X_before, state, state.stroke / process.speed()});
     }
   }
 } // namespace retroforge

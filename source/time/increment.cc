@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <deal.II/base/mpi.h>
 
+#include <retroforge/element/strain_history.h>
 #include <retroforge/time/increment.h>
 
 namespace retroforge
@@ -100,6 +101,27 @@ namespace retroforge
     }
   } // namespace
 
+  LastStage::LastStage(const Scene                &scene,
+                       const StepModel            &model,
+                       const Process<double>      &process,
+                       const NodalVectors<double> &X_before,
+                       const IncrementRecord      &record)
+      : physics_(process.at_stroke(record.stroke))
+      , dt_(record.step / process.speed())
+      , contact_(make_contact_set(scene.mesh,
+                                  scene.topology,
+                                  scene.dies,
+                                  physics_.dies,
+                                  record.pairs,
+                                  model.ramp,
+                                  model.approach * dt_,
+                                  X_before,
+                                  model.layer))
+      , X_(record.solves.size() == 1 ? X_before : advanced(X_before, 0.5 * dt_, record.solves[0].V))
+      , stage(scene, physics_, contact_, X_)
+  {
+  }
+
   Increment::Increment(const Scene            &scene,
                        const StepModel        &model,
                        const NewtonParameters &newton,
@@ -142,7 +164,7 @@ namespace retroforge
           const auto   feature = scene_.dies[d].closest(stage.X[k], die.displacement, reach);
           if (!feature.found())
             continue;
-          const auto projection = scene_.dies[d].project(stage.X[k], die.displacement, feature);
+          const auto projection = scene_.dies[d].project(stage.X[k], die, feature);
           if (u * projection.n > approach_speed(projection.delta, stage.contact.tau, stage.contact.layer))
             return true;
         }
@@ -188,7 +210,7 @@ namespace retroforge
         if (s + 1 == solves.size() && !repeat)
         {
           // The next increment starts from what the record holds, resumed or not.
-          trial = recorded_field(stage, solves[s]);
+          trial                              = recorded_field(stage, solves[s]);
           const auto [deformation, friction] = stage.power(trial, active);
           record.deformation_energy          = dt * scene_.partition.sum(deformation);
           record.friction_energy             = dt * scene_.partition.sum(friction);
@@ -246,21 +268,39 @@ namespace retroforge
              : advanced(X, 0.5 * record.step / process.speed(), record.solves[0].V);
   }
 
+  namespace
+  {
+    /// A rank sums over its own cells: the others' strain has no weight there.
+    std::vector<double> owned_part(const std::vector<double> &strain, const Partition &partition)
+    {
+      std::vector<double> part(strain.size(), 0.);
+      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+        part[c] = strain[c];
+      return part;
+    }
+
+    /// Derivatives of one scalar that an increment collects from its stages.
+    struct IncrementBar
+    {
+      ContactSetBar        contact;
+      PhysicsBar           physics;
+      NodalVectors<double> X; ///< positions of the stage reversed last
+    };
+  } // namespace
+
   void Increment::reverse(const Process<double>      &process,
                           const NodalVectors<double> &X,
                           const IncrementRecord      &record,
-                          const double                energy_weight,
-                          NodalVectors<double>       &G,
-                          ProcessBar                 &process_bar)
+                          const StageSource          &source,
+                          std::vector<Costate>       &costates)
   {
-    const MPI_Comm           comm    = scene_.partition.comm;
-    const bool               first   = dealii::Utilities::MPI::this_mpi_process(comm) == 0;
-    const Physics<double>    physics = process.at_stroke(record.stroke);
-    const double             dt      = record.step / process.speed();
-    const ContactSet<double> contact = contact_set(physics, X, record, dt);
-    ContactSetBar            contact_bar(record.pairs.size());
-    PhysicsBar               physics_bar(scene_.dies.size());
-    NodalVectors<double>     X_bar(X.size());
+    const MPI_Comm            comm    = scene_.partition.comm;
+    const bool                first   = dealii::Utilities::MPI::this_mpi_process(comm) == 0;
+    const Physics<double>     physics = process.at_stroke(record.stroke);
+    const double              dt      = record.step / process.speed();
+    const ContactSet<double>  contact = contact_set(physics, X, record, dt);
+    std::vector<IncrementBar> bars(costates.size(),
+                                   {ContactSetBar(record.pairs.size()), PhysicsBar(scene_.dies), {}});
     for (unsigned int s = record.solves.size(); s-- > 0;)
     {
       const bool                 last     = s + 1 == record.solves.size();
@@ -269,50 +309,54 @@ namespace retroforge
       const Stage<double>        stage(scene_, physics, contact, position);
       const Field<double>        W = recorded_field(stage, solve);
       // X_{i+1} = X_i + dt V, and for the first of two stages  Y = X_i + dt/2 V.
-      const double         fraction = last ? 1. : 0.5;
-      NodalVectors<double> position_bar(X.size());
-      Field<double>        rhs(scene_.mesh);
-      if (first)
-        physics_bar.dt += fraction * dot(last ? G : X_bar, W.V);
-      if (last && energy_weight != 0.)
-      {
-        reverse_power(stage,
-                      W,
-                      solve.active,
-                      energy_weight * dt,
-                      rhs,
-                      position_bar,
-                      contact_bar,
-                      physics_bar,
-                      model_.shape_derivatives);
-        const auto [deformation, friction] = stage.power(W, solve.active);
-        physics_bar.dt += energy_weight * (deformation + friction);
-        sum_over_ranks(rhs, comm);
-      }
-      for (std::size_t k = 0; k < X.size(); ++k)
-        rhs.V[k] += fraction * dt * (last ? G[k] : X_bar[k]);
-      Field<double> minus_rhs(scene_.mesh), lambda;
-      minus_rhs.add(-1., rhs);
+      const double fraction = last ? 1. : 0.5;
       system_.assemble(stage, W, solve.active);
-      auto &guesses = earlier_lambdas_[s];
-      if (!guesses.empty() && (guesses[0].P.size() != X.size() || guesses[0].beta.size() != rhs.beta.size()))
-        guesses.clear();
-      system_.solve(minus_rhs, model_.adjoint_tolerance, lambda, guesses);
-      guesses.insert(guesses.begin(), lambda);
-      guesses.resize(std::min<std::size_t>(guesses.size(), 3));
-      reverse_residual(
-        stage, W, solve.active, lambda, position_bar, contact_bar, physics_bar, model_.shape_derivatives);
-      if (s == 0)
+      earlier_lambdas_[s].resize(costates.size());
+      for (std::size_t j = 0; j < costates.size(); ++j)
       {
-        reverse_contact_set(
-          scene_.dies, physics.dies, contact, model_.ramp, X, contact_bar, position_bar, physics_bar.contact);
+        IncrementBar               &bar     = bars[j];
+        Costate                    &costate = costates[j];
+        const NodalVectors<double> &next    = last ? costate.X : bar.X;
+        NodalVectors<double>        position_bar(X.size());
+        Field<double>               rhs(scene_.mesh);
+        if (first)
+          bar.physics.dt += fraction * dot(next, W.V);
+        if (last)
+        {
+          StageBar stage_bar{rhs, position_bar, bar.contact, bar.physics, model_.shape_derivatives};
+          source(j, {stage, W, solve.active}, stage_bar);
+          if (!costate.strain.empty())
+            bar.physics.dt += reverse_accumulate_strain(
+              scene_.mesh, position, W, dt, owned_part(costate.strain, scene_.partition), rhs, position_bar);
+          sum_over_ranks(rhs, comm);
+        }
+        for (std::size_t k = 0; k < X.size(); ++k)
+          rhs.V[k] += fraction * dt * next[k];
+        Field<double> minus_rhs(scene_.mesh), lambda;
+        minus_rhs.add(-1., rhs);
+        auto &guesses = earlier_lambdas_[s][j];
+        system_.solve(minus_rhs, model_.adjoint_tolerance, lambda, guesses);
+        guesses.insert(guesses.begin(), lambda);
+        guesses.resize(std::min<std::size_t>(guesses.size(), 3));
+        reverse_residual(
+          stage, W, solve.active, lambda, position_bar, bar.contact, bar.physics, model_.shape_derivatives);
+        if (s == 0)
+          reverse_contact_set(scene_.dies,
+                              physics.dies,
+                              contact,
+                              model_.ramp,
+                              X,
+                              bar.contact,
+                              position_bar,
+                              bar.physics.contact);
+        sum_over_ranks(position_bar, comm);
+        for (std::size_t k = 0; k < X.size(); ++k)
+          costate.X[k] += position_bar[k];
+        bar.X = std::move(position_bar);
       }
-      sum_over_ranks(position_bar, comm);
-      for (std::size_t k = 0; k < X.size(); ++k)
-        G[k] += position_bar[k];
-      X_bar = std::move(position_bar);
     }
-    process_bar.add(physics_bar, process, {record.stroke, record.step}, model_.approach);
+    for (std::size_t j = 0; j < costates.size(); ++j)
+      costates[j].process.add(bars[j].physics, process, {record.stroke, record.step}, model_.approach);
   }
 
   Field<Dual> Increment::tangent_field(const Stage<Dual>          &stage,
@@ -341,7 +385,7 @@ namespace retroforge
   NodalVectors<Dual> Increment::tangent(const Process<Dual>      &process,
                                         const NodalVectors<Dual> &X,
                                         const IncrementRecord    &record,
-                                        Energy<Dual>             &energy)
+                                        const TangentWatch       &watch)
   {
     const Physics<Dual>      physics       = process.at_stroke(record.stroke);
     const Dual               dt            = record.step / process.speed();
@@ -367,9 +411,7 @@ namespace retroforge
         position = advanced(X, Dual(0.5 * dt), W.V);
         continue;
       }
-      const auto [deformation, friction] = stage.power(W, record.solves[s].active);
-      energy.deformation += dt * deformation;
-      energy.friction += dt * friction;
+      watch({stage, W, record.solves[s].active}, dt);
       return advanced(X, dt, W.V);
     }
   }

@@ -37,6 +37,13 @@ namespace retroforge
     e0 += bar.e0;
     rho += bar.contact.rho;
     v0 += bar.contact.v0;
+    die_vertices.resize(dies.size());
+    for (std::size_t d = 0; d < bar.contact.die_vertices.size(); ++d)
+    {
+      die_vertices[d].resize(bar.contact.die_vertices[d].size());
+      for (std::size_t k = 0; k < die_vertices[d].size(); ++k)
+        die_vertices[d][k] += bar.contact.die_vertices[d][k];
+    }
     const double speed     = process.speed();
     double       speed_bar = -(bar.dt + approach * bar.contact.tau) * step.step / (speed * speed);
     for (unsigned int d = 0; d < dies.size(); ++d)
@@ -59,6 +66,10 @@ namespace retroforge
         all.insert(all.end(), {die.velocity[i], die.displacement[i]});
       all.push_back(die.friction);
     }
+    for (NodalVectors<double> &vertices : die_vertices)
+      if (!vertices.empty())
+        MPI_Allreduce(
+          MPI_IN_PLACE, vertices.data()->begin_raw(), 3 * vertices.size(), MPI_DOUBLE, MPI_SUM, comm);
     dealii::Utilities::MPI::sum(all, comm, all);
     auto next = all.begin();
     for (double *x : {&K, &m, &e0, &rho, &v0})

@@ -20,15 +20,33 @@ namespace retroforge
     void add_parameters(dealii::ParameterHandler &prm);
   };
 
-  /// The objective at parameters mu and initial positions X_0(mu) + shift.
+  /// What a design without parameters moves: every node of the billet, every vertex of the dies [mm].
+  struct FreeForm
+  {
+    NodalVectors<double>              X_0;
+    std::vector<NodalVectors<double>> dies; ///< of each die; empty: at rest
+  };
+
+  /// The objectives at parameters mu, with billet and dies moved by `shift` from there: one number each.
   struct ObjectiveOracle
   {
+    using Values = std::vector<double>;
+
     /// Decides everything anew.
-    std::function<double(const std::vector<double> &mu, const NodalVectors<double> &shift)> free;
+    std::function<Values(const std::vector<double> &mu, const FreeForm &shift)> free;
     /// Obeys the recorded decisions.
-    std::function<double(const std::vector<double> &mu, const NodalVectors<double> &shift)> replayed;
+    std::function<Values(const std::vector<double> &mu, const FreeForm &shift)> replayed;
     /// The direct method, along (mu_dot, shift_dot).
-    std::function<double(const std::vector<double> &mu_dot, const NodalVectors<double> &shift_dot)> tangent;
+    std::function<Values(const std::vector<double> &mu_dot, const FreeForm &shift_dot)> tangent;
+  };
+
+  /// An objective's value, and its gradient as the backward sweep has it.
+  struct Judged
+  {
+    std::string         name, unit;
+    double              value;
+    std::vector<double> gradient; ///< one per parameter
+    FreeForm            shape;    ///< derivatives in nodes and vertices
   };
 
   /// Differences at one step (relative to the parameter's scale).
@@ -41,12 +59,14 @@ namespace retroforge
   /// One derivative seen from all sides.
   struct CheckRow
   {
-    std::string                parameter, unit;
+    std::string                objective, parameter, unit;
     double                     adjoint, tangent;
     std::vector<DifferenceRow> steps;
     std::vector<double>        taylor_orders; ///< of the replayed remainder, one per halving
     bool                       passed;
-    double                     magnitude = 0.; ///< of the derivative but for cancellation, or 0
+    double                     magnitude        = 0.; ///< of the derivative but for cancellation, or 0
+    double                     least_difference = 0.; ///< that differences are asked to resolve to the bar
+    bool                       is_zero = false; ///< the objective does not depend on it, but for rounding
 
     /// Against the larger of the derivative and its magnitude: in a direction along which the derivative
     /// cancels, rounding does not.
@@ -57,15 +77,15 @@ namespace retroforge
     double best_free_error() const;
   };
 
-  /// Checks each design parameter, and one random direction of all X_0.
-  std::vector<CheckRow> check_gradient(const CheckParameters      &parameters,
-                                       const Design               &design,
-                                       const std::vector<double>  &mu,
-                                       double                      value,
-                                       const std::vector<double>  &gradient,
-                                       const NodalVectors<double> &X_0_bar,
-                                       double                      length,
-                                       const ObjectiveOracle      &oracle);
+  /// Checks the derivative of each objective in each design parameter, along one random direction of all X_0,
+  /// and along one of all vertices of each die that has some. Objectives share the runs. Rows are ordered by
+  /// objective.
+  std::vector<CheckRow> check_gradient(const CheckParameters     &parameters,
+                                       const Design              &design,
+                                       const std::vector<double> &mu,
+                                       const std::vector<Judged> &judged,
+                                       double                     length,
+                                       const ObjectiveOracle     &oracle);
 
   /// The table a user reads.
   void print(const std::vector<CheckRow> &rows, std::ostream &out);

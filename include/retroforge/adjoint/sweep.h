@@ -2,36 +2,47 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/time/forging.h>
+#include <retroforge/time/objective_trace.h>
 
 namespace retroforge
 {
-  /// dPhi/dX_0 and dPhi/d(process).
+  /// A recorded run, to be differentiated. What is referred to must live as long.
+  struct RecordedForging
+  {
+    const ForgingModel    &model;
+    std::shared_ptr<Leg>   first; ///< the leg in which the run began
+    const Process<double> &process;
+    Forging::Source        source;
+    unsigned int           n; ///< increments
+    const Objectives      &objectives;
+    Timings               &timings;
+  };
+
+  /// dPhi/dX_0 and dPhi/d(process) of one combination of objectives.
   struct AdjointResult
   {
     NodalVectors<double> X_0;
     ProcessBar           process;
-    unsigned int         linear_solves = 0;
   };
 
-  /// The backward sweep over all recorded increments of a run for Phi = energy: one linear solve per stage,
-  /// J^T at each remeshing. Two meshes are in memory while one is left for the other.
-  /// @param first  the leg in which the run began
-  /// @param end    where it ended; earlier positions follow from the recorded velocities
-  AdjointResult adjoint_sweep(const ForgingModel         &model,
-                              const std::shared_ptr<Leg> &first,
-                              const Process<double>      &process,
-                              const ForgingState         &end,
-                              const Forging::Source      &source,
-                              Timings                    &timings);
+  struct AdjointSweep
+  {
+    std::vector<AdjointResult> of; ///< each combination
+    unsigned int               linear_solves = 0;
+  };
 
-  /// The direct method: derivative of the energy over n recorded increments along one direction of (X_0,
-  /// process), by the same kernels run forward on dual numbers.
-  Energy<Dual> tangent_sweep(const ForgingModel    &model,
-                             std::shared_ptr<Leg>   leg,
-                             const Process<Dual>   &process,
-                             NodalVectors<Dual>     X_0,
-                             unsigned int           n,
-                             const Forging::Source &source,
-                             Timings               &timings);
+  /// The backward sweep over all recorded increments: per combination one linear solve per stage, J^T at each
+  /// remeshing. Two meshes are in memory while one is left for the other. Objectives of the end keep the
+  /// features they decided on.
+  /// @param rows  of each objective, as the run was traced
+  /// @param end   where it ended; earlier positions and strains follow from the recorded velocities
+  AdjointSweep adjoint_sweep(const RecordedForging               &run,
+                             const std::vector<PathRows<double>> &rows,
+                             const ForgingState                  &end,
+                             const std::vector<Combination>      &combinations);
+
+  /// The direct method: all objectives and their derivatives along one direction of (X_0, process), by the
+  /// same kernels run forward on dual numbers.
+  std::vector<Dual>
+  tangent_sweep(const RecordedForging &run, const Process<Dual> &process, NodalVectors<Dual> X_0);
 } // namespace retroforge

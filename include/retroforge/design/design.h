@@ -21,6 +21,7 @@ namespace retroforge
       friction,    ///< of one die, or of all that have friction
       speed,       ///< of one die, along its velocity
       offset,      ///< of one die, along its facing direction
+      die_shape,   ///< a measure of one tripod or bell
       stretch,     ///< billet/stretch: mu of x, y -> (1 + 2 mu/a)  (113)
       radius       ///< billet/radius: x, y -> radius/nominal  (116)-(117)
     };
@@ -31,6 +32,7 @@ namespace retroforge
     unsigned int die     = invalid_index; ///< invalid_index: all
     double       nominal = 0.;
     double       scale   = 1.; ///< a length or size that steps are relative to
+    std::string  measure = {}; ///< of a die's shape
   };
 
   /// The map from parameter values to the initial positions and the process, and its derivative: both are
@@ -47,6 +49,7 @@ namespace retroforge
 
     const std::vector<DesignParameter> &parameters() const { return parameters_; }
     std::vector<double>                 nominal() const;
+    const std::string                  &die_name(const unsigned int d) const { return dies_[d].name; }
 
     template <typename Number>
     NodalVectors<Number> positions(const std::vector<Number> &mu) const;

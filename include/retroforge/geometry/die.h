@@ -4,6 +4,8 @@
 
 #include <retroforge/geometry/feature_projection.h>
 
+#include <memory>
+
 namespace retroforge
 {
   /// What of a die can change with time or design. Everything else about it is geometry.
@@ -13,6 +15,8 @@ namespace retroforge
     Vector3<Number> velocity;     ///< [mm/s]
     Vector3<Number> displacement; ///< from the position at the start of the run [mm]
     Number          friction;     ///< alpha of tau = -alpha K |dv|^(m-1) dv [mm^(-m)]
+    /// Of its surface, where a design has moved them or a derivative in them is wanted; null: as made [mm].
+    std::shared_ptr<const NodalVectors<Number>> vertices;
   };
 
   /// A rigid die: a plane in closed form, or a triangulated surface whose normals point to the workpiece.
@@ -56,6 +60,19 @@ namespace retroforge
       }
       return projection;
     }
+
+    /// The same of a die in a given state, its vertices included.
+    template <typename Number>
+    Projection<Number>
+    project(const Vector3<Number> &X, const DieState<Number> &state, const DieFeature &feature) const
+    {
+      if (state.vertices)
+        return project_on_feature(surface_->shape, *state.vertices, feature, X, state.displacement);
+      return project(X, state.displacement, feature);
+    }
+
+    /// The same die with its surface's vertices elsewhere [mm].
+    Die moved(NodalVectors<double> vertices) const;
 
     /// Adds the pull-back of project to X_bar and displacement_bar, and to vertices_bar if given. The normal
     /// of a plane depends on neither.

@@ -6,6 +6,9 @@
 #include <retroforge/geometry/die_shapes.h>
 
 #include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/tensor.h>
+
+#include <map>
 
 namespace retroforge
 {
@@ -41,12 +44,25 @@ namespace retroforge
     /// Normalises `facing`.
     void check();
 
+    /// Names of the measures of a tripod or bell, as in its section; empty for other shapes.
+    std::vector<std::string> measures() const;
+    /// A measure by its name [mm, degrees].
+    double measure(const std::string &name) const;
+
+    /// Vertices where the die stands at the start, some of its measures changed; always as many as die() has.
+    /// @throws Error  for measures that do not fit each other
+    template <typename Number>
+    NodalVectors<Number> vertices(const std::map<std::string, Number> &changed) const;
+
     /// @throws Error  for a file or measures that make no surface
     Die              die() const;
-    DieState<double> initial_state() const { return {velocity, Vec3(), friction}; }
+    DieState<double> initial_state() const { return {velocity, Vec3(), friction, {}}; }
 
   private:
     std::string     section() const { return "Die " + name; }
     TriangleSurface surface() const;
+    template <typename Number>
+    ShapeMesh<Number>    shape_mesh(const std::map<std::string, Number> &changed, Segments &segments) const;
+    dealii::Tensor<2, 3> turn() const;
   };
 } // namespace retroforge

@@ -56,11 +56,45 @@ namespace retroforge
     CavityProfile<Number> profile{60., 25., 8., 12.};
   };
 
+  /// Into how many segments the arcs of a shape are divided, in the order in which they are asked for. A
+  /// shape that is varied keeps the numbers of the one it comes from, and with them its triangles.
+  class Segments
+  {
+  public:
+    /// Segments of an arc whose chords stay within `error` of it; or what was answered the time before.
+    unsigned int operator()(double radius, double angle, double error);
+
+    /// The next shape has the same numbers.
+    void again() { next_ = 0; }
+
+  private:
+    std::vector<unsigned int> n_;
+    std::size_t               next_ = 0;
+  };
+
   /// @param chord_error  largest distance of facets from the smooth shape [mm]
   /// @throws Error  whose place begins with `where`, when the measures do not fit each other
   template <typename Number>
-  ShapeMesh<Number> make_tripod(const std::string &where, const TripodShape<Number> &, double chord_error);
+  ShapeMesh<Number>
+  make_tripod(const std::string &where, const TripodShape<Number> &, double chord_error, Segments &);
 
   template <typename Number>
-  ShapeMesh<Number> make_bell(const std::string &where, const BellShape<Number> &, double chord_error);
+  ShapeMesh<Number>
+  make_bell(const std::string &where, const BellShape<Number> &, double chord_error, Segments &);
+
+  template <typename Number>
+  ShapeMesh<Number>
+  make_tripod(const std::string &where, const TripodShape<Number> &shape, const double chord_error)
+  {
+    Segments segments;
+    return make_tripod(where, shape, chord_error, segments);
+  }
+
+  template <typename Number>
+  ShapeMesh<Number>
+  make_bell(const std::string &where, const BellShape<Number> &shape, const double chord_error)
+  {
+    Segments segments;
+    return make_bell(where, shape, chord_error, segments);
+  }
 } // namespace retroforge

@@ -23,6 +23,12 @@ namespace retroforge
     /// Deformation and friction [mJ].
     static std::pair<double, double> split(const PathRows<double> &rows);
 
+    std::map<std::string, double> parts(const PathRows<double> &rows) const override
+    {
+      const auto [deformation, friction] = split(rows);
+      return {{"deformation", deformation}, {"friction", friction}};
+    }
+
     void reverse_integrals(const StageView<double>   &view,
                            const std::vector<double> &weights,
                            StageBar                  &bar) const override;

@@ -28,12 +28,18 @@ namespace retroforge
     /// @param rounding  r [mm]; 0 has a kink where a node lies on the target, with derivative zero at it
     explicit FillingObjective(TargetSurface target, double rounding = 0.);
 
-    std::string name() const override { return "filling"; }
-    std::string unit() const override { return "mm^3"; }
+    std::string  name() const override { return "filling"; }
+    std::string  unit() const override { return "mm^3"; }
+    unsigned int target_die() const override { return target_.die(); }
 
     /// @throws Error  when the workpiece's surface is folded onto itself (see TriangleSurface)
     void                    decide(const FinalView<double> &view) override;
     const FillingDecisions &decisions() const { return decisions_; }
+
+    std::map<std::string, double> parts(const std::vector<double> &integrals) const override
+    {
+      return {{"workpiece onto target", integrals[0]}, {"target onto workpiece", integrals[1]}};
+    }
 
     /// The weights' meaning: integrals are the two sums, workpiece -> target and target -> workpiece.
     void reverse_integrals(const FinalView<double>   &view,

@@ -4,6 +4,7 @@
 
 #include <retroforge/solver/stage.h>
 
+#include <map>
 #include <string>
 
 /// Objectives of the workpiece at the end:  Phi = F(b(X_N, q_N, ...)),  with a few integrals b over the
@@ -48,6 +49,10 @@ namespace retroforge
     virtual std::string name() const = 0;
     virtual std::string unit() const = 0;
 
+    /// The die whose surface is the target, or invalid_index: whoever moves its vertices passes them in the
+    /// view.
+    virtual unsigned int target_die() const { return invalid_index; }
+
     /// Takes the discrete decisions (closest features) on which value and derivatives then rely. The same on
     /// every rank. Called once for a run; a replay keeps them.
     virtual void decide(const FinalView<double> &) {}
@@ -64,6 +69,9 @@ namespace retroforge
     /// F of completed integrals.
     virtual double value(const std::vector<double> &integrals) const = 0;
     virtual Dual   value(const std::vector<Dual> &integrals) const   = 0;
+
+    /// Numbers told beside the value, in its unit unless their names say other.
+    virtual std::map<std::string, double> parts(const std::vector<double> &) const { return {}; }
 
     /// dF/db.
     virtual std::vector<double> reverse_value(const std::vector<double> &integrals) const = 0;

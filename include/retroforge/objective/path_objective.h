@@ -4,6 +4,7 @@
 
 #include <retroforge/solver/stage.h>
 
+#include <map>
 #include <string>
 
 /// Objectives of what happens during a forging, in two levels:
@@ -78,6 +79,9 @@ namespace retroforge
     /// @throws Error  when Phi is not defined for these increments (an empty window)
     virtual double value(const PathRows<double> &rows) const = 0;
     virtual Dual   value(const PathRows<Dual> &rows) const   = 0;
+
+    /// Numbers told beside the value, in its unit: summands, or the true maximum beside a smooth one.
+    virtual std::map<std::string, double> parts(const PathRows<double> &) const { return {}; }
 
     /// dPhi/d(a_i, dt_i, t_i) of each increment.
     virtual PathRows<double> reverse_value(const PathRows<double> &rows) const = 0;

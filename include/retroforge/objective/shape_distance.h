@@ -14,8 +14,9 @@ namespace retroforge
   public:
     explicit ShapeDistance(TargetSurface target) : target_(std::move(target)) {}
 
-    std::string name() const override { return "shape distance"; }
-    std::string unit() const override { return "mm^2"; }
+    std::string  name() const override { return "shape distance"; }
+    std::string  unit() const override { return "mm^2"; }
+    unsigned int target_die() const override { return target_.die(); }
 
     void decide(const FinalView<double> &view) override { seen_ = target_.seen_by_workpiece(view); }
     const std::vector<SeenFeature> &decisions() const { return seen_; }
@@ -55,6 +56,11 @@ namespace retroforge
     /// The radius from which others are measured, to keep digits: Phi does not depend on it.
     /// @throws Error  when a patch is not there
     void decide(const FinalView<double> &view) override;
+
+    std::map<std::string, double> parts(const std::vector<double> &integrals) const override
+    {
+      return {{"radius [mm]", radius(integrals)}};
+    }
 
     /// The radius that fits best [mm].
     double radius(const std::vector<double> &integrals) const

@@ -31,6 +31,8 @@ namespace retroforge
 
     double true_maximum() const { return reference_; }
 
+    std::map<std::string, double> parts(const std::vector<double> &) const override;
+
     void reverse_integrals(const FinalView<double>   &view,
                            const std::vector<double> &weights,
                            FinalBar                  &bar) const override;

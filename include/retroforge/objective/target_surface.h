@@ -27,6 +27,7 @@ namespace retroforge
                            unsigned int                           die    = invalid_index,
                            const std::optional<Box>              &region = {});
 
+    unsigned int              die() const { return die_; }
     const TriangleSurface    &shape() const { return *shape_; }
     const std::optional<Box> &region() const { return region_; }
 

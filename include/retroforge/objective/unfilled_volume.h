@@ -33,8 +33,9 @@ namespace retroforge
     /// @throws Error
     UnfilledVolume(TargetSurface target, Cavity cavity, unsigned int n_samples, double layer = 2.);
 
-    std::string name() const override { return "unfilled volume"; }
-    std::string unit() const override { return "mm^3"; }
+    std::string  name() const override { return "unfilled volume"; }
+    std::string  unit() const override { return "mm^3"; }
+    unsigned int target_die() const override { return target_.die(); }
 
     /// @throws Error  when the workpiece's surface is folded onto itself
     void decide(const FinalView<double> &view) override;

@@ -57,7 +57,7 @@ namespace retroforge
       double                 tangent = unknown;
       std::vector<CheckStep> steps;
       std::vector<double>    taylor_orders;
-      std::string            verdict; ///< "passed" or "failed"
+      std::string            verdict; ///< "passed", "failed", or "zero" where there is no dependence
     };
 
     std::string command, version, commit, blas;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/core/types.h>
+#include <retroforge/geometry/triangle_surface.h>
 #include <retroforge/mesh/tet_mesh.h>
 
 #include <string>
@@ -38,4 +39,9 @@ namespace retroforge
                  const std::vector<ScalarField> &nodal_scalars,
                  const std::vector<VectorField> &nodal_vectors,
                  const std::vector<ScalarField> &cell_scalars);
+
+  /// The same of a surface, with fields on its vertices.
+  void write_vtu(const std::string              &file,
+                 const TriangleSurface          &surface,
+                 const std::vector<VectorField> &vertex_vectors);
 } // namespace retroforge

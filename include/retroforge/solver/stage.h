@@ -39,6 +39,9 @@ namespace retroforge
     ContactSensitivity contact;
 
     explicit PhysicsBar(const std::size_t n_dies) { contact.dies.resize(n_dies); }
+
+    /// Takes up derivatives in the dies' vertices, too.
+    explicit PhysicsBar(const std::vector<Die> &dies);
   };
 
   /// Which pairs count as h > 0; empty: decide from the velocity. A replay passes what was recorded.

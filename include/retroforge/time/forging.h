@@ -30,9 +30,10 @@ namespace retroforge
     double               stroke = 0.;
     unsigned int         depth  = 0; ///< an increment is the whole one / 2^depth
 
-    Energy<double>            energy;
-    unsigned int              increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;
-    std::vector<unsigned int> remeshed; ///< the increments, from 0, that began on a new mesh
+    Energy<double>                   energy;
+    unsigned int                     increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;
+    std::vector<unsigned int>        remeshed;       ///< the increments, from 0, that began on a new mesh
+    std::vector<std::vector<double>> strains_before; ///< of each remeshing, on the mesh it left
   };
 
   /// What is known at the end of an increment.
@@ -72,8 +73,11 @@ namespace retroforge
                  const Watch           &watch) const;
 
     /// Obeys the decisions of n recorded increments, and starts each solve from the recorded one.
-    void
-    replay(const Process<double> &process, unsigned int n, const Source &source, ForgingState &state) const;
+    void replay(const Process<double> &process,
+                unsigned int           n,
+                const Source          &source,
+                ForgingState          &state,
+                const Watch           &watch = {}) const;
 
     /// Changes the mesh as recorded: positions X' = J X + c, strain through the nodes.
     void change_mesh(const RemeshRecord &remesh, ForgingState &state) const;

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/objective/path_objective.h>
 #include <retroforge/record/increment_record.h>
 #include <retroforge/solver/newton.h>
 #include <retroforge/time/process.h>
@@ -35,6 +36,41 @@ namespace retroforge
     Number total() const { return deformation + friction; }
   };
 
+  /// What flows backwards through a run for one scalar Phi.
+  struct Costate
+  {
+    NodalVectors<double> X;       ///< dPhi/dX, complete on every rank
+    std::vector<double>  strain;  ///< dPhi/dq of each cell, complete on every rank; empty: Phi has none
+    ProcessBar           process; ///< this rank's part
+  };
+
+  /// Adds what costate j's Phi takes from the last stage of the increment, this rank's part.
+  using StageSource = std::function<void(std::size_t j, const StageView<double> &, StageBar &)>;
+
+  /// What looks on while a tangent passes: the last stage, and the increment's time dt.
+  using TangentWatch = std::function<void(const StageView<Dual> &, const Dual &)>;
+
+  /// The last stage of a recorded increment, where objectives are taken.
+  class LastStage
+  {
+  public:
+    /// @param X_before  positions before the increment
+    LastStage(const Scene                &scene,
+              const StepModel            &model,
+              const Process<double>      &process,
+              const NodalVectors<double> &X_before,
+              const IncrementRecord      &record);
+
+  private:
+    Physics<double>      physics_;
+    double               dt_;
+    ContactSet<double>   contact_;
+    NodalVectors<double> X_;
+
+  public:
+    const Stage<double> stage;
+  };
+
   /// One increment of time: forward, its tangent, and its reverse.
   class Increment
   {
@@ -54,20 +90,20 @@ namespace retroforge
                                  IncrementRecord            &record,
                                  Field<double>              &W);
 
-    /// Derivative of X_{i+1} and of the energy along (X, process), at a recorded increment.
+    /// Derivative of X_{i+1} along (X, process), at a recorded increment.
     NodalVectors<Dual> tangent(const Process<Dual>      &process,
                                const NodalVectors<Dual> &X,
                                const IncrementRecord    &record,
-                               Energy<Dual>             &energy);
+                               const TangentWatch       &watch);
 
-    /// Reverse of forward for  Phi = weights·energy + (what follows):  G is dPhi/dX_{i+1} on entry, dPhi/dX_i
-    /// on exit.
+    /// Reverse of forward, for several scalars at once: they share the matrix and its preconditioner, and
+    /// each has a solve per stage of its own. Costates are those of X_{i+1} and q_{i+1} on entry, of X_i and
+    /// q_i on exit.
     void reverse(const Process<double>      &process,
                  const NodalVectors<double> &X,
                  const IncrementRecord      &record,
-                 double                      energy_weight,
-                 NodalVectors<double>       &G,
-                 ProcessBar                 &process_bar);
+                 const StageSource          &source,
+                 std::vector<Costate>       &costates);
 
     /// X_{i+1} of a recorded increment, to the bit.
     NodalVectors<double> advance(const Process<double>      &process,
@@ -107,7 +143,7 @@ namespace retroforge
     LinearSystem    &system_;
     Newton           newton_;
     Timings         &timings_;
-    /// Of each stage, from the increments reversed last: where the next adjoint system starts.
-    std::array<std::vector<Field<double>>, 2> earlier_lambdas_;
+    /// Of each stage and costate, from the increments reversed last: where the next adjoint system starts.
+    std::array<std::vector<std::vector<Field<double>>>, 2> earlier_lambdas_;
   };
 } // namespace retroforge

@@ -34,8 +34,10 @@ namespace retroforge
   {
     double                        K = 0., m = 0., e0 = 0., rho = 0., v0 = 0.;
     std::vector<DieState<double>> dies;
+    /// In the vertices of each die; empty for planes and dies never touched.
+    std::vector<NodalVectors<double>> die_vertices;
 
-    explicit ProcessBar(const std::size_t n_dies) : dies(n_dies, DieState<double>{Vec3(), Vec3(), 0.}) {}
+    explicit ProcessBar(const std::size_t n_dies) : dies(n_dies, DieState<double>{Vec3(), Vec3(), 0., {}}) {}
 
     /// Pull-back of at_stroke, dt = step/speed and tau = approach dt.
     void add(const PhysicsBar &bar, const Process<double> &process, const StrokeStep &step, double approach);

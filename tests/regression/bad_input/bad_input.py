@@ -75,9 +75,24 @@ MESHES = {
     "garbage": "this is not a mesh\n",
 }
 
+OPEN_STL = """solid open
+facet normal 0 0 1
+outer loop
+vertex 0 0 0
+vertex 9 0 0
+vertex 0 9 0
+endloop
+endfacet
+endsolid
+"""
+
 
 def file_mesh(name):
     return ["--set", "Billet/symmetry planes=", "--set", "Billet/shape=file", "--set", f"Billet/file name={name}.msh"]
+
+
+def objective(name, *pairs):
+    return settings(f"Objectives/names={name}", *(f"Objective {name}/{pair}" for pair in pairs))
 
 
 def settings(*pairs):
@@ -117,6 +132,22 @@ MISTAKES = {
     "non-manifold mesh": (file_mesh("non_manifold"), r"face"),
     "mesh without tetrahedra": (file_mesh("no_tets"), r"tetrahed"),
     "garbage for a mesh": (file_mesh("garbage"), r"garbage\.msh"),
+    "no objective": (settings("Objectives/names="), r"Objectives/names"),
+    "objective named twice": (settings("Objectives/names=energy, energy"), r"Objectives/names.*energy.*twice"),
+    "unknown type of objective": (settings("Objective energy/type=beauty"), r"Objective energy/type.*beauty"),
+    "objective on a missing die": (objective("mean effort", "die=middle"), r"Objective mean effort.*middle.*upper"),
+    "effort of a die that stands still": (objective("mean effort", "die=lower"), r"Objective mean effort/die.*lower"),
+    "window after the end": (objective("mean effort", "window begin=50"), r"Objective mean effort/window begin.*50"),
+    "window that ends before it begins": (objective("mean effort", "window begin=2", "window end=1"),
+                                          r"Objective mean effort.*window"),
+    "no target": (objective("filling"), r"Objective filling/target"),
+    "missing target": (objective("filling", "target=absent.stl"), r"absent\.stl"),
+    "plane for a target": (objective("filling", "target=die upper"), r"Objective filling/target.*upper.*plane"),
+    "target not watertight": (objective("unfilled volume", "target=open.stl"), r"open\.stl.*watertight"),
+    "region without extent": (objective("fold", "region from=1, 1, 1", "region to=2, 2, 0"), r"Objective fold/region from"),
+    "exponent below one": (objective("fold", "exponent=0.5"), r"exponent.*0\.5"),
+    "maximum without sharpness": (objective("maximum strain", "sharpness=0"), r"Objective maximum strain/sharpness"),
+    "cylinder without patches": (objective("cylinder distance"), r"patch"),
     "too few Newton steps": (settings("Newton/max iterations=1"), r"Newton"),
 }
 
@@ -196,7 +227,7 @@ def resumed(folder):
 
 def full_disk(folder):
     """A small file system of our own, where the machine lets us have one."""
-    for size, name, more in (("4k", "first files", ""), ("64k", "fields", ""),
+    for size, name, more in (("4k", "first files", ""), ("80k", "fields", ""),
                              ("120k", "record", "--set 'Output/fields every=0' --set Press/increments=60")):
         disk, saved = os.path.join(folder, f"disk_{size}"), os.path.join(folder, f"saved_{size}")
         os.mkdir(disk)
@@ -230,6 +261,8 @@ def main():
         for name, content in MESHES.items():
             with open(os.path.join(folder, f"{name}.msh"), "w", encoding="utf-8") as file:
                 file.write(content)
+        with open(os.path.join(folder, "open.stl"), "w", encoding="utf-8") as file:
+            file.write(OPEN_STL)
         judge("missing parameter file", run(["absent.prm"], folder), "absent.prm")
         judge("unknown command", run(["case.prm"], folder, command="forge"), "forge")
         for name, (arguments, pattern) in MISTAKES.items():

@@ -19,8 +19,13 @@ namespace retroforge
         , remesher(parameters.remeshing, parameters.edge_length(scene.mesh), model.dies, MPI_COMM_WORLD)
         , forging(model, parameters.press, remesher, timings)
         , forged(forging.start(leg, scene.mesh.X))
+        , objectives(all.make_objectives(model.dies))
+        , trace(objectives, model, process)
     {
-      forging.run(process, forged, [&](const IncrementEvent &event) { records.push_back(event.record); });
+      forging.run(process, forged, [&](const IncrementEvent &event) {
+        records.push_back(event.record);
+        trace.add(event);
+      });
     }
 
     explicit RecordedRun(const Parameters &all) : RecordedRun(all, {all.dies[0].die(), all.dies[1].die()}) {}
@@ -30,11 +35,20 @@ namespace retroforge
       return [&](const unsigned int i) -> const IncrementRecord & { return records[i]; };
     }
 
-    AdjointResult adjoint() { return adjoint_sweep(model, leg, process, forged, source(), timings); }
+    RecordedForging recorded()
+    {
+      return {model, leg, process, source(), static_cast<unsigned int>(records.size()), objectives, timings};
+    }
+
+    /// Of the first objective.
+    AdjointResult adjoint()
+    {
+      return adjoint_sweep(recorded(), trace.rows(), forged, each(objectives)).of[0];
+    }
 
     double tangent(const Process<Dual> &along, const NodalVectors<Dual> &X)
     {
-      return tangent_sweep(model, leg, along, X, records.size(), source(), timings).total().dx(0);
+      return tangent_sweep(recorded(), along, X)[0].dx(0);
     }
 
     double replayed_energy(const Process<double> &at, const NodalVectors<double> &X) const
@@ -54,5 +68,7 @@ namespace retroforge
     Forging                      forging;
     std::vector<IncrementRecord> records;
     ForgingState                 forged;
+    Objectives                   objectives;
+    ObjectiveTrace               trace;
   };
 } // namespace retroforge

@@ -239,7 +239,7 @@ struct CornerScene
             Die("side", Vec3({5., 0., 0.}), side / side.norm())};
     if (curved)
       dies[0] = Die("lower", wavy_sheet(), 2.);
-    states = {{Vec3(), 0.1 * random.vector(), 0.3}, {Vec3(), 0.1 * random.vector(), 0.2}};
+    states = {{Vec3(), 0.1 * random.vector(), 0.3, {}}, {Vec3(), 0.1 * random.vector(), 0.2, {}}};
     pairs  = find_contact_pairs(topology, dies, states, X, ramp, 1.5 * ramp.width);
   }
 };

@@ -60,7 +60,7 @@ struct FinalProblem
       : scene(std::move(mesh), {Die("lower", Vec3(), Vec3({0., 0., 1.}))}, comm)
       , at{scene.mesh.X,
            std::vector<double>(scene.mesh.n_cells(), 0.3),
-           {{Vec3(), Vec3(), 0.}},
+           {{Vec3(), Vec3(), 0., {}}},
            std::move(target)}
   {
   }
@@ -87,7 +87,7 @@ struct FinalProblem
   {
     FinalBar bar(scene, inputs.target.size());
     objective.reverse_integrals(view(inputs), objective.reverse_value(integrals(objective, inputs)), bar);
-    FinalInputs<double> result{bar.X, bar.q, {{Vec3(), bar.displacements[0], 0.}}, bar.target};
+    FinalInputs<double> result{bar.X, bar.q, {{Vec3(), bar.displacements[0], 0., {}}}, bar.target};
     for (const auto &[name, entries] : result.groups())
       for (double *entry : entries)
         *entry = scene.partition.sum(*entry);
@@ -98,7 +98,7 @@ struct FinalProblem
   {
     return {NodalVectors<Dual>(at.X.size()),
             std::vector<Dual>(at.q.size(), Dual(0.)),
-            {DieState<Dual>{Vector3<Dual>(), Vector3<Dual>(), Dual(0.)}},
+            {DieState<Dual>{Vector3<Dual>(), Vector3<Dual>(), Dual(0.), {}}},
             NodalVectors<Dual>(at.target.size())};
   }
 };

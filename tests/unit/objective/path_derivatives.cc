@@ -127,7 +127,7 @@ struct PathProblem
     at.tau             = 1.5;
     at.speed           = 2.;
     for (auto &die : at.physics.dies)
-      die = {2. * random.vector(), 0.1 * random.vector(), 0.3};
+      die = {2. * random.vector(), 0.1 * random.vector(), 0.3, {}};
     for (unsigned int i = 0; i < n_increments; ++i)
     {
       auto &state = at.states[i];

@@ -280,7 +280,7 @@ double tangent_in_speed(const RecordedRun &run, const FinalObjective &objective)
                         {},
                         run.process.leading_die};
   for (const auto &die : run.process.dies)
-    process.dies.push_back({constant(die.velocity), constant(die.displacement), Dual(die.friction)});
+    process.dies.push_back({constant(die.velocity), constant(die.displacement), Dual(die.friction), {}});
   for (unsigned int i = 0; i < 3; ++i)
   {
     Dual &v           = process.dies[process.leading_die].velocity[i];
@@ -289,9 +289,8 @@ double tangent_in_speed(const RecordedRun &run, const FinalObjective &objective)
   NodalVectors<Dual> X;
   for (const Vec3 &x : run.scene.mesh.X)
     X.push_back(constant(x));
-  Energy<Dual> energy;
   for (const IncrementRecord &record : run.records)
-    X = run.leg->increment.tangent(process, X, record, energy);
+    X = run.leg->increment.tangent(process, X, record, [](const StageView<Dual> &, const Dual &) {});
   const std::vector<Dual> no_strain(run.scene.mesh.n_cells(), Dual(0.));
   const auto              dies = process.at_stroke(0.).dies;
   return objective.value(objective.integrals(FinalView<Dual>{run.scene, X, no_strain, dies})).dx(0);

@@ -50,15 +50,21 @@ namespace
       const std::vector<double>    value   = {mu};
       const Process<double>        process = design.process(value);
       std::vector<IncrementRecord> records;
-      ForgingState                 forged = forging.start(leg, design.positions(value));
-      forging.run(process, forged, [&](const IncrementEvent &event) { records.push_back(event.record); });
-      const AdjointResult result = adjoint_sweep(
-        model,
-        leg,
-        process,
-        forged,
-        [&](const unsigned int i) -> const IncrementRecord & { return records[i]; },
-        timings);
+      ForgingState                 forged     = forging.start(leg, design.positions(value));
+      const Objectives             objectives = parameters.make_objectives(model.dies);
+      ObjectiveTrace               trace(objectives, model, process);
+      forging.run(process, forged, [&](const IncrementEvent &event) {
+        records.push_back(event.record);
+        trace.add(event);
+      });
+      const RecordedForging run{model,
+                                leg,
+                                process,
+                                [&](const unsigned int i) -> const IncrementRecord & { return records[i]; },
+                                forged.increments,
+                                objectives,
+                                timings};
+      const AdjointResult   result = adjoint_sweep(run, trace.rows(), forged, each(objectives)).of[0];
       std::printf("%.17g,%.17g,%.17g,%u,%u\n",
                   mu,
                   forged.energy.total(),

@@ -1,0 +1,146 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""Every objective by every parameter:  run.py BUILD flat | curved | quick | several | methods
+
+flat: a tilted plane, nodes that arrive. curved: the tripod, contact that changes, two remeshings. quick: the same with
+fewer parameters and steps. several: what three objectives at once cost. methods: adjoint against direct method by the
+number of parameters."""
+import os
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "..", ".."))
+import case_tools  # noqa: E402
+
+FLAT = os.path.join(HERE, "..", "tilted_die", "case.prm")
+CURVED = os.path.join(HERE, "..", "..", "reproduction", "laroussi_2003", "tripod", "case.prm")
+PATH = ["energy", "mean effort", "late force", "maximum effort", "fold", "dimensionless fold", "contact pressure"]
+END = ["mean strain", "strain variance", "maximum strain", "volume", "filling", "unfilled volume", "shape distance"]
+LATE = {"Objective late force/type": "mean effort", "Objective late force/by": "force"}
+COARSE = {"Billet/element size": 8, "Press/increments": 5, "Press/stroke": 5, "Remeshing/when": "increments",
+          "Remeshing/every": 2, "Contact/penetration": 1e-3, "Contact/slip regularisation": 0.1,
+          "Material/regularising strain rate": 0.1, "Output/fields every": 0, "Output/record": "false",
+          "Check/free differences": "false", "Check/taylor start": 1e-3}
+CURVED_PARAMETERS = ["billet/radius", "material/K", "material/m", "dies/friction", "die upper/speed", "die upper/offset",
+                     "die upper/depth", "die upper/draft angle", "die upper/edge radius", "die lower/fillet radius"]
+
+
+def write_ball(name, radius, centre, n=24):
+    """A closed sphere of triangles as an ASCII STL file."""
+    from math import cos, pi, sin
+    rings = [[tuple(centre[i] + radius * x[i] for i in range(3))
+              for x in ((sin(pi * a / n) * cos(pi * b / n), sin(pi * a / n) * sin(pi * b / n), cos(pi * a / n))
+                        for b in range(2 * n))] for a in range(1, n)]
+    top, bottom = (tuple(centre[i] + (0, 0, s * radius)[i] for i in range(3)) for s in (1, -1))
+    facets = []
+    for b in range(2 * n):
+        c = (b + 1) % (2 * n)
+        facets += [(top, rings[0][b], rings[0][c]), (bottom, rings[-1][c], rings[-1][b])]
+        for upper, lower in zip(rings, rings[1:]):
+            facets += [(upper[b], lower[b], lower[c]), (upper[b], lower[c], upper[c])]
+    with open(name, "w") as file:
+        file.write("solid ball\n")
+        for facet in facets:
+            corners = "".join("vertex {:.17g} {:.17g} {:.17g}\n".format(*x) for x in facet)
+            file.write(f"facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n")
+        file.write("endsolid ball\n")
+
+
+def judge(build, case, settings, label):
+    summary, text = case_tools.run(build, "check", case, settings, f"run_{label}", may_fail=True)
+    if summary is None:
+        sys.exit(text)
+    with open(f"check_{label}.txt", "w") as file:
+        file.write(text)
+    rows, scale = summary["check"], {o["name"]: abs(o["value"]) for o in summary["objectives"]}
+    failed = [f"{r['objective']} by {r['parameter']}" for r in rows if r["verdict"] == "failed"]
+    print(f"{label}: {summary['mesh']['nodes']} nodes, {summary['remeshings']} remeshings, {len(scale)} objectives, "
+          f"{len(rows)} derivatives, of which {sum(r['verdict'] == 'zero' for r in rows)} zero, {len(failed)} failed\n" + "".join(f"  {f}\n" for f in failed))
+    print("| objective | value | adjoint/tangent - 1 | best replayed difference | least Taylor order |\n" + "| --- " * 5 + "|")
+    for name in scale:
+        # Random directions cancel: the program measures them against their terms.
+        of = [r for r in rows if r["objective"] == name and "random" not in r["parameter"] and r["verdict"] == "passed"]
+        tangent = max(abs(r["tangent"] / r["adjoint"] - 1.0) for r in of)
+        replayed = max(min(abs(s["replayed_central"] / r["adjoint"] - 1.0) for s in r["steps"]) for r in of)
+        orders = [r["taylor_orders"][-1] for r in of if r["taylor_orders"][-1] is not None]
+        print(f"| {name} | {scale[name]:.6g} | {tangent:.1e} | {replayed:.1e} | {min(orders):.3f} |")
+    case_tools.figure(f"failed_{label}", len(failed))
+    case_tools.figure(f"derivatives_{label}", len(rows))
+
+
+def objectives(names, target, more=None):
+    settings = {"Objectives/names": ", ".join(names), "Objectives/history every": 0}
+    for name in names:
+        if name in ("filling", "unfilled volume", "shape distance"):
+            settings[f"Objective {name}/target"] = target
+        if name == "unfilled volume":
+            settings[f"Objective {name}/samples"] = 16
+    if "late force" in names:
+        settings.update(LATE)
+    return {**settings, **(more or {})}
+
+
+def flat(build):
+    write_ball("ball.stl", 24.0, (1.0, 2.0, 14.0))
+    settings = objectives(PATH + END, "ball.stl", {"Check/free differences": "false"})
+    settings["Objective late force/window begin"] = 3.1
+    judge(build, FLAT, settings, "flat")
+
+
+def curved(build, label, names, parameters, steps, more):
+    settings = {**COARSE, **objectives(names, "die upper"), "Check/steps": steps, "Design/parameters": ", ".join(parameters), **more}
+    if "late force" in names:
+        settings["Objective late force/window begin"] = 2.6
+    judge(build, CURVED, settings, label)
+
+
+def several(build):
+    """Seconds of the backward sweep and of the whole gradient, for one objective and for three."""
+    case = os.path.join(HERE, "..", "speed", "case.prm")
+    base = {"Billet/element size": 1.8, "Press/increments": 6, "Press/stroke": 3, "Output/fields every": 0}
+    seconds = {}
+    for repeat in range(3):
+        for names in (["energy"], ["energy", "mean effort", "mean strain"]):
+            summary, _ = case_tools.run(build, "gradient", case, {**base, "Objectives/names": ", ".join(names)}, "run_several")
+            of = seconds.setdefault(len(names), [])
+            of.append((summary["wall_seconds"]["adjoint"], summary["wall_seconds"]["total"]))
+    best = {n: [min(column) for column in zip(*of)] for n, of in seconds.items()}
+    print(f"{summary['mesh']['nodes']} nodes; seconds backward and in all: one objective {best[1]}, three {best[3]}")
+    case_tools.figure("three_over_one_backward", best[3][0] / best[1][0])
+    case_tools.figure("three_over_one", best[3][1] / best[1][1])
+
+
+def methods(build):
+    """Seconds of the gradient by both methods for 1, 2, 4 and 8 parameters."""
+    case = os.path.join(HERE, "..", "speed", "case.prm")
+    names = ["material/K", "billet/radius", "material/m", "material/e0", "contact/rho", "contact/v0", "dies/friction",
+             "die upper/offset"]
+    base = {"Billet/element size": 2.55, "Press/increments": 6, "Press/stroke": 3, "Output/fields every": 0}
+    print("| parameters | adjoint [s] | direct [s] | largest difference |\n| --- | --- | --- | --- |")
+    for n in (1, 2, 4, 8):
+        seconds, gradients = [], []
+        for method in ("adjoint", "direct"):
+            settings = {**base, "Design/parameters": ", ".join(names[:n]), "Adjoint/method": method}
+            runs = [case_tools.run(build, "gradient", case, settings, "run_methods")[0] for _ in range(3)]
+            seconds.append(min(s["wall_seconds"]["adjoint"] for s in runs))
+            gradients.append(case_tools.gradient(runs[0]))
+        worst = max(abs(gradients[1][name] / g - 1.0) for name, g in gradients[0].items())
+        print(f"| {n} | {seconds[0]:.2f} | {seconds[1]:.2f} | {worst:.1e} |", flush=True)
+    case_tools.figure("direct_over_adjoint_of_8", seconds[1] / seconds[0])
+
+
+def main():
+    build, what = sys.argv[1:3]
+    if what == "curved":
+        curved(build, "curved", PATH + END, CURVED_PARAMETERS, "1e-3, 1e-4, 1e-5, 1e-6",
+               {"Press/stroke": 18, "Press/increments": 18, "Remeshing/every": 7, "Check/taylor start": 3e-4})
+    elif what == "quick":
+        curved(build, "quick", ["energy", "late force", "dimensionless fold", "mean strain", "filling"],
+               ["billet/radius", "die upper/depth"], "1e-4, 1e-5, 1e-6", {"Check/taylor start": 3e-4})
+    else:
+        {"flat": flat, "several": several, "methods": methods}[what](build)
+
+
+if __name__ == "__main__":
+    main()

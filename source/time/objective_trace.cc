@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/time/objective_trace.h>
+
+namespace retroforge
+{
+  ObjectiveTrace::ObjectiveTrace(const Objectives      &objectives,
+                                 const ForgingModel    &model,
+                                 const Process<double> &process)
+      : objectives_(objectives), model_(model), process_(process), rows_(objectives.size())
+  {
+  }
+
+  template <typename Number>
+  FinalView<Number> final_view(const FinalObjective                &objective,
+                               const Scene                         &scene,
+                               const NodalVectors<Number>          &X,
+                               const std::vector<Number>           &strain,
+                               const std::vector<DieState<Number>> &dies)
+  {
+    const unsigned int d = objective.target_die();
+    return {scene, X, strain, dies, d == invalid_index ? nullptr : dies[d].vertices.get()};
+  }
+
+  template FinalView<double> final_view(const FinalObjective &,
+                                        const Scene &,
+                                        const NodalVectors<double> &,
+                                        const std::vector<double> &,
+                                        const std::vector<DieState<double>> &);
+  template FinalView<Dual>   final_view(const FinalObjective &,
+                                        const Scene &,
+                                        const NodalVectors<Dual> &,
+                                        const std::vector<Dual> &,
+                                        const std::vector<DieState<Dual>> &);
+
+  void ObjectiveTrace::add(const IncrementEvent &event)
+  {
+    const LastStage         last(event.state.leg->scene, model_.step, process_, event.X_before, event.record);
+    const StageView<double> view{last.stage, event.state.W, event.record.solves.back().active};
+    const double            dt = event.record.step / process_.speed();
+    for (std::size_t j = 0; j < objectives_.size(); ++j)
+      if (const auto &objective = objectives_[j].path)
+        rows_[j].push_back({sum_over_ranks(objective->integrals(view), model_.comm),
+                            dt,
+                            event.record.stroke / process_.speed(),
+                            event.record.stroke,
+                            event.record.step});
+  }
+
+  std::vector<double>
+  ObjectiveTrace::values(const ForgingState &state, const bool decide, const bool complete) const
+  {
+    const auto          dies = process_.at_stroke(state.stroke).dies;
+    std::vector<double> values;
+    for (std::size_t j = 0; j < objectives_.size(); ++j)
+      try
+      {
+        if (objectives_[j].path)
+          values.push_back(objectives_[j].path->value(rows_[j]));
+        else
+        {
+          const auto view = final_view(*objectives_[j].at_end, state.leg->scene, state.X, state.strain, dies);
+          if (decide)
+            objectives_[j].at_end->decide(view);
+          values.push_back(objectives_[j].at_end->value(
+            sum_over_ranks(objectives_[j].at_end->integrals(view), model_.comm)));
+        }
+      }
+      catch (const Error &)
+      {
+        if (complete)
+          throw;
+        values.push_back(std::numeric_limits<double>::quiet_NaN());
+      }
+    return values;
+  }
+
+  std::vector<std::map<std::string, double>> ObjectiveTrace::parts(const ForgingState &state) const
+  {
+    const auto                                 dies = process_.at_stroke(state.stroke).dies;
+    std::vector<std::map<std::string, double>> parts;
+    for (const NamedObjective &objective : objectives_)
+      if (objective.path)
+        parts.push_back(objective.path->parts(rows_[parts.size()]));
+      else
+      {
+        const auto view = final_view(*objective.at_end, state.leg->scene, state.X, state.strain, dies);
+        parts.push_back(
+          objective.at_end->parts(sum_over_ranks(objective.at_end->integrals(view), model_.comm)));
+      }
+    return parts;
+  }
+} // namespace retroforge
