@@ -136,19 +136,23 @@ namespace retroforge
       {
         CheckRow &row = rows[o];
         // What moves the objective by less than 1e-7 of itself while the parameter moves by all of its size
-        // is rounding, and differences do not see 1e-6 of 1e-6.
+        // is rounding. So is 1e-13 of that in a derivative, 1e-11 of it in a difference, and 1e-10 of the value
+        // in a remainder.
         const double whole   = std::abs(judged[o].value) / scale;
         row.is_zero          = std::max(std::abs(row.adjoint), std::abs(row.tangent)) <= 1e-7 * whole;
-        row.least_difference = 1e-6 * whole;
+        row.least_difference = 1e-5 * whole;
         if (row.is_zero)
         {
           row.passed = true;
           continue;
         }
         // A remainder at rounding has no order: the objective is linear in this parameter.
-        const bool linear = last[o] <= 1e-9 * std::abs(parameters.taylor_start * scale * row.adjoint);
-        row.passed        = row.tangent_error() <= parameters.tangent_bar &&
-                     row.best_replayed_error() <= parameters.replayed_bar &&
+        const bool linear =
+          last[o] <= std::max(1e-9 * std::abs(parameters.taylor_start * scale * row.adjoint),
+                              1e-10 * std::abs(judged[o].value));
+        const bool same = row.tangent_error() <= parameters.tangent_bar ||
+                          std::abs(row.adjoint - row.tangent) <= 1e-13 * whole;
+        row.passed = same && row.best_replayed_error() <= parameters.replayed_bar &&
                      (linear || row.taylor_orders.back() >= parameters.taylor_bar);
       }
     }

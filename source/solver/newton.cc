@@ -31,6 +31,42 @@ namespace retroforge
   {
   }
 
+  namespace
+  {
+    /// Of the billet, and of the fastest die.
+    std::pair<double, double> volume_and_speed(const Stage<double> &stage)
+    {
+      const Partition &partition = stage.scene.partition;
+      double           volume = 0., speed = 0.;
+      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+        volume += cell_geometry(positions_of_cell(stage.scene.mesh, stage.X, c)).volume;
+      for (const auto &die : stage.physics.dies)
+        speed = std::max(speed, die.velocity.norm());
+      return {partition.sum(volume), speed};
+    }
+
+    /// A strain rate typical of the press.
+    double typical_rate(const double volume, const double speed)
+    {
+      return std::max(speed, 1e-300) / std::cbrt(volume);
+    }
+
+    /// The Newtonian metal with the same stress at a strain rate.
+    NortonHoff<double> newtonian_law(const NortonHoff<double> &law, const double rate)
+    {
+      return {law.stress_factor(3. * rate * rate) / 2., 1., 0.};
+    }
+
+    /// What residual_scale would be in a flow at the dies' speed.
+    std::pair<double, double> reference_scale(const Stage<double> &stage)
+    {
+      const auto [volume, speed] = volume_and_speed(stage);
+      const double rate = typical_rate(volume, speed), n = stage.scene.mesh.n_nodes(), v = volume / n;
+      const double stress = 2. * newtonian_law(stage.physics.law, rate).K * rate;
+      return {stress * std::cbrt(v * v) * std::sqrt(n), rate * v * std::sqrt(n)};
+    }
+  } // namespace
+
   double Newton::relative_residual(const Stage<double> &stage,
                                    const Field<double> &W,
                                    const ActiveSet     &frozen,
@@ -44,9 +80,12 @@ namespace retroforge
     for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
       bubble2 += r.beta[c].norm_square();
     const double momentum = std::sqrt(norm.first * norm.first + partition.sum(bubble2));
-    if (scale.first == 0.)
-      return momentum == 0. && norm.second == 0. ? 0. : 1.;
-    return std::max(momentum / scale.first, scale.second > 0. ? norm.second / scale.second : 0.);
+    // Where nothing pushes yet, all there is is rounding: what is small against the flow at the dies' speed
+    // is measured against that.
+    const auto       whole      = reference_scale(stage);
+    constexpr double negligible = 1e-3;
+    return std::max(momentum / std::max(scale.first, negligible * whole.first),
+                    norm.second / std::max(scale.second, negligible * whole.second));
   }
 
   /// d/da of the functional along the step: momentum and bubble rows only.
@@ -112,16 +151,9 @@ namespace retroforge
                              const ActiveSet     &frozen,
                              NewtonStatistics    &statistics)
   {
-    // A strain rate typical of the press: the fastest die over the billet's size.
-    double volume = 0., speed = 0.;
-    for (CellIndex c = scene_.partition.cell_begin; c < scene_.partition.cell_end; ++c)
-      volume += cell_geometry(positions_of_cell(scene_.mesh, stage.X, c)).volume;
-    for (const auto &die : stage.physics.dies)
-      speed = std::max(speed, die.velocity.norm());
-    const double rate = std::max(speed, 1e-300) / std::cbrt(scene_.partition.sum(volume));
-
-    Physics<double> newtonian = stage.physics;
-    newtonian.law             = {stage.physics.law.stress_factor(3. * rate * rate) / 2., 1., 0.};
+    const auto [volume, speed] = volume_and_speed(stage);
+    Physics<double> newtonian  = stage.physics;
+    newtonian.law              = newtonian_law(stage.physics.law, typical_rate(volume, speed));
     for (auto &die : newtonian.dies)
       die.friction *= std::pow(0.1 * speed, stage.physics.law.m - 1.) * stage.physics.law.K / newtonian.law.K;
     const Stage<double> linear(scene_, newtonian, stage.contact, stage.X);
@@ -144,6 +176,10 @@ namespace retroforge
         break;
       active = linear.decide_active(W);
     }
+    // No die reaches the metal: it stays where it is, and does not drift along a motion that costs nothing.
+    active = frozen.empty() ? linear.decide_active(W) : frozen;
+    if (std::none_of(active.begin(), active.end(), [](const char pressed) { return pressed != 0; }))
+      W = Field<double>(scene_.mesh);
   }
 
   NewtonStatistics Newton::solve(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen)
