@@ -60,12 +60,12 @@ namespace retroforge
   void AdjointParameters::add_parameters(dealii::ParameterHandler &prm)
   {
     prm.enter_subsection("Adjoint");
-    prm.add_parameter(
-      "method",
-      method,
-      "How `gradient` differentiates: adjoint, one backward sweep for all parameters and every node; or direct, "
-      "one forward sweep per parameter for all objectives, without the nodes. Units: none.",
-      Selection("adjoint|direct"));
+    prm.add_parameter("method",
+                      method,
+                      "How `gradient` differentiates: adjoint, one backward sweep for all parameters and "
+                      "every node; or direct, "
+                      "one forward sweep per parameter for all objectives, without the nodes. Units: none.",
+                      Selection("adjoint|direct"));
     prm.add_parameter("tolerance",
                       tolerance,
                       "Relative tolerance of the adjoint and tangent linear systems. Units: none.",
@@ -111,8 +111,10 @@ namespace retroforge
       "parameters",
       names,
       "Parameters whose gradient is wanted: material/K, material/m, material/e0, contact/rho, contact/v0, "
-      "dies/friction, `die NAME/friction`, `die NAME/speed`, `die NAME/offset`, billet/stretch, "
-      "billet/radius. The gradient by every node of the billet always comes along. Units: none.");
+      "dies/friction, `die NAME/friction`, `die NAME/speed`, `die NAME/offset`, and of the billet's "
+      "shape: of a box billet/stretch, billet/height, of a cylinder billet/radius, billet/height, of a ring "
+      "billet/mu1 to billet/mu4, of a profile `billet/control point I r', `billet/control point I z'. "
+      "The gradient by every node of the billet always comes along. Units: none.");
     prm.leave_subsection();
   }
 
@@ -292,7 +294,7 @@ namespace retroforge
 
   double Parameters::height(const double size) const
   {
-    return billet.shape == "box" ? billet.size[2] : billet.shape == "cylinder" ? billet.height : size;
+    return billet.shape == "file" ? size : billet.whole_height();
   }
 
   void Parameters::check_derived(const double size) const

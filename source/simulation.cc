@@ -95,7 +95,7 @@ namespace retroforge
                parameters_.newton,
                parameters_.linear_solver,
                comm}
-      , design_(parameters_.design.names, parameters_.billet, parameters_.dies, nominal_, billet_.X)
+      , design_(parameters_.design.names, parameters_.billet, parameters_.dies, nominal_, billet_)
       , objectives_(parameters_.make_objectives(model_.dies))
       , combinations_(parameters_.combinations(objectives_))
       , first_leg_(std::make_shared<Leg>(billet_, model_, timings_))
@@ -184,10 +184,9 @@ namespace retroforge
     ForgingState state = forging_.start(first_leg_, X_0_);
     if (root_)
     {
-      history_ = std::make_unique<History>(command_.output_directory + "/history.csv");
-      objective_history_ =
-        std::make_unique<ObjectiveHistory>(command_.output_directory + "/objectives.csv");
-      pvd_ = std::make_unique<PvdWriter>(command_.output_directory + "/fields.pvd");
+      history_           = std::make_unique<History>(command_.output_directory + "/history.csv");
+      objective_history_ = std::make_unique<ObjectiveHistory>(command_.output_directory + "/objectives.csv");
+      pvd_               = std::make_unique<PvdWriter>(command_.output_directory + "/fields.pvd");
       std::cout
         << "  inc   stroke      force        energy        volume   quality newton krylov   time left\n";
     }

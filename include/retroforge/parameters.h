@@ -24,7 +24,7 @@ namespace retroforge
 
   struct AdjointParameters
   {
-    std::string method      = "adjoint";
+    std::string method       = "adjoint";
     double      tolerance    = 1e-6;
     std::string derivatives  = "exact";
     double      perturbation = 1e-6;

@@ -136,8 +136,8 @@ namespace retroforge
       {
         CheckRow &row = rows[o];
         // What moves the objective by less than 1e-7 of itself while the parameter moves by all of its size
-        // is rounding. So is 1e-13 of that in a derivative, 1e-11 of it in a difference, and 1e-10 of the value
-        // in a remainder.
+        // is rounding. So is 1e-13 of that in a derivative, 1e-11 of it in a difference, and 1e-10 of the
+        // value in a remainder.
         const double whole   = std::abs(judged[o].value) / scale;
         row.is_zero          = std::max(std::abs(row.adjoint), std::abs(row.tangent)) <= 1e-7 * whole;
         row.least_difference = 1e-5 * whole;

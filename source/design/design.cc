@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/physics/transformations.h>
-
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/design/design.h>
@@ -32,15 +30,11 @@ namespace retroforge
                  const BilletParameters           &billet,
                  const std::vector<DieParameters> &dies,
                  const Process<double>            &nominal_process,
-                 const NodalVectors<double>       &nominal_positions)
-      : billet_(billet)
-      , dies_(dies)
+                 const TetMesh                    &nominal_billet)
+      : dies_(dies)
       , process_(nominal_process)
-      , X_(nominal_positions)
-      , rotation_(dealii::Physics::Transformations::Rotations::rotation_matrix_3d(
-          billet.rotation_axis / billet.rotation_axis.norm(),
-          billet.rotation_angle * dealii::numbers::PI / 180.))
-      , width_(billet.shape == "cylinder" ? 2. * billet.radius : billet.size[0])
+      , billet_map_(billet, nominal_billet)
+      , width_(billet.whole_width())
   {
     for (const std::string &name : names)
     {
@@ -62,10 +56,8 @@ namespace retroforge
     std::vector<std::string> names = {"material/K", "material/m", "contact/rho"};
     if (process_.law.m != 1.)
       names.push_back("material/e0");
-    if (billet_.shape == "box")
-      names.push_back("billet/stretch");
-    if (billet_.shape == "cylinder")
-      names.push_back("billet/radius");
+    for (const ShapeParameter &shape : billet_map_.parameters())
+      names.push_back("billet/" + shape.name);
     bool friction = false;
     for (const auto &die : dies_)
     {
@@ -104,10 +96,10 @@ namespace retroforge
       return {name, "MPa s/mm", Kind::penalty, invalid_index, process_.contact.rho, process_.contact.rho};
     if (name == "contact/v0")
       return {name, "mm/s", Kind::slip, invalid_index, process_.contact.v0, process_.contact.v0};
-    if (name == "billet/stretch")
-      return {name, "mm", Kind::stretch, invalid_index, 0., width_};
-    if (name == "billet/radius")
-      return {name, "mm", Kind::radius, invalid_index, billet_.radius, billet_.radius};
+    const auto &shapes = billet_map_.parameters();
+    for (unsigned int j = 0; j < shapes.size(); ++j)
+      if (name == "billet/" + shapes[j].name)
+        return {name, shapes[j].unit, Kind::billet, j, shapes[j].nominal, shapes[j].scale};
     if (name == "dies/friction")
     {
       double alpha = 0.;
@@ -154,23 +146,13 @@ namespace retroforge
   template <typename Number>
   NodalVectors<Number> Design::positions(const std::vector<Number> &mu) const
   {
-    Number factor(1.);
+    std::vector<Number> shape;
+    for (const ShapeParameter &parameter : billet_map_.parameters())
+      shape.push_back(Number(parameter.nominal));
     for (unsigned int j = 0; j < parameters_.size(); ++j)
-      if (parameters_[j].kind == Kind::stretch)
-        factor *= 1. + 2. * mu[j] / width_;
-      else if (parameters_[j].kind == Kind::radius)
-        factor *= mu[j] / parameters_[j].nominal;
-    NodalVectors<Number> X(X_.size());
-    for (std::size_t k = 0; k < X.size(); ++k)
-    {
-      // In the billet's own axes, x and y grow from the axis through the centre of the base.
-      Vec3 own          = transpose(rotation_) * (X_[k] - billet_.translation) - billet_.base_centre;
-      own[2]            = 0.;
-      const Vec3 across = rotation_ * own;
-      for (unsigned int i = 0; i < 3; ++i)
-        X[k][i] = X_[k][i] + (factor - 1.) * across[i];
-    }
-    return X;
+      if (parameters_[j].kind == Kind::billet)
+        shape[parameters_[j].die] = mu[j];
+    return billet_map_.positions(shape);
   }
 
   template <typename Number>
@@ -229,8 +211,7 @@ namespace retroforge
         case Kind::die_shape:
           measures[parameter.die][parameter.measure] = mu[j];
           break;
-        case Kind::stretch:
-        case Kind::radius:
+        case Kind::billet:
           break;
       }
     }

@@ -34,10 +34,31 @@ namespace retroforge
                     "give the length in the unit of the case, mm as a rule");
     }
 
+    void check_profile(const BilletParameters &p)
+    {
+      if (p.shape == "ring")
+        if (const std::string complaint = p.ring.complaint(p.ring.mu); !complaint.empty())
+          throw Error("Billet",
+                      complaint,
+                      "no portion of the ring's contour may vanish, and radii and heights are positive",
+                      "see the sketch of the ring in doc/theory/billet_shapes.md");
+      if (p.shape == "profile")
+        if (const std::string complaint = p.profile.complaint(p.profile.control_points); !complaint.empty())
+          throw Error("Billet/control points",
+                      complaint,
+                      "the contour runs upwards around the inner line, and each ray from there meets it once",
+                      "write for example `20, 0; 26, 15; 26, 30; 20, 45'");
+      if (p.shape == "profile" && p.profile.control_points.front()[1] != 0.)
+        throw Error("Billet/control points",
+                    "the first has z = " + in_words(p.profile.control_points.front()[1]),
+                    "z counts from the base, where the contour begins",
+                    "shift all z by the same amount, and the body by `base centre'");
+    }
+
     Vec3 centre_of_base_or_body(const BilletParameters &p)
     {
-      const double height = p.shape == "box" ? p.size[2] : p.height;
-      return p.symmetry_point == "centre" ? p.base_centre + Vec3({0, 0, height / 2}) : p.base_centre;
+      const Vec3 half_way({0, 0, p.whole_height() / 2});
+      return p.symmetry_point == "centre" ? p.base_centre + half_way : p.base_centre;
     }
 
     Vec3 parse_symmetry_point(const BilletParameters &p)
@@ -72,16 +93,13 @@ namespace retroforge
       return Vec3({-std::sin(angle), std::cos(angle), 0});
     }
 
-    std::vector<Plane> symmetry_planes(const BilletParameters &p)
+    std::vector<Plane> sector_planes(const BilletParameters &p)
     {
       std::vector<Plane> planes;
       if (is_sector(p))
         planes.push_back({p.base_centre, Vec3({0, -1, 0})});
       if (is_sector(p) && p.sector_angle < 180)
         planes.push_back({p.base_centre, sector_end_normal(p.sector_angle)});
-      const Vec3 point = parse_symmetry_point(p);
-      for (const Vec3 &normal : p.symmetry_planes)
-        planes.push_back({point, normal / normal.norm()});
       return planes;
     }
 
@@ -92,15 +110,15 @@ namespace retroforge
                     "the shape is `file', and symmetry planes or a sector angle are given",
                     "a mesh from a file is not cut",
                     "name its planes in `symmetry patches'");
-      if (p.shape != "cylinder" && is_sector(p))
+      if (p.shape != "cylinder" && !p.is_revolved() && is_sector(p))
         throw Error("Billet/sector angle",
                     "is " + in_words(p.sector_angle) + ", and the shape is `" + p.shape + "'",
-                    "only a cylinder has sectors",
+                    "only bodies of revolution have sectors",
                     "set it to 0, or use symmetry planes");
       if (is_sector(p) && !(p.sector_angle > 0 && p.sector_angle <= 180))
         throw Error("Billet/sector angle",
                     "is " + in_words(p.sector_angle),
-                    "it must be in (0, 180], or 0 or 360 for the whole cylinder",
+                    "it must be in (0, 180], or 0 or 360 for the whole body",
                     "choose the smallest sector that symmetry allows");
       for (const Vec3 &normal : p.symmetry_planes)
         if (!(normal.norm() > 0) || !std::isfinite(normal.norm()))
@@ -108,7 +126,7 @@ namespace retroforge
                       "a normal has length " + in_words(normal.norm()),
                       "outward normals need a direction",
                       "write for example `-1, 0, 0; 0, -1, 0' to keep x >= 0, y >= 0");
-      const auto planes = symmetry_planes(p);
+      const auto planes = p.symmetry_cuts();
       for (std::size_t i = 0; i < planes.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
           if ((planes[i].normal - planes[j].normal).norm() < 1e-6)
@@ -121,8 +139,10 @@ namespace retroforge
     // About 8 tetrahedra per cube of the element size; far more than this machine holds is a slip of the pen.
     void check_fineness(const BilletParameters &p)
     {
-      const double body =
-        p.shape == "box" ? p.size[0] * p.size[1] * p.size[2] : M_PI * p.radius * p.radius * p.height;
+      const double body    = p.shape == "box"       ? p.size[0] * p.size[1] * p.size[2]
+                             : p.shape == "ring"    ? volume_of_revolution(p.ring.section())
+                             : p.shape == "profile" ? volume_of_revolution(p.profile.section())
+                                                    : M_PI * p.radius * p.radius * p.height;
       const double n_cells = 8 * body / std::pow(p.element_size, 3);
       if (n_cells > 1e9)
         throw Error("Billet/element size",
@@ -138,15 +158,49 @@ namespace retroforge
       solid.is_cylinder = p.shape == "cylinder";
       solid.base_centre = p.base_centre;
       solid.size        = p.size;
-      solid.radius      = p.radius;
-      solid.height      = solid.is_cylinder ? p.height : p.size[2];
-      solid.cuts        = symmetry_planes(p);
+      solid.radius      = p.whole_width() / 2;
+      solid.height      = p.whole_height();
+      solid.cuts        = p.symmetry_cuts();
+      if (p.is_revolved())
+      {
+        solid.section           = p.shape == "ring" ? p.ring.section() : p.profile.section();
+        solid.section_angle     = is_sector(p) ? p.sector_angle : 360;
+        solid.n_cuts_of_section = sector_planes(p).size();
+      }
       return solid;
     }
 
     PatchShape planar_shape(const std::string &name, const Vec3 &point, const Vec3 &normal)
     {
-      return {{name, {}}, Plane{point, normal}, {}};
+      return {{name, {}}, Plane{point, normal}, {}, {}};
+    }
+
+    // A level segment makes a plane, an upright one a cylinder.
+    PatchShape revolved_shape(const Portion &portion, const Vec3 &c)
+    {
+      const Vec2 first = portion.curve.value(0), last = portion.curve.value(1);
+      if (portion.curve.is_segment() && first[1] == last[1])
+        return planar_shape(portion.patch,
+                            c + Vec3({0, 0, first[1]}),
+                            Vec3({0, 0, last[0] > first[0] ? 1. : -1.})); // the contour is clockwise
+      if (portion.curve.is_segment() && first[0] == last[0])
+        return {{portion.patch, {}}, {}, CylinderSurface{c, Vec3({0, 0, 1}), first[0]}, {}};
+      return {{portion.patch, {}}, {}, {}, RevolvedCurve{c, portion.curve}};
+    }
+
+    // In the order bottom, top, sides, edges of the other shapes.
+    void add_revolved_shapes(std::vector<PatchShape> &shapes, const CutSolid &solid)
+    {
+      for (const char *name : {"bottom",
+                               "top",
+                               "side inner",
+                               "side outer",
+                               "edge top outer",
+                               "edge bottom outer",
+                               "edge bottom inner"})
+        for (const Portion &portion : solid.section)
+          if (portion.patch == name)
+            shapes.push_back(revolved_shape(portion, solid.base_centre));
     }
 
     // Symmetry planes first: a face of the solid that lies in one of them is not surface.
@@ -154,12 +208,17 @@ namespace retroforge
     {
       std::vector<PatchShape> shapes;
       for (std::size_t i = 0; i < solid.cuts.size(); ++i)
-        shapes.push_back({{"symmetry " + std::to_string(i + 1), solid.cuts[i]}, solid.cuts[i], {}});
+        shapes.push_back({{"symmetry " + std::to_string(i + 1), solid.cuts[i]}, solid.cuts[i], {}, {}});
+      if (!solid.section.empty())
+      {
+        add_revolved_shapes(shapes, solid);
+        return shapes;
+      }
       const Vec3 &c = solid.base_centre;
       shapes.push_back(planar_shape("bottom", c, Vec3({0, 0, -1})));
       shapes.push_back(planar_shape("top", c + Vec3({0, 0, solid.height}), Vec3({0, 0, 1})));
       if (solid.is_cylinder)
-        shapes.push_back({{"side", {}}, {}, CylinderSurface{c, Vec3({0, 0, 1}), solid.radius}});
+        shapes.push_back({{"side", {}}, {}, CylinderSurface{c, Vec3({0, 0, 1}), solid.radius}, {}});
       else
         for (unsigned int d = 0; d < 2; ++d)
           for (const int sign : {-1, 1})
@@ -257,6 +316,32 @@ namespace retroforge
     }
   } // namespace
 
+  double BilletParameters::whole_height() const
+  {
+    return shape == "box"        ? size[2]
+           : shape == "cylinder" ? height
+           : shape == "ring"     ? ring.mu[0]
+           : shape == "profile"  ? profile.height()
+                                 : 0.;
+  }
+
+  double BilletParameters::whole_width() const
+  {
+    return shape == "cylinder"  ? 2 * radius
+           : shape == "ring"    ? 2 * ring.mu[3]
+           : shape == "profile" ? profile.width()
+                                : size[0];
+  }
+
+  std::vector<Plane> BilletParameters::symmetry_cuts() const
+  {
+    std::vector<Plane> planes = sector_planes(*this);
+    const Vec3         point  = parse_symmetry_point(*this);
+    for (const Vec3 &normal : symmetry_planes)
+      planes.push_back({point, normal / normal.norm()});
+    return planes;
+  }
+
   void BilletParameters::add_parameters(dealii::ParameterHandler &prm)
   {
     using namespace dealii::Patterns;
@@ -264,32 +349,40 @@ namespace retroforge
     prm.add_parameter(
       "shape",
       shape,
-      "What the billet is: a box, a cylinder (both standing along z), or a mesh from a file. Units: none.",
-      Selection("box|cylinder|file"));
-    prm.add_parameter("base centre", base_centre, "Centre of the base of box or cylinder. Units: mm.");
+      "What the billet is: a box, a cylinder, a ring (its section has seven portions, see mu1 to mu4), a "
+      "profile (a body of revolution whose contour is a B-spline), all standing along z, or a mesh from a "
+      "file. Units: none.",
+      Selection("box|cylinder|ring|profile|file"));
+    prm.add_parameter(
+      "base centre",
+      base_centre,
+      "Centre of the base; for a profile the point on the axis its z counts from. Units: mm.");
     prm.add_parameter("size", size, "Lengths of the whole box along x, y and z, before cuts. Units: mm.");
     prm.add_parameter("radius", radius, "Radius of the cylinder. Units: mm.", Double(0));
     prm.add_parameter("height", height, "Height of the whole cylinder, before cuts. Units: mm.", Double(0));
     prm.add_parameter("element size",
                       element_size,
-                      "Wanted length of the edges of the mesh of box or cylinder. Units: mm.",
+                      "Wanted length of the edges of the mesh, unless it comes from a file. Units: mm.",
                       Double(0));
+    ring.add_parameters(prm);
+    profile.add_parameters(prm);
     prm.add_parameter(
       "symmetry planes",
       symmetry_planes,
-      "Outward normals of the symmetry planes that cut box or cylinder, separated by semicolons: "
+      "Outward normals of the symmetry planes that cut the body, separated by semicolons: "
       "`-1, 0, 0; 0, -1, 0' keeps x >= 0, y >= 0. They need not have length one. Units: none.");
     prm.add_parameter(
       "symmetry point",
       symmetry_point,
       "Point all symmetry planes pass through: `base' for the centre of the base, `centre' for the "
       "centre of the whole body, or three coordinates. Units: mm.");
-    prm.add_parameter("sector angle",
-                      sector_angle,
-                      "Angle of the sector of the cylinder that is kept, from the direction +x of its axis "
-                      "towards +y, in (0, 180]; 0 or 360 for the whole cylinder. The faces of the sector "
-                      "are symmetry planes. Units: degrees.",
-                      Double(0, 360));
+    prm.add_parameter(
+      "sector angle",
+      sector_angle,
+      "Angle of the sector of a body of revolution that is kept, from the direction +x of its axis "
+      "towards +y, in (0, 180]; 0 or 360 for the whole body. The faces of the sector "
+      "are symmetry planes. Units: degrees.",
+      Double(0, 360));
     prm.add_parameter(
       "file name",
       file_name,
@@ -307,14 +400,21 @@ namespace retroforge
                       "Angle of this rotation, counter-clockwise seen against the axis. Units: degrees.");
     prm.add_parameter(
       "translation", translation, "Displacement of the finished mesh, after the rotation. Units: mm.");
+    prm.add_parameter("volume held by",
+                      volume_held_by,
+                      "Parameter of the shape that is no design parameter but follows from the others, so "
+                      "that the volume of the mesh stays: for example mu4 for a ring, radius for a cylinder, "
+                      "`control point 2 r' for a profile. Empty for none. Units: none.");
     prm.leave_subsection();
   }
 
   void BilletParameters::check() const
   {
-    if (shape != "box" && shape != "cylinder" && shape != "file")
-      throw Error(
-        "Billet/shape", "is `" + shape + "'", "it must be box, cylinder or file", "choose one of them");
+    if (shape != "box" && shape != "cylinder" && !is_revolved() && shape != "file")
+      throw Error("Billet/shape",
+                  "is `" + shape + "'",
+                  "it must be box, cylinder, ring, profile or file",
+                  "choose one of them");
     if (shape == "box")
       for (unsigned int d = 0; d < 3; ++d)
         check_positive("size", size[d]);
@@ -323,6 +423,8 @@ namespace retroforge
       check_positive("radius", radius);
       check_positive("height", height);
     }
+    if (is_revolved())
+      check_profile(*this);
     check_symmetry(*this);
     if (shape != "file")
     {

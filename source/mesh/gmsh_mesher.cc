@@ -83,9 +83,50 @@ namespace retroforge
       }
     }
 
+    int add_curve(const SplineCurve &curve, const int first, const int last, const Vec3 &c)
+    {
+      if (curve.is_segment())
+        return gmsh::model::occ::addLine(first, last);
+      std::vector<int> points = {first};
+      for (unsigned int i = 1; i + 1 < curve.control_points().size(); ++i)
+      {
+        const Vec2 &p = curve.control_points()[i];
+        points.push_back(gmsh::model::occ::addPoint(c[0] + p[0], c[1], c[2] + p[1]));
+      }
+      points.push_back(last);
+      std::vector<double> knots;
+      std::vector<int>    multiplicities(curve.n_spans() + 1, 1);
+      for (unsigned int i = 0; i <= curve.n_spans(); ++i)
+        knots.push_back(i / double(curve.n_spans()));
+      multiplicities.front() = multiplicities.back() = curve.degree() + 1;
+      return gmsh::model::occ::addBSpline(points, -1, curve.degree(), curve.weights(), knots, multiplicities);
+    }
+
+    // The section in the half plane y = c_y, x > c_x, revolved about the line through c along z.
+    int add_revolved(const Section &section, const double degrees, const Vec3 &c)
+    {
+      std::vector<int> corners, curves;
+      for (const Portion &portion : section)
+      {
+        const Vec2 p = portion.curve.value(0.);
+        corners.push_back(gmsh::model::occ::addPoint(c[0] + p[0], c[1], c[2] + p[1]));
+      }
+      for (unsigned int i = 0; i < section.size(); ++i)
+        curves.push_back(add_curve(section[i].curve, corners[i], corners[(i + 1) % corners.size()], c));
+      const int        surface = gmsh::model::occ::addPlaneSurface({gmsh::model::occ::addCurveLoop(curves)});
+      gmsh::vectorpair made;
+      gmsh::model::occ::revolve({{2, surface}}, c[0], c[1], c[2], 0, 0, 1, degrees * M_PI / 180, made);
+      if (degrees == 360) // the section then bounds nothing
+        gmsh::model::occ::remove({{2, surface}}, true);
+      return std::find_if(made.begin(), made.end(), [](const auto &entity) { return entity.first == 3; })
+        ->second;
+    }
+
     int add_whole(const CutSolid &solid)
     {
       const Vec3 &c = solid.base_centre;
+      if (!solid.section.empty())
+        return add_revolved(solid.section, solid.section_angle, c);
       if (solid.is_cylinder)
         return gmsh::model::occ::addCylinder(c[0], c[1], c[2], 0, 0, solid.height, solid.radius);
       return gmsh::model::occ::addBox(c[0] - solid.size[0] / 2,
@@ -114,12 +155,13 @@ namespace retroforge
 
     void build_geometry(const CutSolid &solid, const std::string &where)
     {
-      const Vec3 width =
-        solid.is_cylinder ? Vec3({2 * solid.radius, 2 * solid.radius, solid.height}) : solid.size;
-      const Vec3       centre = solid.base_centre + Vec3({0, 0, width[2] / 2});
-      gmsh::vectorpair body   = {{3, add_whole(solid)}};
-      for (const Plane &cut : solid.cuts)
+      const bool is_round = solid.is_cylinder || !solid.section.empty();
+      const Vec3 width    = is_round ? Vec3({2 * solid.radius, 2 * solid.radius, solid.height}) : solid.size;
+      const Vec3 centre   = solid.base_centre + Vec3({0, 0, width[2] / 2});
+      gmsh::vectorpair body = {{3, add_whole(solid)}};
+      for (std::size_t i = solid.n_cuts_of_section; i < solid.cuts.size(); ++i)
       {
+        const Plane                  &cut = solid.cuts[i];
         gmsh::vectorpair              result;
         std::vector<gmsh::vectorpair> history;
         const int                     half = add_half_space(cut, centre, width.norm());

@@ -34,10 +34,32 @@ namespace retroforge
       return {r - cylinder.radius, r > 0 ? arm / r : Vec3()};
     }
 
+    // From the tangent at the closest point: the curve goes on straight beyond its ends.
+    Distance distance(const RevolvedCurve &surface, const Vec3 &x)
+    {
+      const Vec3   arm = x - surface.point;
+      const double r   = std::hypot(arm[0], arm[1]);
+      const Vec2   p({r, arm[2]});
+      const double t       = surface.curve.closest(p);
+      Vec2         tangent = surface.curve.derivative(t);
+      tangent /= tangent.norm();
+      const Vec2 normal({tangent[1], -tangent[0]});
+      const Vec3 outwards = r > 0 ? Vec3({arm[0] / r, arm[1] / r, 0}) : Vec3();
+      return {(p - surface.curve.value(t)) * normal, normal[0] * outwards + Vec3({0, 0, normal[1]})};
+    }
+
+    double distance_within_ends(const RevolvedCurve &surface, const Vec3 &x)
+    {
+      const Vec3 arm = x - surface.point;
+      const Vec2 p({std::hypot(arm[0], arm[1]), arm[2]});
+      return (p - surface.curve.value(surface.curve.closest(p))).norm();
+    }
+
     bool lies_on(const PatchShape &shape, const Vec3 &x, const double tolerance)
     {
       return (!shape.plane || std::abs(distance(*shape.plane, x).value) <= tolerance) &&
-             (!shape.cylinder || std::abs(distance(*shape.cylinder, x).value) <= tolerance);
+             (!shape.cylinder || std::abs(distance(*shape.cylinder, x).value) <= tolerance) &&
+             (!shape.revolved || distance_within_ends(*shape.revolved, x) <= tolerance);
     }
 
     std::size_t find_shape(const std::vector<PatchShape>  &shapes,
@@ -171,6 +193,8 @@ namespace retroforge
             distances.push_back(distance(*shapes[patch].plane, mesh.X[node]));
           if (shapes[patch].cylinder)
             distances.push_back(distance(*shapes[patch].cylinder, mesh.X[node]));
+          if (shapes[patch].revolved)
+            distances.push_back(distance(*shapes[patch].revolved, mesh.X[node]));
         }
         mesh.X[node] += step_onto(distances);
       }
@@ -207,7 +231,7 @@ namespace retroforge
         }
         mesh.patches[p].symmetry = plane;
       }
-      shapes.push_back({mesh.patches[p], mesh.patches[p].symmetry, {}});
+      shapes.push_back({mesh.patches[p], mesh.patches[p].symmetry, {}, {}});
     }
     snap_nodes(mesh, shapes);
   }

@@ -2,8 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/design/billet_map.h>
 #include <retroforge/geometry/die_parameters.h>
-#include <retroforge/mesh/billet.h>
 #include <retroforge/time/process.h>
 
 namespace retroforge
@@ -22,14 +22,13 @@ namespace retroforge
       speed,       ///< of one die, along its velocity
       offset,      ///< of one die, along its facing direction
       die_shape,   ///< a measure of one tripod or bell
-      stretch,     ///< billet/stretch: mu of x, y -> (1 + 2 mu/a)  (113)
-      radius       ///< billet/radius: x, y -> radius/nominal  (116)-(117)
+      billet       ///< of the billet's shape, see BilletMap
     };
 
     std::string  name;
     std::string  unit;
     Kind         kind;
-    unsigned int die     = invalid_index; ///< invalid_index: all
+    unsigned int die     = invalid_index; ///< invalid_index: all; for a billet its number in BilletMap
     double       nominal = 0.;
     double       scale   = 1.; ///< a length or size that steps are relative to
     std::string  measure = {}; ///< of a die's shape
@@ -45,7 +44,7 @@ namespace retroforge
            const BilletParameters           &billet,
            const std::vector<DieParameters> &dies,
            const Process<double>            &nominal_process,
-           const NodalVectors<double>       &nominal_positions);
+           const TetMesh                    &nominal_billet);
 
     const std::vector<DesignParameter> &parameters() const { return parameters_; }
     std::vector<double>                 nominal() const;
@@ -68,12 +67,10 @@ namespace retroforge
   private:
     DesignParameter make(const std::string &name) const;
 
-    BilletParameters             billet_;
     std::vector<DieParameters>   dies_;
     Process<double>              process_;
-    NodalVectors<double>         X_;
-    dealii::Tensor<2, 3>         rotation_; ///< of the billet
-    double                       width_;    ///< a of (113): the billet's extent in x before cuts
+    BilletMap                    billet_map_;
+    double                       width_; ///< the billet's extent in x before cuts
     std::vector<DesignParameter> parameters_;
   };
 } // namespace retroforge

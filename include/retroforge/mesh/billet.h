@@ -4,6 +4,8 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <retroforge/mesh/ring_profile.h>
+#include <retroforge/mesh/spline_profile.h>
 #include <retroforge/mesh/tet_mesh.h>
 
 #include <string>
@@ -24,6 +26,9 @@ namespace retroforge
     double      height       = 50;
     double      element_size = 5;
 
+    RingProfile   ring;
+    SplineProfile profile;
+
     std::vector<Vec3> symmetry_planes;
     std::string       symmetry_point = "base";
     double            sector_angle   = 0;
@@ -35,15 +40,25 @@ namespace retroforge
     double rotation_angle = 0;
     Vec3   translation;
 
+    std::string volume_held_by; ///< name of a parameter of the shape, without `billet/`; none if empty
+
     void add_parameters(dealii::ParameterHandler &prm);
     void check() const;
+
+    bool   is_revolved() const { return shape == "ring" || shape == "profile"; }
+    double whole_height() const; ///< before cuts; 0 for a mesh from a file
+    double whole_width() const;  ///< along x, before cuts; that of the box for a mesh from a file
+    /// Planes of the cuts before rotation and translation: those of the sector, then those listed.
+    std::vector<Plane> symmetry_cuts() const;
   };
 
   /// Makes or reads the mesh of the billet on rank 0 and gives it to all ranks: checked with check_mesh(),
   /// numbered with renumber(), nodes on planar patches on their plane to rounding. Collective.
   ///
   /// Patches of a box: `bottom`, `top`, `side -x`, `side +x`, `side -y`, `side +y`; of a cylinder: `bottom`,
-  /// `top`, `side`; then `symmetry 1`, ... with their planes: first those of the sector, then those listed.
-  /// Patches of which the cuts leave nothing are absent. The names tell directions before the final rotation.
+  /// `top`, `side`; of a ring or profile: `bottom`, `top`, `side inner`, `side outer`, and of a ring `edge
+  /// top outer`, `edge bottom outer`, `edge bottom inner`; then `symmetry 1`, ... with their planes: first
+  /// those of the sector, then those listed. Patches of which the cuts leave nothing are absent. The names
+  /// tell directions before the final rotation.
   TetMesh make_billet(const BilletParameters &parameters, MPI_Comm communicator);
 } // namespace retroforge

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/mesh/patch_shapes.h>
+#include <retroforge/mesh/section.h>
 
 #include <functional>
 #include <string>
@@ -10,16 +11,20 @@
 
 namespace retroforge
 {
-  /// A box or cylinder standing along z on the centre of its base, cut by planes.
+  /// A box, cylinder or body of revolution standing along z on the centre of its base, cut by planes.
   struct CutSolid
   {
-    bool   is_cylinder = false;
-    Vec3   base_centre;
-    Vec3   size;       ///< lengths of the box
-    double radius = 0; ///< of the cylinder
-    double height = 0; ///< of either
+    Section section;             ///< of the body of revolution; none for box and cylinder
+    double  section_angle = 360; ///< by which it is revolved, from the direction +x towards +y [degrees]
+    bool    is_cylinder   = false;
+    Vec3    base_centre;
+    Vec3    size;       ///< lengths of the box
+    double  radius = 0; ///< of the cylinder
+    double  height = 0; ///< of each
     /// What is on the side of a plane its normal points to is cut away.
     std::vector<Plane> cuts;
+    /// So many of the cuts, the first ones, are made by `section_angle` already.
+    unsigned int n_cuts_of_section = 0;
   };
 
   /// Cells and nodes (no faces, no patches) of an unstructured tetrahedral mesh of the solid, edges of about

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/mesh/spline_curve.h>
 #include <retroforge/mesh/tet_mesh.h>
 
 #include <optional>
@@ -18,12 +19,21 @@ namespace retroforge
     double radius;
   };
 
-  /// The exact surface a patch lies on, where it is known. A patch without plane and cylinder is free form.
+  /// Surface of revolution of a curve of the meridian plane about the line through `point` along z; the
+  /// curve's r counts from this line, its z from `point`.
+  struct RevolvedCurve
+  {
+    Vec3        point;
+    SplineCurve curve;
+  };
+
+  /// The exact surface a patch lies on, where it is known. A patch without any is free form.
   struct PatchShape
   {
     Patch                          patch;
     std::optional<Plane>           plane;
     std::optional<CylinderSurface> cylinder;
+    std::optional<RevolvedCurve>   revolved;
   };
 
   /// Makes `mesh.faces` and `mesh.patches` anew: each outer face of the cells, turned outwards, goes to the
@@ -35,7 +45,7 @@ namespace retroforge
                                          double                         tolerance,
                                          const std::string             &where);
 
-  /// Moves each boundary node, by the shortest way, onto all the planes and cylinders of the patches it
+  /// Moves each boundary node, by the shortest way, onto all the surfaces of the patches it
   /// belongs to, to rounding. `shapes` are in the order of `mesh.patches`.
   void snap_nodes(TetMesh &mesh, const std::vector<PatchShape> &shapes);
 

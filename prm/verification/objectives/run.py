@@ -86,7 +86,7 @@ def objectives(names, target, more=None):
 
 def flat(build):
     write_ball("ball.stl", 24.0, (1.0, 2.0, 14.0))
-    settings = objectives(PATH + END, "ball.stl", {"Check/free differences": "false"})
+    settings = objectives(PATH + END, "ball.stl", {"Check/free differences": "false", "Check/taylor start": 1e-4, "Check/taylor halvings": 4})
     settings["Objective late force/window begin"] = 3.1
     judge(build, FLAT, settings, "flat")
 

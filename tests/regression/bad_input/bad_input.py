@@ -227,8 +227,8 @@ def resumed(folder):
 
 def full_disk(folder):
     """A small file system of our own, where the machine lets us have one."""
-    for size, name, more in (("4k", "first files", ""), ("80k", "fields", ""),
-                             ("120k", "record", "--set 'Output/fields every=0' --set Press/increments=60")):
+    for size, name, more in (("4k", "first files", ""), ("88k", "fields", ""),
+                             ("128k", "record", "--set 'Output/fields every=0' --set Press/increments=60")):
         disk, saved = os.path.join(folder, f"disk_{size}"), os.path.join(folder, f"saved_{size}")
         os.mkdir(disk)
         script = (f"mount -t tmpfs -o size={size} tmpfs {disk} || exit 77; "

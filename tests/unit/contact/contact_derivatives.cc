@@ -295,7 +295,8 @@ void check_mesh(const CornerScene &scene,
     displacement_dot.push_back(move_dies ? random.vector() : Vec3());
     states.push_back({with_direction(state.velocity, Vec3()),
                       with_direction(state.displacement, displacement_dot.back()),
-                      Dual(state.friction)});
+                      Dual(state.friction),
+                      {}});
   }
   const auto contact = make_contact_set(
     scene.mesh, scene.topology, scene.dies, scene.states, scene.pairs, scene.ramp, 0.3, scene.X);

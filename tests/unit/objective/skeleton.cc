@@ -86,7 +86,8 @@ int main(int argc, char **argv)
   const Scene        scene(make_billet(block, MPI_COMM_SELF), {}, MPI_COMM_SELF);
   const CentreHeight objective;
   const double       start = value(scene, objective, scene.mesh.X);
-  std::cout << "value on a block of height 4: " << (std::abs(start - 2.) < 1e-14 ? "2" : "wrong") << std::endl;
+  std::cout << "value on a block of height 4: " << (std::abs(start - 2.) < 1e-14 ? "2" : "wrong")
+            << std::endl;
 
   const std::vector<double>           strain(scene.mesh.n_cells(), 0.);
   const std::vector<DieState<double>> dies;
@@ -109,8 +110,8 @@ int main(int argc, char **argv)
     }
   }
   const double dual = value(scene, objective, X).dx(0);
-  std::cout << "reverse against dual numbers: " << (std::abs(slope / dual - 1.) < 1e-12 ? "below 1e-12" : "wrong")
-            << std::endl;
+  std::cout << "reverse against dual numbers: "
+            << (std::abs(slope / dual - 1.) < 1e-12 ? "below 1e-12" : "wrong") << std::endl;
 
   double last = 0.;
   for (const double step : {0.02, 0.01})

@@ -38,7 +38,7 @@ namespace
                 parameters.newton,
                 parameters.linear_solver,
                 MPI_COMM_WORLD}
-        , design(all.design.names, all.billet, all.dies, nominal, mesh.X)
+        , design(all.design.names, all.billet, all.dies, nominal, mesh)
         , leg(std::make_shared<Leg>(mesh, model, timings))
         , remesher(parameters.remeshing, parameters.edge_length(mesh), model.dies, MPI_COMM_WORLD)
         , forging(model, parameters.press, remesher, timings)

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/core/dual.h>
+#include <retroforge/design/billet_shapes.h>
+
+namespace retroforge
+{
+  /// The map from the parameters of the billet's shape to the initial positions of its nodes. The mesh is
+  /// made once, at the nominal values, where the map is the identity, bit for bit.
+  ///
+  /// With `volume held by` one parameter nu is no longer free but follows from the others, nu = f(mu), such
+  /// that the sum of the tetrahedra's volumes stays,  V(X_0(mu, nu)) = V(X).  f is found by Newton's method
+  /// to rounding, its derivative  df/dmu = -(dV/dnu)^-1 dV/dmu  by the implicit function theorem.
+  /// @cite Laroussi2003, Eqs. (121)-(126)
+  class BilletMap
+  {
+  public:
+    /// @throws Error when `volume held by` names no parameter of the shape
+    BilletMap(const BilletParameters &billet, const TetMesh &mesh);
+
+    /// The free parameters. Those that would move nodes off a symmetry plane are not among them.
+    const std::vector<ShapeParameter> &parameters() const { return free_; }
+
+    /// X_0(mu), mu in the order of parameters().
+    /// @throws Error when a portion of the contour vanishes or crosses another, when no value of the held
+    /// parameter keeps the volume, or when the mesh would be turned inside out
+    template <typename Number>
+    NodalVectors<Number> positions(const std::vector<Number> &mu) const;
+
+    /// f(mu), the value of the parameter that holds the volume.
+    template <typename Number>
+    Number held_value(const std::vector<Number> &mu) const;
+
+    bool holds_volume() const { return held_.has_value(); }
+
+  private:
+    template <typename Number>
+    NodalVectors<Number> moved(const std::vector<Number> &mu) const;
+    double               held_by_newton(const NodalVectors<double> &X) const;
+    void                 check(const std::vector<double> &mu, double held) const;
+    void                 check_cells(const NodalVectors<double> &X) const;
+
+    NodalVectors<double>                  X_;
+    std::vector<std::array<NodeIndex, 4>> cells_;
+    double                                volume_;
+    BilletShapes                          shapes_;
+    std::vector<ShapeParameter>           free_;
+    std::vector<unsigned int>             place_; ///< of each free parameter among those of the shape
+    std::optional<unsigned int>           held_;  ///< place of the held one
+  };
+} // namespace retroforge

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <deal.II/physics/transformations.h>
+
+#include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
+#include <retroforge/design/billet_map.h>
+#include <retroforge/mesh/mesh_quality.h>
+
+#include <sstream>
+
+namespace retroforge
+{
+  namespace
+  {
+    dealii::Tensor<2, 3> rotation_of(const BilletParameters &billet)
+    {
+      if (billet.rotation_angle == 0.)
+        return dealii::unit_symmetric_tensor<3>();
+      return dealii::Physics::Transformations::Rotations::rotation_matrix_3d(
+        dealii::Point<3>(billet.rotation_axis / billet.rotation_axis.norm()),
+        billet.rotation_angle * dealii::numbers::PI / 180.);
+    }
+
+    NodalVectors<double> in_own_axes(const BilletParameters &billet, const NodalVectors<double> &X)
+    {
+      const auto           back = transpose(rotation_of(billet));
+      NodalVectors<double> own;
+      for (const Vec3 &x : X)
+        own.push_back(back * (x - billet.translation) - billet.base_centre);
+      return own;
+    }
+
+    BilletShapes shapes_of(const BilletParameters &billet, const NodalVectors<double> &own)
+    {
+      return billet.shape == "box"        ? box_shapes(billet, own)
+             : billet.shape == "cylinder" ? cylinder_shapes(billet, own)
+             : billet.shape == "ring"     ? ring_shapes(billet, own)
+             : billet.shape == "profile"  ? profile_shapes(billet, own)
+                                          : BilletShapes();
+    }
+
+    // Whether no node of a symmetry plane leaves it.
+    bool keeps_symmetry(const ShapeParameter &parameter, const TetMesh &mesh)
+    {
+      for (const BoundaryFace &face : mesh.faces)
+        if (const auto &plane = mesh.patches[face.patch].symmetry)
+          for (const NodeIndex node : face.nodes)
+            if (std::abs(parameter.direction[node] * plane->normal) > 1e-9)
+              return false;
+      return true;
+    }
+
+    template <typename Number>
+    Number volume_at(const std::vector<std::array<NodeIndex, 4>> &cells, const NodalVectors<Number> &X)
+    {
+      Number sum(0.);
+      for (const auto &cell : cells)
+        sum += cross_product_3d(X[cell[1]] - X[cell[0]], X[cell[2]] - X[cell[0]]) * (X[cell[3]] - X[cell[0]]);
+      return sum / 6.;
+    }
+
+    template <typename Number>
+    void add(NodalVectors<Number> &X, const Number &factor, const NodalVectors<double> &direction)
+    {
+      for (std::size_t k = 0; k < X.size(); ++k)
+        for (unsigned int i = 0; i < 3; ++i)
+          X[k][i] += factor * direction[k][i];
+    }
+
+    // Volume at X and its derivative along a field.
+    Dual volume_along(const std::vector<std::array<NodeIndex, 4>> &cells,
+                      const NodalVectors<double>                  &X,
+                      const NodalVectors<double>                  &direction)
+    {
+      NodalVectors<Dual> dual(X.size());
+      for (std::size_t k = 0; k < X.size(); ++k)
+        for (unsigned int i = 0; i < 3; ++i)
+        {
+          dual[k][i]                 = X[k][i];
+          dual[k][i].fastAccessDx(0) = direction[k][i];
+        }
+      return volume_at(cells, dual);
+    }
+
+    template <typename Number>
+    std::vector<double> values_of(const std::vector<Number> &mu)
+    {
+      std::vector<double> values;
+      for (const Number &x : mu)
+        values.push_back(value_of(x));
+      return values;
+    }
+
+    template <typename Number>
+    NodalVectors<double> values_of(const NodalVectors<Number> &X)
+    {
+      NodalVectors<double> values(X.size());
+      for (std::size_t k = 0; k < X.size(); ++k)
+        for (unsigned int i = 0; i < 3; ++i)
+          values[k][i] = value_of(X[k][i]);
+      return values;
+    }
+
+    std::string in_words(const double value)
+    {
+      std::ostringstream out;
+      out << value;
+      return out.str();
+    }
+  } // namespace
+
+  BilletMap::BilletMap(const BilletParameters &billet, const TetMesh &mesh)
+      : X_(mesh.X)
+      , cells_(mesh.cells)
+      , volume_(volume_along(mesh.cells, mesh.X, NodalVectors<double>(mesh.n_nodes())).val())
+      , shapes_(shapes_of(billet, in_own_axes(billet, mesh.X)))
+  {
+    const auto               rotation = rotation_of(billet);
+    std::vector<std::string> names;
+    for (unsigned int j = 0; j < shapes_.parameters.size(); ++j)
+    {
+      ShapeParameter &parameter = shapes_.parameters[j];
+      for (Vec3 &d : parameter.direction)
+        d = rotation * d;
+      if (!keeps_symmetry(parameter, mesh))
+        continue;
+      names.push_back(parameter.name);
+      if (parameter.name == billet.volume_held_by)
+        held_ = j;
+      else
+      {
+        free_.push_back(parameter);
+        place_.push_back(j);
+      }
+    }
+    if (!billet.volume_held_by.empty() && !held_)
+      throw Error("Billet/volume held by",
+                  "is `" + billet.volume_held_by + "'",
+                  names.empty() ? "this billet has no parameters of its shape"
+                                : "it must be a parameter of the shape: " + join(names),
+                  "name one of them, without `billet/', or leave it empty");
+  }
+
+  template <typename Number>
+  NodalVectors<Number> BilletMap::moved(const std::vector<Number> &mu) const
+  {
+    NodalVectors<Number> X(X_.size());
+    for (std::size_t k = 0; k < X.size(); ++k)
+      for (unsigned int i = 0; i < 3; ++i)
+        X[k][i] = X_[k][i];
+    for (unsigned int j = 0; j < mu.size(); ++j)
+      add<Number>(X, mu[j] - free_[j].nominal, free_[j].direction);
+    return X;
+  }
+
+  // Root d of V(X + d D) = V_0, a cubic in d. Quadratic convergence ends in rounding, where steps no longer
+  // shrink.
+  double BilletMap::held_by_newton(const NodalVectors<double> &X) const
+  {
+    const ShapeParameter &held   = shapes_.parameters[*held_];
+    const double          growth = volume_along(cells_, X_, held.direction).dx(0); // at the nominal shape
+    double                d = 0., last_step = std::numeric_limits<double>::max();
+    for (unsigned int iteration = 0; iteration < 50; ++iteration)
+    {
+      NodalVectors<double> X_d = X;
+      add(X_d, d, held.direction);
+      const Dual V = volume_along(cells_, X_d, held.direction);
+      if (!(V.dx(0) * growth > 0.)) // past the extremum of the cubic
+        break;
+      const double step = (volume_ - V.val()) / V.dx(0);
+      if (std::abs(step) <= 1e-15 * held.scale ||
+          (std::abs(step) < 1e-10 * held.scale && std::abs(step) >= last_step))
+        return d;
+      d += step;
+      last_step = std::abs(step);
+    }
+    throw Error("Billet/volume held by",
+                "no value of " + held.name + " keeps the volume " + in_words(volume_) + " mm^3",
+                "the other parameters of the shape must leave it one",
+                "change them less, or hold the volume by another parameter");
+  }
+
+  template <typename Number>
+  Number BilletMap::held_value(const std::vector<Number> &mu) const
+  {
+    const ShapeParameter &held = shapes_.parameters[*held_];
+    NodalVectors<double>  X    = moved(values_of(mu));
+    const double          d    = held_by_newton(X);
+    Number                result(held.nominal + d);
+    if constexpr (std::is_same_v<Number, Dual>)
+    {
+      add(X, d, held.direction);
+      NodalVectors<Dual> X_mu = moved(mu);
+      add(X_mu, Dual(d), held.direction);
+      const double in_mu     = volume_at(cells_, X_mu).dx(0);
+      const double in_held   = volume_along(cells_, X, held.direction).dx(0);
+      result.fastAccessDx(0) = -in_mu / in_held;
+    }
+    return result;
+  }
+
+  void BilletMap::check(const std::vector<double> &mu, const double held) const
+  {
+    if (shapes_.parameters.empty())
+      return;
+    std::vector<double> all;
+    for (const ShapeParameter &parameter : shapes_.parameters)
+      all.push_back(parameter.nominal);
+    for (unsigned int j = 0; j < mu.size(); ++j)
+      all[place_[j]] = mu[j];
+    if (held_)
+      all[*held_] = held;
+    if (const std::string complaint = shapes_.complaint(all); !complaint.empty())
+      throw Error("Design/billet",
+                  complaint +
+                    (held_ ? " (" + shapes_.parameters[*held_].name + " follows from the volume)" : ""),
+                  "no portion of the contour may vanish or cross another, and radii are positive",
+                  "stay closer to the nominal values");
+  }
+
+  void BilletMap::check_cells(const NodalVectors<double> &X) const
+  {
+    for (const auto &cell : cells_)
+      if (!(tet_volume(corners(cell, X)) > 0.))
+        throw Error("Design/billet",
+                    "a tetrahedron of the mesh would be turned inside out",
+                    "the mesh made at the nominal shape must be able to follow",
+                    "make the new shape the nominal one, in the section Billet");
+  }
+
+  template <typename Number>
+  NodalVectors<Number> BilletMap::positions(const std::vector<Number> &mu) const
+  {
+    NodalVectors<Number> X    = moved(mu);
+    double               held = 0.;
+    if (held_)
+    {
+      const ShapeParameter &parameter = shapes_.parameters[*held_];
+      const Number          value     = held_value(mu);
+      held                            = value_of(value);
+      add<Number>(X, value - parameter.nominal, parameter.direction);
+    }
+    check(values_of(mu), held);
+    check_cells(values_of(X));
+    return X;
+  }
+
+  template NodalVectors<double> BilletMap::positions(const std::vector<double> &) const;
+  template NodalVectors<Dual>   BilletMap::positions(const std::vector<Dual> &) const;
+  template double               BilletMap::held_value(const std::vector<double> &) const;
+  template Dual                 BilletMap::held_value(const std::vector<Dual> &) const;
+} // namespace retroforge
