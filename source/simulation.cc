@@ -56,7 +56,7 @@ namespace retroforge
       return a;
     }
 
-    TetMesh make_first_mesh(const Parameters &parameters, MPI_Comm comm)
+    TetMesh make_first_mesh(const Parameters &parameters, Timings &timings, MPI_Comm comm)
     {
       const TetMesh mesh = make_billet(parameters.billet, comm);
       if (!parameters.remeshing.first_mesh)
@@ -66,7 +66,7 @@ namespace retroforge
       for (const DieParameters &die : parameters.dies)
         states.push_back(die.initial_state());
       return Remesher(parameters.remeshing, parameters.edge_length(mesh), dies, comm)
-        .remesh(mesh, mesh.X, states)
+        .remesh(mesh, mesh.X, states, timings)
         ->mesh;
     }
 
@@ -88,7 +88,7 @@ namespace retroforge
       , comm_(comm)
       , root_(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
       , parameters_(read(command, echo_))
-      , billet_(make_first_mesh(parameters_, comm))
+      , billet_(make_first_mesh(parameters_, timings_, comm))
       , nominal_(parameters_.settle(billet_size()).process(billet_size()))
       , model_{make_dies(parameters_.dies),
                parameters_.step_model(),

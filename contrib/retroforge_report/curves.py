@@ -4,13 +4,19 @@
 import math
 
 import matplotlib
+import matplotlib.colors
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402 (after the choice of the backend)
 import numpy as np  # noqa: E402
 
+from retroforge_report.effects import relative_gradient  # noqa: E402
+from retroforge_report.units import bracketed, pretty  # noqa: E402
+
 INK, BLUE, ORANGE, GREEN, PURPLE = "#333333", "#0072b2", "#d55e00", "#009e73", "#8e5aa8"  # colour-blind safe
 MOST_BARS = 30
+PANELS_PER_ROW = 3
+ROUNDING = 1e-12  # relative derivatives below this are printed as zero
 
 plt.rcParams.update({
     "font.size": 11, "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": INK,
@@ -22,7 +28,7 @@ def forging(history, energy_unit):
     """Force and energy over the stroke."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 3.8), layout="constrained")
     _over_stroke(left, history, history["force"], "press force [N]", BLUE)
-    _over_stroke(right, history, history["energy"], f"energy [{energy_unit or 'mJ'}]", ORANGE)
+    _over_stroke(right, history, history["energy"], bracketed("energy", energy_unit or "mJ"), ORANGE)
     for axes in (left, right):
         axes.set_ylim(bottom=min(0, axes.get_ylim()[0]))
         axes.ticklabel_format(axis="y", style="sci", scilimits=(-2, 4), useMathText=True)
@@ -49,18 +55,42 @@ def _over_stroke(axes, history, values, label, color):
     axes.set(xlabel="stroke [mm]", ylabel=label)
 
 
-def relative_gradient(objective, parameters):
-    """Per cent of the objective per per cent of the parameter; parameters at zero, or unknown, have none."""
-    name, value = objective["name"], objective["value"]
-    rows = [(p["name"], p["gradient"][name] * p["value"] / value) for p in parameters
-            if value and p["value"] and p.get("gradient", {}).get(name) is not None]
-    return sorted(rows, key=lambda row: abs(row[1]), reverse=True)[:MOST_BARS]
+def objectives(strokes, columns):
+    """A panel for each objective that was known before the end, with its parts; None when there is none."""
+    shown = [c for c in columns if not c.of and np.isfinite(c.values).any()]
+    if not shown:
+        return None
+    figure, panels = _grid(len(shown), height=2.6)
+    for axes, column in zip(panels, shown):
+        parts = [c for c in columns if c.of == column.name and np.isfinite(c.values).any()]
+        for part, color in zip(parts, (ORANGE, GREEN, PURPLE)):
+            axes.plot(strokes, part.values, ".-", color=color, linewidth=1.2, markersize=4, label=part.name)
+        axes.plot(strokes, column.values, ".-", color=BLUE)
+        axes.set(xlabel="stroke [mm]", ylabel=pretty(column.unit))
+        axes.set_title(column.name, fontsize=11)
+        axes.set_xlim(0, 1.02 * strokes.max())
+        axes.ticklabel_format(axis="y", style="sci", scilimits=(-2, 4), useMathText=True)
+        if parts:
+            axes.margins(y=0.3)
+            axes.legend(fontsize=8)
+    return figure
+
+
+def _grid(n_panels, height, sharey=False):
+    """A figure of rows of panels, those that are not used removed."""
+    columns = min(PANELS_PER_ROW, n_panels)
+    rows = -(-n_panels // columns)
+    figure, axes = plt.subplots(rows, columns, figsize=(3.7 * columns, height * rows), squeeze=False, sharey=sharey,
+                                layout="constrained")
+    for panel in axes.flat[n_panels:]:
+        panel.remove()
+    return figure, list(axes.flat[:n_panels])
 
 
 def gradients(objectives, parameters):
-    """One panel of bars per objective, or None when nothing was differentiated."""
+    """A panel of bars per objective, or None when nothing was differentiated."""
     panels = [(o["name"], relative_gradient(o, parameters)) for o in objectives]
-    panels = [(name, rows) for name, rows in panels if rows]
+    panels = [(name, rows[:MOST_BARS]) for name, rows in panels if rows]
     if not panels:
         return None
     heights = [len(rows) + 2 for _, rows in panels]
@@ -68,6 +98,31 @@ def gradients(objectives, parameters):
                                 layout="constrained", gridspec_kw={"height_ratios": heights})
     for panel, (name, rows) in zip(axes[:, 0], panels):
         _bars(panel, name, rows[::-1])
+    return figure
+
+
+def gradient_matrix(objectives, parameters):
+    """The same numbers for many objectives: a field for each parameter and objective; or None."""
+    columns = {o["name"]: dict(relative_gradient(o, parameters)) for o in objectives}
+    columns = {name: column for name, column in columns.items() if column}
+    rows = [p["name"] for p in parameters if any(p["name"] in column for column in columns.values())]
+    rows = rows[:MOST_BARS]
+    if not rows:
+        return None
+    values = np.array([[column.get(row, np.nan) for column in columns.values()] for row in rows])
+    figure, axes = plt.subplots(figsize=(2.4 + 0.86 * len(columns), 1.6 + 0.36 * len(rows)), layout="constrained")
+    image = axes.imshow(values, cmap="PuOr_r", aspect="auto",
+                        norm=matplotlib.colors.SymLogNorm(0.03, vmin=-3, vmax=3))
+    for i, j in np.argwhere(np.isfinite(values)):
+        text = f"{values[i, j]:+.2g}" if abs(values[i, j]) > ROUNDING else "0"
+        dark = np.mean(image.to_rgba(values[i, j])[:3]) < 0.5
+        axes.text(j, i, text, ha="center", va="center", fontsize=9, color="white" if dark else INK)
+    axes.set_xticks(range(len(columns)), columns, rotation=35, ha="left", rotation_mode="anchor")
+    axes.set_yticks(range(len(rows)), rows)
+    axes.tick_params(top=True, bottom=False, labeltop=True, labelbottom=False, length=0)
+    axes.grid(False)
+    axes.spines[:].set_visible(False)
+    figure.colorbar(image, label="% per % of the parameter", ticks=[-1, -0.1, 0, 0.1, 1], format="%g", shrink=0.9)
     return figure
 
 
@@ -84,24 +139,19 @@ def _bars(axes, name, rows):
 
 FLAVOURS = (("replayed_central", "replayed, central", BLUE, "o-"), ("replayed_forward", "replayed, forward", GREEN, "^-"),
             ("replayed_backward", "replayed, backward", PURPLE, "v:"), ("free_central", "free, central", ORANGE, "s--"))
-PANELS_PER_ROW = 3
 LEGEND_HEIGHT = 0.4  # inches
 
 
 def check(entries):
     """The V of each derivative: truncation error on the right, rounding error on the left."""
-    columns = min(PANELS_PER_ROW, len(entries))
-    rows = -(-len(entries) // columns)
-    figure, axes = plt.subplots(rows, columns, figsize=(3.7 * columns, 3.1 * rows + LEGEND_HEIGHT),
-                                squeeze=False, layout="constrained", sharey=True)
+    figure, panels = _grid(len(entries), height=3.1, sharey=True)
+    figure.set_figheight(figure.get_figheight() + LEGEND_HEIGHT)
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - LEGEND_HEIGHT / figure.get_figheight()))
-    for panel, entry in zip(axes.flat, entries):
+    for panel, entry in zip(panels, entries):
         _v_curve(panel, entry)
-    for panel in axes.flat[len(entries):]:
-        panel.set_visible(False)
-    for panel in axes[:, 0]:
+    for panel in panels[::PANELS_PER_ROW]:
         panel.set_ylabel("|difference - adjoint| / |adjoint|")
-    handles = {h.get_label(): h for panel in axes.flat for h in panel.get_lines()}
+    handles = {h.get_label(): h for panel in panels for h in panel.get_lines()}
     figure.legend(handles.values(), handles.keys(), loc="upper center", ncols=max(1, len(handles)))
     return figure
 
@@ -116,5 +166,5 @@ def _v_curve(axes, entry):
             steps, errors = np.array(points).T
             axes.plot(steps, np.maximum(errors, 1e-17), style, color=color, label=label, markersize=4,
                       linewidth=1.4)
-    axes.set(xscale="log", yscale="log", xlabel="step", title=f"{entry['objective']} / {entry['parameter']}")
+    axes.set(xscale="log", yscale="log", xlabel="step", title=entry["parameter"])
     axes.title.set_fontsize(10)

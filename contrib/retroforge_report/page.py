@@ -1,109 +1,156 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""The page: sections of text, tables, and pictures embedded as base64."""
-import base64
-import html
-import io
-
-import matplotlib.pyplot as plt
-
+"""The sections of the page. With many objectives, the first few have pictures and all have numbers."""
 from retroforge_report import curves, shapes
+from retroforge_report.data import identifier
+from retroforge_report.document import Document, bad, number
+from retroforge_report.effects import effects
+from retroforge_report.units import bracketed, pretty
 
-STYLE = """body{font:16px/1.5 system-ui,sans-serif;color:#222;max-width:70rem;margin:2rem auto;padding:0 1rem}
-h1{font-size:1.6rem}h2{font-size:1.2rem;margin-top:2.2rem;border-bottom:1px solid #ddd}img{max-width:100%}
-table{border-collapse:collapse;margin:.6rem 0}td,th{padding:.15rem .8rem;border-bottom:1px solid #e6e6e6;text-align:left}
-td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}p.note{color:#666}.bad{color:#b03000;font-weight:bold}
-code{font-size:.9em}"""
+MOST_PICTURED = 4  # objectives
+SOUND = ("passed", "zero")  # verdicts of a derivative
 
 
 class Page:
     def __init__(self, run, use_vtk, notes):
-        self.run, self.use_vtk, self.body = run, use_vtk, []
-        self.pictures = run.directory / "pictures"
-        self.pictures.mkdir(exist_ok=True)
-        for old in self.pictures.glob("*.png"):
-            old.unlink()
+        self.run, self.use_vtk, self.to = run, use_vtk, Document(run.directory)
         for note in notes:
-            self.note(note)
+            self.to.note(note)
 
     def write(self):
         """Returns the path of the page."""
-        for section in (self.results, self.shape, self.force, self.gradients, self.sensitivities, self.check,
-                        self.conduct):
+        for section in (self.results, self.shape, self.force, self.objectives, self.gradients, self.sensitivities,
+                        self.dies, self.check, self.conduct):
             section()
-        title = f"{self.run.directory.resolve().name}: retroforge {self.run.summary.get('command', '')}"
-        path = self.run.directory / "report.html"
-        path.write_text(f'<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8"><title>{html.escape(title)}</title>'
-                        f"<style>{STYLE}</style><h1>{html.escape(title)}</h1>\n" + "\n".join(self.body) + "</html>\n",
-                        encoding="utf-8")
-        return path
-
-    # --- sections -------------------------------------------------------------------------------
+        return self.to.save(f"{self.run.directory.resolve().name}: retroforge {self.run.summary.get('command', '')}")
 
     def results(self):
-        self.heading("Results")
+        self.to.heading("Results")
         rows = []
         for objective in self.run.objectives:
             parts = ", ".join(f"{name} {number(value)}" for name, value in objective.get("parts", {}).items())
-            rows.append((objective["name"], number(objective["value"]), objective.get("unit", ""), parts))
-        self.table(("objective", "#value", "unit", "of which"), rows)
+            rows.append((objective["name"], number(objective["value"]), pretty(objective.get("unit")), parts))
+        self.to.table(("objective", "#value", "unit", "of which"), rows)
 
     def shape(self):
         if self.run.initial is None:
             return
-        self.heading("Shape")
-        self.picture("shapes", shapes.forging(self.run, self.use_vtk))
+        self.to.heading("Shape")
+        self.to.picture("shapes", shapes.forging(self.run, self.use_vtk))
 
     def force(self):
         if self.run.history is None:
             return
-        self.heading("Force and energy")
-        self.picture("force", curves.forging(self.run.history, self.run.unit("energy")))
+        self.to.heading("Force and energy")
+        self.to.picture("force", curves.forging(self.run.history, self.run.unit("energy")))
+
+    def objectives(self):
+        figure = curves.objectives(self.run.objective_strokes, self.run.objective_columns)
+        if figure is None:
+            return
+        self.to.heading("Objectives over the stroke")
+        self.to.picture("objectives", figure)
+        self.to.note("Each as if the forging had ended there. " + self.without_values())
+
+    def without_values(self):
+        """A sentence, or nothing."""
+        names = [c.name for c in self.run.objective_columns if not c.of and (c.values != c.values).all()]
+        return f"Without values: {', '.join(names)}." if names else ""
 
     def gradients(self):
-        if not any(p.get("gradient") for p in self.run.parameters):
+        ranked = [(o, effects(o, self.run.parameters)) for o in self.run.objectives]
+        ranked = [(objective, rows) for objective, rows in ranked if rows]
+        if not ranked:
             return
-        self.heading("Gradient with respect to the parameters")
-        figure = curves.gradients(self.run.objectives, self.run.parameters)
+        self.to.heading("Gradient with respect to the parameters")
+        draw = curves.gradients if len(ranked) <= MOST_PICTURED else curves.gradient_matrix
+        figure = draw(self.run.objectives, self.run.parameters)
         if figure:
-            self.picture("gradients", figure)
-            self.note("Bars are relative, so that parameters of different units compare; a parameter at zero has no "
-                      f"bar; at most {curves.MOST_BARS} are drawn. The table has the derivatives themselves.")
-        names = [o["name"] for o in self.run.objectives]
-        columns = [f"#d {name} / d parameter" for name in names]
-        rows = [(p["name"], number(p["value"]), p.get("unit", ""), *(number(p["gradient"].get(n)) for n in names))
-                for p in self.run.parameters if p.get("gradient")]
-        self.table(("parameter", "#value", "unit", *columns), rows)
+            self.to.picture("gradients", figure)
+            self.to.note("Relative numbers, so that parameters and objectives of different units compare; a parameter "
+                         f"or an objective at zero has none; at most {curves.MOST_BARS} parameters are drawn.")
+        self.to.tables([(objective["name"], *self.ranking(objective, rows)) for objective, rows in ranked])
+        self.to.note("Derivatives in the objective's unit per unit of the parameter. For +1 %: what one per cent of the "
+                     "parameter's size adds to the objective, to first order; the largest comes first.")
+
+    @staticmethod
+    def ranking(objective, rows):
+        """Header and rows of a table."""
+        header = ("parameter", "#value", "unit", "#derivative", "#" + bracketed("for +1 %", objective.get("unit")))
+        return header, [(e.parameter["name"], number(e.parameter["value"]), pretty(e.parameter.get("unit")),
+                         number(e.derivative), number(e.for_one_percent, 4, sign="+")) for e in rows]
 
     def sensitivities(self):
         if self.run.sensitivity is None:
             return
-        self.heading("Gradient with respect to the shape of the billet")
-        for name, values in self.run.sensitivity.point_data.items():
-            if name.startswith("d") and name.endswith("_dX0") and values.ndim == 2:
-                objective = name[1:-len("_dX0")]
-                self.picture(f"sensitivity_{objective}", shapes.sensitivity(
-                    self.run.sensitivity, objective, self.run.unit(objective), self.use_vtk))
-        self.note("Nodal derivatives divided by the area around the node: a property of the surface, not of the mesh. "
-                  "The strongest 2 % (edges, corners) exceed the scale.")
+        self.to.heading("Gradient with respect to the shape of the billet")
+        self.surfaces("sensitivity", self.run.sensitivity, "X0", shapes.billet_sensitivity, "sensitivity.vtu")
+        self.to.note("Nodal derivatives divided by the area around the node: a property of the surface, not of the "
+                     "mesh. The strongest 2 % (edges, corners) exceed the scale.")
+
+    def dies(self):
+        for die, mesh in self.run.die_sensitivities.items():
+            self.to.heading(f"Gradient with respect to the shape of die {die}")
+            self.surfaces(f"sensitivity_die_{identifier(die)}", mesh, "Xdie", shapes.die_sensitivity,
+                          f"sensitivity_die_{die}.vtu")
+        if self.run.die_sensitivities:
+            self.to.note("Derivatives by the vertices of the die's surface where the forging begins, divided by the "
+                         "area around them; seen from the workpiece, around the part that matters.")
+
+    def surfaces(self, picture, mesh, variable, draw, file):
+        """Pictures for the first objectives, and a note on the others."""
+        sensitivities = self.run.sensitivities(mesh, variable)
+        for objective, field in sensitivities[:MOST_PICTURED]:
+            figure = draw(mesh, field, objective, self.use_vtk)
+            if figure:
+                self.to.picture(f"{picture}_{identifier(objective['name'])}", figure)
+            else:
+                self.to.note(f"{objective['name']} does not depend on it.")
+        if len(sensitivities) > MOST_PICTURED:
+            self.to.note(f"Drawn for the first {MOST_PICTURED} of {len(sensitivities)} objectives; {file} has all of "
+                         "them, for ParaView.")
 
     def check(self):
         if not self.run.checks:
             return
-        self.heading("Check of the gradient")
-        self.picture("check", curves.check(self.run.checks))
-        self.note("Replayed: increments, contact and meshes as recorded, so the difference must converge to the "
-                  "adjoint. Free: all decided anew; what remains is the size of the jumps.")
-        rows = [(entry["objective"], entry["parameter"], number(entry["adjoint"], 10), number(entry.get("tangent"), 10),
-                 ", ".join(number(order, 3) for order in entry.get("taylor_orders", [])), verdict(entry.get("verdict")))
-                for entry in self.run.checks]
-        self.table(("objective", "parameter", "#adjoint", "#tangent", "Taylor orders", "verdict"), rows)
+        self.to.heading("Check of the gradient")
+        groups = {}
+        for entry in self.run.checks:
+            groups.setdefault(entry["objective"], []).append(entry)
+        self.v_curves(groups)
+        rows = []
+        for objective, entries in groups.items():
+            failed = sum(entry.get("verdict") not in SOUND for entry in entries)
+            count = f"{objective}: {len(entries) - failed} of {len(entries)} passed"
+            rows += [bad(count) if failed else count, *(self.judged(entry) for entry in entries)]
+        self.to.table(("parameter", "#adjoint", "#tangent", "Taylor orders", "verdict"), rows)
+
+    def v_curves(self, groups):
+        """Of the first objectives, and of what did not pass."""
+        for rank, (objective, entries) in enumerate(groups.items()):
+            shown = entries if rank < MOST_PICTURED else [e for e in entries if e.get("verdict") not in SOUND]
+            if shown:
+                self.to.heading(objective, level=3)
+                self.to.picture(f"check_{identifier(objective)}", curves.check(shown))
+        if len(groups) > MOST_PICTURED:
+            self.to.note(f"Drawn for the first {MOST_PICTURED} of {len(groups)} objectives, and for every derivative "
+                         "that did not pass.")
+        self.to.note("Replayed: increments, contact and meshes as recorded, so the difference must converge to the "
+                     "adjoint. Free: all decided anew; what remains is the size of the jumps.")
+
+    @staticmethod
+    def judged(entry):
+        """A row of the table."""
+        verdict = entry.get("verdict")
+        return (entry["parameter"], number(entry["adjoint"], 10), number(entry.get("tangent"), 10),
+                ", ".join(number(order, 3) for order in entry.get("taylor_orders", [])),
+                verdict if verdict in SOUND else bad(verdict))
 
     def conduct(self):
-        self.heading("How the run went")
+        self.to.heading("How the run went")
         summary, history = self.run.summary, self.run.history
         if history is not None and len(history["increment"]) > 1:
-            self.picture("conduct", curves.health(history, summary.get("volume_initial")))
+            self.to.picture("conduct", curves.health(history, summary.get("volume_initial")))
         rows = [(key.replace("_", " "), number(summary[key])) for key in
                 ("increments", "cuts", "newton_iterations", "krylov_iterations", "linear_solves_forward",
                  "linear_solves_adjoint", "volume_initial", "volume_final", "record_bytes") if key in summary]
@@ -111,57 +158,11 @@ class Page:
         if before and after is not None:
             rows.append(("relative change of volume", f"{after / before - 1:.2e}"))
         rows += [(key, number(value)) for key, value in summary.get("mesh", {}).items()]
-        self.table(("", "#"), rows)
+        self.to.table(("", "#"), rows)
         seconds = summary.get("wall_seconds", {})
         seconds = {key: value for key, value in seconds.items() if value is not None}
         total = seconds.get("total") or sum(seconds.values()) or 1.0
-        self.table(("wall time", "#seconds", "#share"),
+        self.to.table(("wall time", "#seconds", "#share"),
                    [(key, f"{value:.2f}", f"{100 * value / total:.0f} %") for key, value in seconds.items()])
-        self.note(", ".join(f"{key} {summary[key]}" for key in ("version", "commit", "ranks", "blas")
+        self.to.note(", ".join(f"{key} {summary[key]}" for key in ("version", "commit", "ranks", "blas")
                             if summary.get(key) not in (None, "")))
-
-    # --- parts ----------------------------------------------------------------------------------
-
-    def heading(self, text):
-        self.body.append(f"<h2>{html.escape(text)}</h2>")
-
-    def note(self, text):
-        if text:
-            self.body.append(f'<p class="note">{html.escape(text)}</p>')
-
-    def picture(self, name, figure):
-        buffer = io.BytesIO()
-        figure.savefig(buffer, format="png")
-        plt.close(figure)
-        (self.pictures / f"{name}.png").write_bytes(buffer.getvalue())
-        encoded = base64.b64encode(buffer.getvalue()).decode()
-        self.body.append(f'<img alt="{html.escape(name)}" src="data:image/png;base64,{encoded}">')
-
-    def table(self, header, rows):
-        """A heading that starts with # is a column of numbers."""
-        if not rows:
-            return
-        numeric = [title.startswith("#") for title in header]
-
-        def line(tag, cells):
-            return "<tr>" + "".join(f'<{tag} class="n">{c}</{tag}>' if n else f"<{tag}>{c}</{tag}>"
-                                    for c, n in zip(cells, numeric)) + "</tr>"
-        lines = [line("th", [html.escape(title.lstrip("#")) for title in header])] if any(
-            title.strip("#") for title in header) else []
-        lines += [line("td", [cell if isinstance(cell, Markup) else html.escape(str(cell)) for cell in row])
-                  for row in rows]
-        self.body.append("<table>" + "\n".join(lines) + "</table>")
-
-
-class Markup(str):
-    """Text that is HTML already."""
-
-
-def verdict(text):
-    return text if text in ("passed", "zero") else Markup(f'<span class="bad">{html.escape(str(text))}</span>')
-
-
-def number(value, digits=6):
-    if value is None:
-        return "–"
-    return f"{value:,}".replace(",", "\u2009") if isinstance(value, int) else f"{value:.{digits}g}"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""Read VTU files (ASCII, or inline base64 with or without zlib) and extract the boundary of tetrahedra."""
+"""Read VTU files (ASCII, or inline base64 with or without zlib): tetrahedra, whose boundary is drawn, or triangles."""
 import base64
 import dataclasses
 import xml.etree.ElementTree as xml
@@ -10,13 +10,14 @@ import numpy as np
 
 TYPES = {"Float64": "f8", "Float32": "f4", "Int64": "i8", "UInt64": "u8", "Int32": "i4", "UInt32": "u4",
          "Int16": "i2", "UInt16": "u2", "Int8": "i1", "UInt8": "u1"}
-TETRAHEDRON = 10
+TRIANGLE, TETRAHEDRON = 5, 10
+N_CORNERS = {TRIANGLE: 3, TETRAHEDRON: 4}
 FACES = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))  # outward for a positive tetrahedron
 
 
 @dataclasses.dataclass
 class Surface:
-    """Triangles of the boundary; `cell` is the tetrahedron behind each, `node` the mesh's node of each point."""
+    """Triangles; `cell` is the mesh's cell behind each, or each itself, `node` the mesh's node of each point."""
     points: np.ndarray
     triangles: np.ndarray
     cell: np.ndarray
@@ -33,28 +34,49 @@ class Surface:
             np.add.at(areas, self.triangles[:, corner], self.area_vectors() / 3)
         return areas
 
+    def nodal_areas(self):
+        """One third of the areas of the triangles around each point; not below the length of their area vector."""
+        areas = np.zeros(len(self.points))
+        sizes = np.linalg.norm(self.area_vectors(), axis=1) / 3
+        for corner in range(3):
+            np.add.at(areas, self.triangles[:, corner], sizes)
+        return areas
+
     def to_triangles(self, nodal):
         return nodal[self.triangles].mean(axis=1)
 
 
 @dataclasses.dataclass
 class Mesh:
+    """Cells (n, 4) are tetrahedra, cells (n, 3) triangles."""
     points: np.ndarray
     cells: np.ndarray
     point_data: dict
     cell_data: dict
 
     def surface(self):
+        """Without the points that belong to no triangle of it."""
+        if self.cells.shape[1] == N_CORNERS[TRIANGLE]:
+            faces, owner = self.cells, np.arange(len(self.cells))
+        else:
+            faces, owner = self._boundary()
+        node, triangles = np.unique(faces, return_inverse=True)
+        return Surface(self.points[node], triangles.reshape(-1, 3), owner, node)
+
+    def _boundary(self):
+        """Faces of one cell only, and that cell."""
         faces = np.concatenate([self.cells[:, face] for face in FACES])
         owner = np.tile(np.arange(len(self.cells)), len(FACES))
         _, index, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
         boundary = index[count == 1]
-        node, triangles = np.unique(faces[boundary], return_inverse=True)
-        surface = Surface(self.points[node], triangles.reshape(-1, 3), owner[boundary], node)
-        return surface
+        return faces[boundary], owner[boundary]
 
 
 def read(path):
+    """The tetrahedra of a file or, where it has none, its triangles.
+
+    @throws ValueError  for several pieces, a compressor or a data format that is not known, cells of other types
+    """
     root = xml.parse(path).getroot()
     grid = root.find("UnstructuredGrid")
     pieces = [] if grid is None else grid.findall("Piece")
@@ -63,17 +85,21 @@ def read(path):
     decode = _Decoder(path, root)
     points = decode(pieces[0].find("Points/DataArray")).reshape(-1, 3)
     cells = {array.get("Name"): decode(array) for array in pieces[0].find("Cells")}
-    tetrahedra = cells["types"] == TETRAHEDRON
-    ends = cells["offsets"][tetrahedra].astype(int)
-    connectivity = cells["connectivity"].astype(int)[ends[:, None] - np.arange(4, 0, -1)]
+    kind = next((kind for kind in (TETRAHEDRON, TRIANGLE) if (cells["types"] == kind).any()), None)
+    if kind is None:
+        raise ValueError(f"{path}: has neither tetrahedra nor triangles; the report draws nothing else")
+    chosen = cells["types"] == kind
+    ends = cells["offsets"][chosen].astype(int)
+    connectivity = cells["connectivity"].astype(int)[ends[:, None] - np.arange(N_CORNERS[kind], 0, -1)]
     point_data = {array.get("Name"): decode(array) for array in pieces[0].findall("PointData/DataArray")}
-    cell_data = {array.get("Name"): decode(array)[tetrahedra]
-                 for array in pieces[0].findall("CellData/DataArray")}
+    cell_data = {array.get("Name"): decode(array)[chosen] for array in pieces[0].findall("CellData/DataArray")}
+    if kind == TRIANGLE:
+        return Mesh(points.astype(float), connectivity, point_data, cell_data)
     return _merge(points, connectivity, point_data, cell_data)
 
 
 def _merge(points, cells, point_data, cell_data):
-    """Make one node of equal points: some writers give each cell its own."""
+    """Make one node of equal points: some writers give each tetrahedron its own."""
     _, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
     return Mesh(points[first].astype(float), inverse.reshape(-1)[cells],
                 {name: values[first] for name, values in point_data.items()}, cell_data)

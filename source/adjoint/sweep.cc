@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/adjoint/sweep.h>
 #include <retroforge/element/strain_history.h>
-#include <retroforge/mesh/cell_to_node.h>
+#include <retroforge/mesh/cell_transfer.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -100,7 +100,7 @@ namespace retroforge
       };
     }
 
-    /// From the new mesh back to the old: X' = J X + c, and the strain through the nodes.
+    /// From the new mesh back to the old: X' = J X + c, and the strain.
     void reverse_change_mesh(const RemeshRecord        &remesh,
                              const TetMesh             &old_mesh,
                              const std::vector<double> &strain_before,
@@ -109,10 +109,15 @@ namespace retroforge
       costate.X = remesh.transfer.apply_transpose(costate.X);
       if (costate.strain.empty())
         return;
-      std::vector<double> at_new(remesh.mesh.n_nodes(), 0.), strain(old_mesh.n_cells(), 0.);
-      reverse_node_to_cell(remesh.mesh, costate.strain, at_new);
-      reverse_cell_to_node(
-        old_mesh, remesh.X_before, strain_before, remesh.transfer.apply_transpose(at_new), strain, costate.X);
+      std::vector<double> strain(old_mesh.n_cells(), 0.);
+      reverse_transfer_cells(old_mesh,
+                             remesh.X_before,
+                             remesh.transfer,
+                             remesh.mesh,
+                             strain_before,
+                             std::move(costate.strain),
+                             strain,
+                             costate.X);
       costate.strain = std::move(strain);
     }
   } // namespace
@@ -173,11 +178,10 @@ namespace retroforge
       const IncrementRecord &record = run.source(i);
       if (record.remesh)
       {
-        const TransferOperator &J       = record.remesh->transfer;
-        const auto              at_node = J.apply(cell_to_node(leg->scene.mesh, X, strain));
-        X                               = J.positions(X);
-        strain                          = node_to_cell(record.remesh->mesh, at_node);
-        leg                             = std::make_shared<Leg>(record.remesh->mesh, run.model, run.timings);
+        const RemeshRecord &remesh = *record.remesh;
+        strain = transfer_cells(leg->scene.mesh, X, remesh.transfer, remesh.mesh, strain);
+        X      = remesh.transfer.positions(X);
+        leg    = std::make_shared<Leg>(record.remesh->mesh, run.model, run.timings);
       }
       end = record.stroke + record.step;
       X   = leg->increment.tangent(process, X, record, [&](const StageView<Dual> &view, const Dual &dt) {

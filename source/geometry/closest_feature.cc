@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/base/bounding_box.h>
-#include <deal.II/numerics/rtree.h>
-
 #include <retroforge/geometry/closest_feature.h>
 #include <retroforge/geometry/feature_projection.h>
 
@@ -13,10 +10,6 @@ namespace retroforge
 {
   namespace
   {
-    namespace index = boost::geometry::index;
-
-    using FacetBox = std::pair<dealii::BoundingBox<3>, unsigned int>;
-
     constexpr double tie = 1e-12; ///< of a squared distance
 
     struct Closest
@@ -132,47 +125,26 @@ namespace retroforge
     }
   } // namespace
 
-  struct ClosestFeature::Tree
+  ClosestFeature::ClosestFeature(const TriangleSurface &surface)
+      : surface_(surface), tree_(boxes_of_facets(surface))
   {
-    dealii::RTree<FacetBox> boxes;
-  };
-
-  ClosestFeature::ClosestFeature(const TriangleSurface &surface) : surface_(surface)
-  {
-    std::vector<FacetBox> boxes;
-    for (unsigned int f = 0; f < surface.n_facets(); ++f)
-    {
-      NodalVectors<double> corners;
-      for (const unsigned int v : surface.triangles()[f])
-        corners.push_back(surface.vertices()[v]);
-      const auto [low, high] = bounding_box(corners);
-      boxes.emplace_back(dealii::BoundingBox<3>({dealii::Point<3>(low), dealii::Point<3>(high)}), f);
-    }
-    tree_ = std::make_unique<const Tree>(Tree{dealii::pack_rtree(boxes)});
   }
-
-  ClosestFeature::~ClosestFeature() = default;
 
   DieFeature ClosestFeature::operator()(const Vec3 &X, const double within) const
   {
-    const dealii::Point<3> point(X);
-    const auto            &boxes = tree_->boxes;
-    Candidates             candidates(within);
-    // The facet of the nearest box bounds the distance; then come all whose boxes reach within the bound.
-    const auto first = boxes.qbegin(index::nearest(point, 1));
-    candidates.add(closest_of_facet(surface_, first->second, X));
-    dealii::Point<3> low = point, high = point;
-    for (unsigned int i = 0; i < 3; ++i)
-    {
-      const double width = std::sqrt(candidates.bound()) * (1. + tie) + 1e-14 * X.norm();
-      low[i] -= width;
-      high[i] += width;
-    }
-    const dealii::BoundingBox<3> around({low, high});
-    for (auto box = boxes.qbegin(index::intersects(around)); box != boxes.qend(); ++box)
-      if (box->second != first->second &&
-          boost::geometry::comparable_distance(point, box->first) <= candidates.bound() * (1. + 2. * tie))
-        candidates.add(closest_of_facet(surface_, box->second, X));
+    Candidates   candidates(within);
+    const double rounding = 1e-14 * X.norm();
+    // What may still tie, distances being rounded.
+    const auto bound = [&]() {
+      const double distance = std::sqrt(candidates.bound()) * (1. + tie) + rounding;
+      return distance * distance;
+    };
+    tree_.minimise([&](const unsigned int branch) { return tree_.box(branch).square_distance(X); },
+                   [&](const unsigned int facet) {
+                     candidates.add(closest_of_facet(surface_, facet, X));
+                     return bound();
+                   },
+                   bound());
     const DieFeature feature = candidates.best(surface_);
     return feature.found() ? decide_at_rim(surface_, feature, X) : feature;
   }

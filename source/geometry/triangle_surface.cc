@@ -220,6 +220,19 @@ namespace retroforge
     return box;
   }
 
+  std::vector<BoundingBox> boxes_of_facets(const TriangleSurface &surface)
+  {
+    std::vector<BoundingBox> boxes;
+    boxes.reserve(surface.n_facets());
+    for (const Triangle &corners : surface.triangles())
+    {
+      boxes.emplace_back(surface.vertices()[corners[0]]);
+      boxes.back().include(surface.vertices()[corners[1]]);
+      boxes.back().include(surface.vertices()[corners[2]]);
+    }
+    return boxes;
+  }
+
   double enclosed_volume(const TriangleSurface &surface)
   {
     double six_fold = 0.;

@@ -82,7 +82,7 @@ namespace retroforge
     for (std::size_t first = 0, last; first < features.size(); first = last)
     {
       std::vector<std::array<NodeIndex, 3>> same;
-      std::vector<Box>                      boxes;
+      std::vector<BoundingBox>              boxes;
       for (last = first; last < features.size() && features[last].patches == features[first].patches; ++last)
       {
         same.push_back(features[last].nodes);
@@ -98,14 +98,14 @@ namespace retroforge
   {
     const auto &n = group.features[feature];
     if (group.n_corners == 1)
-      return {{n[0]}, {1.}};
+      return {{n[0]}, {1.}, group.patches};
     if (group.n_corners == 2)
     {
       const auto w = closest_on_segment(x, {{X_[n[0]], X_[n[1]]}});
-      return {{n[0], n[1]}, {w[0], w[1]}};
+      return {{n[0], n[1]}, {w[0], w[1]}, group.patches};
     }
     const auto w = closest_on_triangle(x, {{X_[n[0]], X_[n[1]], X_[n[2]]}});
-    return {{n[0], n[1], n[2]}, {w[0], w[1], w[2]}};
+    return {{n[0], n[1], n[2]}, {w[0], w[1], w[2]}, group.patches};
   }
 
   double BoundaryLocator::square_distance(const BoundaryPoint &point, const Vec3 &x) const

@@ -3,9 +3,6 @@
 #include <retroforge/mesh/cell_faces.h>
 #include <retroforge/mesh/point_location.h>
 
-#include <deal.II/base/bounding_box.h>
-#include <deal.II/numerics/rtree.h>
-
 #include <algorithm>
 #include <limits>
 
@@ -13,9 +10,6 @@ namespace retroforge
 {
   namespace
   {
-    using DealBox = dealii::BoundingBox<3>;
-    using Rtree   = decltype(dealii::pack_rtree_of_indices(std::declval<std::vector<DealBox>>()));
-
     template <std::size_t n>
     Vec3 combination(const std::array<double, n> &weights, const std::array<Vec3, n> &p)
     {
@@ -52,19 +46,14 @@ namespace retroforge
       return best;
     }
 
-    DealBox deal_box(const Box &box)
-    {
-      return DealBox(std::make_pair(dealii::Point<3>(box.lower), dealii::Point<3>(box.upper)));
-    }
-
     double smallest(const std::array<double, 4> &weights)
     {
       return *std::min_element(weights.begin(), weights.end());
     }
 
-    std::vector<Box> boxes_of_cells(const TetMesh &mesh, const NodalVectors<double> &X)
+    std::vector<BoundingBox> boxes_of_cells(const TetMesh &mesh, const NodalVectors<double> &X)
     {
-      std::vector<Box> boxes;
+      std::vector<BoundingBox> boxes;
       boxes.reserve(mesh.n_cells());
       for (const auto &cell : mesh.cells)
       {
@@ -121,91 +110,6 @@ namespace retroforge
     if (smallest(inside) >= 0)
       return inside;
     return closest_on_sides<4, 3>(x, p, tet_face_corners, closest_on_triangle);
-  }
-
-  void Box::include(const Vec3 &x)
-  {
-    for (unsigned int i = 0; i < 3; ++i)
-    {
-      lower[i] = std::min(lower[i], x[i]);
-      upper[i] = std::max(upper[i], x[i]);
-    }
-  }
-
-  // The tree refers to the boxes, so they stay in one place.
-  struct BoxTree::Tree
-  {
-    std::vector<DealBox> boxes;
-    Rtree                rtree;
-
-    explicit Tree(std::vector<DealBox> all)
-        : boxes(std::move(all)), rtree(dealii::pack_rtree_of_indices(boxes))
-    {
-    }
-
-    double square_distance(const std::size_t box, const Vec3 &x) const
-    {
-      const auto &[lower, upper] = boxes[box].get_boundary_points();
-      double square              = 0;
-      for (unsigned int i = 0; i < 3; ++i)
-      {
-        const double outside = std::max({lower[i] - x[i], x[i] - upper[i], 0.});
-        square += outside * outside;
-      }
-      return square;
-    }
-  };
-
-  BoxTree::BoxTree(const std::vector<Box> &boxes)
-  {
-    std::vector<DealBox> deal_boxes;
-    deal_boxes.reserve(boxes.size());
-    for (const Box &box : boxes)
-      deal_boxes.push_back(deal_box(box));
-    tree_ = std::make_unique<Tree>(std::move(deal_boxes));
-  }
-
-  BoxTree::BoxTree(BoxTree &&) noexcept = default;
-  BoxTree::~BoxTree()                   = default;
-
-  std::vector<unsigned int> BoxTree::containing(const Vec3 &x) const
-  {
-    return intersecting(Box(x));
-  }
-
-  std::vector<unsigned int> BoxTree::intersecting(const Box &box) const
-  {
-    namespace bgi                   = boost::geometry::index;
-    const auto                range = deal_box(box);
-    std::vector<unsigned int> found;
-    for (const std::size_t i : tree_->rtree | bgi::adaptors::queried(bgi::intersects(range)))
-      found.push_back(i);
-    std::sort(found.begin(), found.end());
-    return found;
-  }
-
-  unsigned int BoxTree::closest(const Vec3                                &x,
-                                const std::function<double(unsigned int)> &square_distance) const
-  {
-    namespace bgi            = boost::geometry::index;
-    const auto  &rtree       = tree_->rtree;
-    unsigned int best        = invalid_index;
-    double       best_square = std::numeric_limits<double>::max();
-    if (rtree.empty())
-      return best;
-    // Boxes come in the order of their distance, so the search ends at the first that is too far.
-    for (auto i = rtree.qbegin(bgi::nearest(dealii::Point<3>(x), rtree.size())); i != rtree.qend(); ++i)
-    {
-      if (tree_->square_distance(*i, x) > best_square)
-        break;
-      const double square = square_distance(*i);
-      if (square < best_square || (square == best_square && *i < best))
-      {
-        best        = *i;
-        best_square = square;
-      }
-    }
-    return best;
   }
 
   CellLocator::CellLocator(const TetMesh &mesh, const NodalVectors<double> &X)

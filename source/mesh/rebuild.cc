@@ -21,9 +21,9 @@ namespace retroforge
       return {{X[face.nodes[0]], X[face.nodes[1]], X[face.nodes[2]]}};
     }
 
-    Box box_of(const Triangle &x)
+    BoundingBox box_of(const Triangle &x)
     {
-      Box box(x[0]);
+      BoundingBox box(x[0]);
       box.include(x[1]);
       box.include(x[2]);
       return box;
@@ -70,7 +70,7 @@ namespace retroforge
   void
   check_boundary_does_not_cross(const TetMesh &mesh, const NodalVectors<double> &X, const std::string &where)
   {
-    std::vector<Box> boxes;
+    std::vector<BoundingBox> boxes;
     for (const auto &face : mesh.faces)
       boxes.push_back(box_of(triangle(face, X)));
     const BoxTree tree(boxes);
@@ -80,7 +80,7 @@ namespace retroforge
         const NodeIndex a = face.nodes[i], b = face.nodes[(i + 1) % 3];
         if (a > b) // the face on the other side has this edge as (b, a)
           continue;
-        Box box(X[a]);
+        BoundingBox box(X[a]);
         box.include(X[b]);
         for (const unsigned int f : tree.intersecting(box))
         {

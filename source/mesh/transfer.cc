@@ -65,9 +65,7 @@ namespace retroforge
         Row             row;
         for (unsigned int a = 0; a < 4; ++a)
           row.emplace_back(mesh_.cells[point.cell][a], point.weights[a]);
-        if (interpolation_ == Interpolation::half_gradient)
-          add_half_gradient(row);
-        return tidy(std::move(row));
+        return tidy(with_gradient(std::move(row), {}));
       }
 
       Row on_boundary(const Vec3 &x, const PatchSet &patches)
@@ -78,26 +76,26 @@ namespace retroforge
         Row                 row;
         for (std::size_t i = 0; i < point.nodes.size(); ++i)
           row.emplace_back(point.nodes[i], point.weights[i]);
-        return tidy(std::move(row));
+        return tidy(point.nodes.size() > 1 ? with_gradient(std::move(row), point.patches) : std::move(row));
       }
 
     private:
       // The arms x - x_a are taken from the point the weights give: for a node outside of the old mesh that
-      // is its closest point, and linear fields stay exact there.
-      void add_half_gradient(Row &row)
+      // is its closest point, and linear fields stay exact there. All gradients or none: else they are not.
+      Row with_gradient(const Row &linear, const PatchSet &patches)
       {
+        if (interpolation_ == Interpolation::linear)
+          return linear;
         if (!gradient_)
           gradient_.emplace(mesh_, X_);
-        const Row linear = row;
-        Vec3      x;
+        Row  row = linear;
+        Vec3 x;
         for (const auto &[node, weight] : linear)
-        {
-          if (!gradient_->exists(node)) // beside inverted cells the linear value has to do
-            return;
           x += weight * X_[node];
-        }
         for (const auto &[node, weight] : linear)
-          gradient_->add_directional(node, 0.5 * weight * (x - X_[node]), row);
+          if (!gradient_->add_directional(node, patches, 0.5 * weight * (x - X_[node]), row))
+            return linear;
+        return row;
       }
 
       // Ascending nodes, each once; no zeros; the largest weight takes what the sum lacks of one.

@@ -32,7 +32,7 @@ namespace retroforge
       throw Error(file + ", line " + std::to_string(line),
                   "is not a row of a history",
                   "the columns are " + header.substr(0, header.size() - 1) + ", increments ascend",
-                  "remove the file and start the run anew, without --resume");
+                  "read the table that a run wrote, as it wrote it");
     }
 
     HistoryRow from_csv(const std::string &line, const std::string &file, const unsigned int line_number)
@@ -57,26 +57,11 @@ namespace retroforge
     }
   } // namespace
 
-  History::History(const std::string &file, const char *mode)
-      : file_(file), stream_(std::fopen(file.c_str(), mode))
+  History::History(const std::string &file) : file_(file), stream_(std::fopen(file.c_str(), "w"))
   {
     if (!stream_)
       throw_write_error(file_, errno);
-  }
-
-  History::History(const std::string &file) : History(file, "w")
-  {
     write(header);
-  }
-
-  History History::continue_after(const std::string &file, const unsigned int last_increment)
-  {
-    std::string kept = header;
-    for (const HistoryRow &row : read(file))
-      if (row.increment <= last_increment)
-        kept += to_csv(row);
-    write_file(file, kept);
-    return History(file, "a");
   }
 
   void History::add(const HistoryRow &row)

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/element/strain_history.h>
-#include <retroforge/mesh/cell_to_node.h>
+#include <retroforge/mesh/cell_transfer.h>
 #include <retroforge/mesh/rebuild.h>
 #include <retroforge/time/forging.h>
 
@@ -83,24 +83,23 @@ namespace retroforge
 
   void Forging::change_mesh(const RemeshRecord &remesh, ForgingState &state) const
   {
-    const TransferOperator &J       = remesh.transfer;
-    const TetMesh          &old     = state.leg->scene.mesh;
-    std::vector<double>     at_node = J.apply(cell_to_node(old, state.X, state.strain));
+    const TransferOperator &J = remesh.transfer;
     Field<double>           W(remesh.mesh);
-    W.V     = J.apply(state.W.V);
-    W.P     = J.apply(state.W.P);
-    state.X = J.positions(state.X);
-    state.strains_before.push_back(std::move(state.strain));
-    state.strain = node_to_cell(remesh.mesh, at_node);
-    state.W      = std::move(W);
-    state.leg    = std::make_shared<Leg>(remesh.mesh, model_, timings_);
+    W.V         = J.apply(state.W.V);
+    W.P         = J.apply(state.W.P);
+    auto strain = transfer_cells(state.leg->scene.mesh, state.X, J, remesh.mesh, state.strain);
+    state.strains_before.push_back(std::exchange(state.strain, std::move(strain)));
+    state.X   = J.positions(state.X);
+    state.W   = std::move(W);
+    state.leg = std::make_shared<Leg>(remesh.mesh, model_, timings_);
     state.remeshed.push_back(state.increments);
   }
 
   void Forging::remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const
   {
     const auto timing = timings_.scope("remeshing");
-    record.remesh = remesher_.remesh(state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies);
+    record.remesh =
+      remesher_.remesh(state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies, timings_);
     change_mesh(*record.remesh, state);
     state.X = record.remesh->mesh.X; // J X + c to the last bit
   }
@@ -140,6 +139,8 @@ namespace retroforge
     const auto since_remeshing = [&]() {
       return state.increments - (state.remeshed.empty() ? 0 : state.remeshed.back());
     };
+    // Also where a run is resumed that stopped for that.
+    check_boundary_does_not_cross(state.leg->scene.mesh, state.X, "Workpiece");
     while (state.stroke < press_.stroke - 1e-9 * whole)
     {
       IncrementRecord record;

@@ -10,7 +10,6 @@
 #include <retroforge/mesh/rebuild.h>
 #include <retroforge/mesh/remeshing/trigger.h>
 #include <retroforge/mesh/renumber.h>
-#include <retroforge/mesh/size_field.h>
 #include <retroforge/time/remesher.h>
 
 namespace retroforge
@@ -91,22 +90,20 @@ namespace retroforge
                      const double              element_size,
                      const std::vector<Die>   &dies,
                      MPI_Comm                  comm)
-      : parameters_(parameters)
-      , element_size_(element_size)
-      , dies_(dies)
-      , comm_(comm)
-      , facet_size_(dies.size())
+      : parameters_(parameters), element_size_(element_size), dies_(dies), comm_(comm), near_die_(dies.size())
   {
     if (parameters_.chord_error == 0.)
       return;
     for (unsigned int d = 0; d < dies.size(); ++d)
       if (dies[d].surface())
+      {
+        std::vector<double> size;
         for (const double curvature : facet_curvature(*dies[d].surface()))
-        {
-          const double length = std::sqrt(8. * parameters_.chord_error / std::max(curvature, 1e-300));
-          facet_size_[d].push_back(
-            std::min(element_size, std::max(parameters_.smallest_size * element_size, length)));
-        }
+          size.push_back(std::clamp(std::sqrt(8. * parameters_.chord_error / std::max(curvature, 1e-300)),
+                                    parameters_.smallest_size * element_size,
+                                    element_size));
+        near_die_[d].emplace(*dies[d].surface(), size, element_size, parameters_.growth);
+      }
   }
 
   bool Remesher::due(const TetMesh              &mesh,
@@ -158,45 +155,15 @@ namespace retroforge
     return deepest;
   }
 
-  SizeField Remesher::size_field(const NodalVectors<double> &X, const DieStates &states) const
+  SizeField Remesher::size_field(const DieStates &states) const
   {
-    const auto is_curved = [](const std::vector<double> &size) { return !size.empty(); };
-    if (std::none_of(facet_size_.begin(), facet_size_.end(), is_curved))
-      return GradedSize(element_size_);
-    const double reach  = element_size_ / parameters_.growth;
-    const auto   wanted = [&](const Vec3 &x) {
+    return [this, states](const Vec3 &x) {
       double size = element_size_;
       for (unsigned int d = 0; d < dies_.size(); ++d)
-        if (!facet_size_[d].empty())
-          if (const DieFeature feature = dies_[d].closest(x, states[d].displacement, reach); feature.found())
-          {
-            const double distance = std::abs(dies_[d].project(x, states[d].displacement, feature).delta);
-            size = std::min(size, facet_size_[d][feature.facet] + parameters_.growth * distance);
-          }
+        if (near_die_[d])
+          size = std::min(size, (*near_die_[d])(x - states[d].displacement));
       return size;
     };
-    auto [low, high] = bounding_box(X);
-    for (unsigned int i = 0; i < 3; ++i)
-    {
-      low[i] -= 0.5 * element_size_;
-      high[i] += 0.5 * element_size_;
-    }
-    std::vector<Vec3> points;
-    for (unsigned int d = 0; d < dies_.size(); ++d)
-      if (!facet_size_[d].empty())
-        for (const Vec3 &vertex : dies_[d].surface()->vertices())
-        {
-          const Vec3 x      = vertex + states[d].displacement;
-          bool       inside = true;
-          for (unsigned int i = 0; i < 3; ++i)
-            inside = inside && low[i] <= x[i] && x[i] <= high[i];
-          if (inside)
-            points.push_back(x);
-        }
-    Box region(low);
-    region.include(high);
-    return GradedSize(
-      region, wanted, points, {parameters_.smallest_size * element_size_, element_size_, parameters_.growth});
   }
 
   PushOut Remesher::push_out(const DieStates &states) const
@@ -245,14 +212,16 @@ namespace retroforge
     return local;
   }
 
-  std::shared_ptr<const RemeshRecord>
-  Remesher::remesh(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const
+  std::shared_ptr<const RemeshRecord> Remesher::remesh(const TetMesh              &mesh,
+                                                       const NodalVectors<double> &X,
+                                                       const DieStates            &states,
+                                                       Timings                    &timings) const
   {
     auto                   record = std::make_shared<RemeshRecord>();
     std::vector<NodeIndex> old_node;
     const auto             make_numbered = [&]() {
       const NodalVectors<double> rounded = on_grid(X);
-      RemeshedMesh               made = make(mesh, rounded, size_field(rounded, states), states);
+      RemeshedMesh               made    = make(mesh, rounded, size_field(states), states);
       for (NodeIndex k = 0; k < made.mesh.n_nodes(); ++k)
         if (const NodeIndex old = made.old_node[k]; old != invalid_index)
           made.mesh.X[k] += X[old] - rounded[old];
@@ -263,9 +232,10 @@ namespace retroforge
         old_node[number[k]] = made.old_node[k];
       return std::move(made.mesh);
     };
-    record->mesh     = make_on_root(make_numbered, comm_, &old_node);
-    record->X_before = X;
-    record->transfer = make_transfer(mesh, X, record->mesh, old_node);
+    record->mesh      = make_on_root(make_numbered, comm_, &old_node);
+    record->X_before  = X;
+    const auto timing = timings.scope("transfer");
+    record->transfer  = make_transfer(mesh, X, record->mesh, old_node);
     return record;
   }
 } // namespace retroforge

@@ -2,7 +2,8 @@
 # Copyright (C) 2026 The Retroforge authors
 """The report reads what a run leaves (three encodings of VTU), and copes with what it does not leave.
 
-By hand: the boundary of n^3 boxes of six tetrahedra has 12 n^2 triangles, and its area is 6 x side^2.
+By hand: the boundary of n^3 boxes of six tetrahedra has 12 n^2 triangles, and its area is 6 x side^2. A pressure p on a
+surface is the nodal gradient p x area vector; per area, its normal part is p, at edges and corners too.
 """
 import json
 import sys
@@ -14,7 +15,9 @@ from scripts import CONTRIB, ScratchTest, call
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(CONTRIB))
-from retroforge_report import data, vtu  # noqa: E402
+from retroforge_report import data, effects, refine, render, shapes, units, vtu  # noqa: E402
+
+SIDE = synthetic_run.SIDE
 
 
 class Report(ScratchTest):
@@ -37,30 +40,128 @@ class Report(ScratchTest):
                 outward = np.einsum("ij,ij->i", areas, surface.to_triangles(surface.points) - synthetic_run.SIDE / 2)
                 self.assertGreater(outward.min(), 0)
 
-    def test_whole_page(self):
-        synthetic_run.write(self.root / "run", n=3, increments=4)
+    def test_triangles(self):
+        points, triangles = synthetic_run.dome(4, depth=0.0)
+        for encoding in ("ascii", "binary", "zlib"):
+            with self.subTest(encoding=encoding):
+                path = self.root / "die.vtu"
+                extra = np.vstack([points, [[0.0, 0.0, 0.0]]])  # of no triangle
+                synthetic_run.write_vtu(path, extra, triangles, {"x": extra}, {}, encoding)
+                mesh = vtu.read(path)
+                np.testing.assert_array_equal(mesh.point_data["x"], mesh.points)
+                surface = mesh.surface()
+                self.assertEqual((len(surface.points), len(surface.triangles)), (25, 32))
+                np.testing.assert_allclose(surface.area_vectors().sum(axis=0), [0, 0, -(2 * SIDE)**2], atol=1e-9)
+                self.assertAlmostEqual(surface.nodal_areas().sum(), (2 * SIDE)**2, 8)
+
+    def test_other_cells(self):
+        path = self.root / "lines.vtu"
+        synthetic_run.write_vtu(path, np.zeros((3, 3)), np.array([[0, 1, 2]]), {}, {}, "ascii")
+        path.write_text(path.read_text().replace('format="ascii">5</DataArray>', 'format="ascii">7</DataArray>'))
+        with self.assertRaisesRegex(ValueError, "neither tetrahedra nor triangles"):
+            vtu.read(path)
+
+    def test_pressure_on_surfaces(self):
+        dome, cube = vtu.Mesh(*synthetic_run.dome(5), {}, {}), vtu.Mesh(*synthetic_run.cube(2), {}, {})
+        for surface in (dome.surface(), cube.surface()):
+            _, normal = shapes._per_area(surface, 3.5 * surface.nodal_area_vectors())
+            np.testing.assert_allclose(normal, 3.5, rtol=1e-12)
+
+    def test_refined(self):
+        """Of a linear field: the same surface, the field's values at the middles, and no jump above the tolerance."""
+        surface = vtu.Mesh(*synthetic_run.dome(2, depth=0.0), {}, {}).surface()
+        field = surface.points @ [1.0, 2.0, 0.0]
+        fine, values = refine.refined(surface, field, tolerance=20.0, finest=0.0)
+        np.testing.assert_allclose(fine.area_vectors().sum(axis=0), surface.area_vectors().sum(axis=0), atol=1e-9)
+        np.testing.assert_allclose(values, fine.to_triangles(fine.points) @ [1.0, 2.0, 0.0])
+        corners = (fine.points @ [1.0, 2.0, 0.0])[fine.triangles]
+        self.assertLessEqual(np.ptp(corners, axis=1).max(), 20.0)
+        self.assertGreater(len(fine.triangles), 8 * (150 / 20))
+        np.testing.assert_allclose(fine.area_vectors()[:, 2] < 0, True)
+        self.assertEqual(len(refine.refined(surface, field, 1e3, 0.0)[1]), 8)
+        self.assertEqual(len(refine.refined(surface, field, 0.0, 1e3)[1]), 8)
+
+    def test_view_onto_a_die(self):
+        for direction in ([0, 0, -1], [0, 0, 2], [1, 0, 0], [0.3, -0.4, -0.5]):
+            view = render.view_onto(np.array(direction, float))
+            self.assertAlmostEqual(view.eye @ direction / np.linalg.norm(direction), np.cos(np.radians(40)), 12)
+            self.assertAlmostEqual(np.linalg.det([view.right, view.up, view.eye]), 1, 12)
+        self.assertIs(render.view_onto(np.zeros(3)), render.FROM_THE_SIDE)
+
+    def test_units_and_identifiers(self):
+        self.assertEqual([data.identifier(name) for name in ("fold (a=4)", "Größe 2", "x_1")],
+                         ["fold__a_4_", "Gr____e_2", "x_1"])
+        self.assertEqual([units.pretty(u) for u in ("mm^2 s^-3", "none", None, "mm^(-m)", "s^10")],
+                         ["mm² s⁻³", "", "", "mm^(-m)", "s¹⁰"])
+        self.assertEqual([units.per_volume(u) for u in ("mJ", "none")], ["mJ/mm³", "1/mm³"])
+
+    def test_ranking(self):
+        parameters = [{"name": name, "value": value, "unit": "", "gradient": {"energy": derivative}}
+                      for name, value, derivative in (("a", 2.0, 3.0), ("b", 0.0, 1e9), ("c", -10.0, 1.0), ("d", 5.0, -8.0),
+                                                      ("e", None, 1.0))]
+        ranked = effects.effects({"name": "energy", "value": 20.0}, parameters)
+        self.assertEqual([e.parameter["name"] for e in ranked], ["d", "c", "a", "b", "e"])
+        np.testing.assert_allclose([e.for_one_percent for e in ranked[:3]], [-0.4, 0.1, 0.06])
+        self.assertEqual([e.for_one_percent for e in ranked[3:]], [None, None])
+        relative = effects.relative_gradient({"name": "energy", "value": 20.0}, parameters)
+        np.testing.assert_allclose([value for _, value in relative], [-2.0, 0.5, 0.3])
+        self.assertEqual(effects.relative_gradient({"name": "energy", "value": 0.0}, parameters), [])
+        self.assertEqual(effects.effects({"name": "volume", "value": 1.0}, parameters), [])
+
+    def test_objectives_over_the_stroke(self):
+        self.write("summary.json", '{"schema": 1, "objectives": [{"name": "a"}, {"name": "a: b"}]}')
+        self.write("objectives.csv", "stroke [mm],a [mJ],a: part [mJ],a: b [N],c [x] [none]\n1,2,3,,\n2,4,5,6,\n3,1")
+        run = data.Run(self.root)
+        np.testing.assert_array_equal(run.objective_strokes, [1, 2])
+        self.assertEqual([(c.name, c.unit, c.of) for c in run.objective_columns],
+                         [("a", "mJ", ""), ("part", "mJ", "a"), ("a: b", "N", ""), ("c [x]", "none", "")])
+        np.testing.assert_array_equal([c.values for c in run.objective_columns],
+                                      [[2, 4], [3, 5], [np.nan, 6], [np.nan, np.nan]])
+
+    def test_many_objectives(self):
+        """The first four of six have pictures of their own, the first of them none on the die; all have numbers."""
+        synthetic_run.write(self.root / "run", n=2, increments=4)
         result = call("report", "--no-vtk", self.root / "run")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(result.stderr, "")
         page = (self.root / "run/report.html").read_text()
-        self.assertEqual(page.count("data:image/png;base64"), 6)
-        self.assertEqual(len(list((self.root / "run/pictures").glob("*.png"))), 6)
-        self.assertIn("1.98, 1.99, 2", page)
+        pictures = sorted(path.stem for path in (self.root / "run/pictures").glob("*.png"))
+        first = ["energy", "fold__a_4_", "late_force", "mean_strain"]
+        self.assertEqual(pictures, sorted(
+            ["shapes", "force", "objectives", "gradients", "conduct", "check_volume",
+             *(f"check_{o}" for o in first), *(f"sensitivity_{o}" for o in first),
+             *(f"sensitivity_die_upper_{o}" for o in first[1:])]))
+        self.assertEqual(page.count("data:image/png;base64"), len(pictures))
+        for text in ("1.98, 1.99, 2", "Drawn for the first 4 of 6 objectives; sensitivity_die_upper.vtu",
+                     "Without values: volume.",
+                     "energy: 4 of 4 passed", "volume: 3 of 4 passed", "energy does not depend on it.",
+                     "for +1 % [mm² s⁻³]", "<h3>fold (a=4)</h3>", "<h3>volume</h3>"):
+            self.assertIn(text, page)
+        table = page[page.index("<h3>late force</h3>"):]
+        places = [table.index(f"<td>{name}</td>") for name in ("material/K", "billet/stretch", "dies/offset")]
+        self.assertEqual(places, sorted(places))
+        self.assertIn('<td class="n">1.7</td><td>MPa s^m</td><td class="n">73529.4</td><td class="n">+1250</td>', table)
+        self.assertIn('<td class="n">0</td><td>mm</td><td class="n">321</td><td class="n">–</td>', table)
 
     def test_unknown_numbers(self):
         """A number that a run did not find is null."""
-        synthetic_run.write(self.root / "run", n=3, increments=4)
+        synthetic_run.write(self.root / "run", n=2, increments=4, n_objectives=1)
         path = self.root / "run/summary.json"
         summary = json.loads(path.read_text())
-        summary["objectives"][0]["value"] = summary["parameters"][0]["value"] = summary["volume_final"] = None
+        summary["parameters"][0]["value"] = summary["volume_final"] = None
         summary["parameters"][1]["gradient"]["energy"] = summary["wall_seconds"]["krylov"] = None
         summary["check"][0]["adjoint"] = summary["check"][1]["taylor_orders"][0] = None
         summary["check"][1]["steps"][0]["free_central"] = None
         del summary["check"][2]["steps"], summary["parameters"][2]["gradient"]
-        path.write_text(json.dumps(summary))
-        result = call("report", "--no-vtk", self.root / "run")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertNotIn("nan", (self.root / "run/report.html").read_text().split("base64")[0])
+        for value in (summary["objectives"][0]["value"], None):
+            summary["objectives"][0]["value"] = value
+            path.write_text(json.dumps(summary))
+            result = call("report", "--no-vtk", self.root / "run")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            page = (self.root / "run/report.html").read_text()
+            self.assertNotIn("nan", page.split("base64")[0])
+            self.assertNotIn("Drawn for the first", page)
+            self.assertEqual((self.root / "run/pictures/gradients.png").is_file(), value is not None)
 
     def test_bare_summary(self):
         self.write("run/summary.json", '{"schema": 1, "command": "simulate"}')

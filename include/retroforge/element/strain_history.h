@@ -13,7 +13,7 @@
 /// sub-tetrahedra of equal volume. Strain rates live in cells: kept at nodes, every increment would average
 /// them over the neighbours and then again, and the history would diffuse with time even without remeshing.
 /// Cells move with the material, so between remeshings the update needs no other cell and no mass matrix.
-/// When the mesh changes: cell_to_node() on the old mesh, TransferOperator, node_to_cell() on the new one.
+/// When the mesh changes: transfer_cells().
 /// The strain rate is not regularised (no e0): material at rest accumulates nothing.
 namespace retroforge
 {

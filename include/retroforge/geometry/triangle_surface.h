@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/core/types.h>
+#include <retroforge/geometry/box_tree.h>
 
 #include <array>
 #include <string>
@@ -89,6 +89,9 @@ namespace retroforge
 
   /// Corners of the smallest box around points; there must be one.
   std::pair<Vec3, Vec3> bounding_box(const NodalVectors<double> &points);
+
+  /// The box of each facet.
+  std::vector<BoundingBox> boxes_of_facets(const TriangleSurface &surface);
 
   /// Volume enclosed, positive when the normals point outwards: for a surface that is closed.
   double enclosed_volume(const TriangleSurface &surface);

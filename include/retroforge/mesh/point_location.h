@@ -2,11 +2,10 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/geometry/box_tree.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/tet_mesh.h>
 
-#include <functional>
-#include <memory>
 #include <vector>
 
 namespace retroforge
@@ -19,38 +18,6 @@ namespace retroforge
 
   /// Barycentric coordinates of x, for inverted tetrahedra too; not finite when the volume is zero.
   std::array<double, 4> barycentric_coordinates(const Vec3 &x, const TetCorners &p);
-
-  /// The smallest box with edges along the axes that contains the points.
-  struct Box
-  {
-    Vec3 lower, upper;
-
-    explicit Box(const Vec3 &x) : lower(x), upper(x) {}
-    void include(const Vec3 &x);
-  };
-
-  /// An R-tree of boxes, each standing for an item of which the caller knows the shape.
-  class BoxTree
-  {
-  public:
-    explicit BoxTree(const std::vector<Box> &boxes);
-    BoxTree(BoxTree &&) noexcept;
-    ~BoxTree();
-
-    /// Numbers of the boxes that contain x, ascending.
-    std::vector<unsigned int> containing(const Vec3 &x) const;
-
-    /// Numbers of the boxes that have points in common with `box`, ascending.
-    std::vector<unsigned int> intersecting(const Box &box) const;
-
-    /// The item nearest to x, the first of several; invalid_index when there is none.
-    /// @param square_distance  of an item to x; the item must lie in its box
-    unsigned int closest(const Vec3 &x, const std::function<double(unsigned int)> &square_distance) const;
-
-  private:
-    struct Tree;
-    std::unique_ptr<Tree> tree_;
-  };
 
   /// Where a point is in a mesh: the position is  sum_a weights_a X_a  over the corners of the cell.
   struct CellPoint

@@ -2,58 +2,43 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/mesh/point_location.h>
-
-#include <functional>
-#include <memory>
-#include <vector>
+#include <retroforge/geometry/box_tree.h>
+#include <retroforge/geometry/triangle_surface.h>
 
 namespace retroforge
 {
-  /// Bounds of a graded size field.
-  struct SizeBounds
-  {
-    double smallest;       ///< [mm]
-    double largest;        ///< [mm]
-    double gradient = 0.3; ///< the size grows by at most this over a unit of distance, dimensionless
-
-    /// Throws Error at `where` unless  0 < smallest <= largest  and  gradient > 0.
-    void check(const std::string &where) const;
-  };
-
-  /// Wanted length of edges as a function of position: continuous, within its bounds, with |grad h| <=
-  /// gradient everywhere. Usable as std::function<double(const Vec3 &)>; copies share their data.
+  /// Wanted length of edges near a surface each facet f of which wants its own length s_f:
   ///
-  /// The field is trilinear on the leaves of a balanced forest of octrees, deal.II's hexahedral
-  /// Triangulation, so that asking costs one descent whatever the wanted sizes cost. The serial class, not
-  /// the distributed one: meshes are the same on every rank, every rank asks anywhere, and a field split
-  /// between ranks would communicate at each question. The same input gives the same field on every rank.
+  ///   h(x) = min( h_0, min_f ( s_f + g |x - f| ) ),    |x - f| the distance of x to the facet,
+  ///
+  /// the largest function that is nowhere above h_0, on no facet above its s_f, and changes by at most g per
+  /// distance. It moves with the surface, so that one field serves all positions of a die: ask for
+  /// h(x - displacement).
+  ///
+  /// Nothing is tabulated: a question is a branch-and-bound search among the facets with s_f < h_0. (An octree
+  /// that holds the same field answers faster, but a remeshing asks too few questions to pay for making it.)
   class GradedSize
   {
   public:
-    /// The same size everywhere, without any tree.
-    explicit GradedSize(double uniform);
-
-    /// Nowhere larger than wanted at the points given and at the vertices of the trees, and smaller where the
-    /// bound on the gradient asks for it. Trees are refined until a leaf is no longer than twice the size at
-    /// its vertices, its centre and the points in it: give points where the size is small in little room.
-    /// The growth away from small sizes is a bit direction-dependent, between gradient/sqrt(3) along the axes
-    /// of the trees and gradient along their diagonals.
-    /// @param region  where positions are expected; outside the closest point of it counts
-    /// @param wanted  size at a point; is cut to the bounds
-    GradedSize(const Box                                 &region,
-               const std::function<double(const Vec3 &)> &wanted,
-               const std::vector<Vec3>                   &points,
-               const SizeBounds                          &bounds);
+    /// @param size_of_facet  s_f [mm]
+    /// @param largest        h_0 [mm]
+    /// @param growth         g, dimensionless
+    /// Throws Error unless all of them are positive and there is one size per facet.
+    GradedSize(const TriangleSurface     &surface,
+               const std::vector<double> &size_of_facet,
+               double                     largest,
+               double                     growth);
 
     double operator()(const Vec3 &x) const;
 
-    /// Leaves of the trees, 0 when uniform.
-    unsigned int n_leaves() const;
+    /// Facets with s_f < h_0.
+    unsigned int n_facets() const { return facets_.size(); }
 
   private:
-    class Forest;
-    double                        uniform_;
-    std::shared_ptr<const Forest> forest_;
+    double                           largest_, growth_;
+    std::vector<std::array<Vec3, 3>> facets_; ///< only those with s_f < h_0
+    std::vector<double>              size_;   ///< s_f of those
+    BoxTree                          tree_;
+    std::vector<double>              least_; ///< smallest s_f in each branch of the tree
   };
 } // namespace retroforge

@@ -47,21 +47,23 @@ namespace retroforge
     std::size_t memory_consumption() const;
   };
 
-  /// How values reach new nodes inside.
+  /// How values reach new nodes.
   ///
-  /// Measured on boxes of about 1200 (7400) nodes, relative L2 error of a Gaussian exp(-|x|^2/(2h)^2) after
-  /// 10 and 60 transfers: between two unrelated meshes 0.39 and 0.73 (0.45 and 0.83) linear, 0.16 and 0.41
-  /// (0.19 and 0.49) with half gradients; with 3 % of the nodes moved each time 0.022 and 0.104 (0.045 and
-  /// 0.122) against 0.009 and 0.049 (0.020 and 0.056). Undershoot with half gradients: 0.2 to 0.8 % of the
-  /// peak. Cost per new node: 7 against 22 microseconds. Hence half gradients are the default.
+  /// Measured on boxes of about 1200 (6600) nodes, relative L2 error of a Gaussian exp(-|x|^2/(2h)^2) after
+  /// 10 and 60 transfers: between two unrelated meshes 0.39 and 0.73 (0.46 and 0.87) linear, 0.12 and 0.30
+  /// (0.15 and 0.42) with half gradients; with 3 % of the nodes moved each time 0.022 and 0.104 (0.029 and
+  /// 0.108) against 0.0065 and 0.031 (0.011 and 0.034). Undershoot with half gradients: 0.2 to 1.9 % of the
+  /// peak. Cost per new node: 4 against 60 microseconds. Hence half gradients are the default.
   enum class Interpolation
   {
     linear, ///< of the old cell's four corners: weights >= 0, so no value leaves the range of the old ones
     /// The linear value  q(x) = sum_a w_a q_a  plus half of the correction by recovered gradients,
-    ///   q(x) + 1/2 sum_a w_a G_a·(x - x_a),   G_a = sum_T |T| grad q_T / sum_T |T|  over the cells at a,
-    /// which cancels the error of linear interpolation as far as G is the gradient of a quadratic field.
-    /// Still linear in q and exact for linear fields, but with negative weights and about 30 entries a row.
-    /// Linear in cells of which a corner has inverted cells about it.
+    ///   q(x) + 1/2 sum_a w_a G_a·(x - x_a),
+    /// which cancels the error of linear interpolation as far as G_a is the gradient of a quadratic field at
+    /// the corner a. It is that of the cubic that fits the values around (RecoveredGradient); on a patch it
+    /// is tangential and of the patch's values only, on a ridge along it and of the ridge's values. Still
+    /// linear in q and exact for linear fields, but with negative weights and about 40 entries a row. Linear
+    /// where a corner has no gradient: beside inverted cells, and at edges within a patch.
     half_gradient
   };
 

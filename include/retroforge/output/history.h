@@ -31,9 +31,6 @@ namespace retroforge
     /// Start a new table.  @throws Error if it cannot be written
     explicit History(const std::string &file);
 
-    /// Go on with an existing table: keep its rows up to and including `last_increment`.
-    static History continue_after(const std::string &file, unsigned int last_increment);
-
     /// @throws Error if the row cannot be written
     void add(const HistoryRow &row);
 
@@ -49,7 +46,6 @@ namespace retroforge
     std::string                       file_;
     std::unique_ptr<std::FILE, Close> stream_;
 
-    History(const std::string &file, const char *mode);
     void write(const std::string &text);
   };
 } // namespace retroforge

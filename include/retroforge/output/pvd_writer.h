@@ -15,10 +15,6 @@ namespace retroforge
   public:
     explicit PvdWriter(const std::string &file);
 
-    /// Go on with an existing series: keep what it lists up to `last_time`.  @throws Error if it cannot be
-    /// read
-    static PvdWriter continue_after(const std::string &file, double last_time);
-
     /// Append a file, named relative to the folder of the .pvd.  @throws Error if the series cannot be
     /// written
     void add(double time, const std::string &vtu_file);

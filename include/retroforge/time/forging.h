@@ -79,7 +79,7 @@ namespace retroforge
                 ForgingState          &state,
                 const Watch           &watch = {}) const;
 
-    /// Changes the mesh as recorded: positions X' = J X + c, strain through the nodes.
+    /// Changes the mesh as recorded: positions X' = J X + c, strain by transfer_cells().
     void change_mesh(const RemeshRecord &remesh, ForgingState &state) const;
 
   private:

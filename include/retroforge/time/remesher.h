@@ -2,9 +2,12 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/core/timer.h>
 #include <retroforge/mesh/remeshing/local_remesher.h>
+#include <retroforge/mesh/size_field.h>
 #include <retroforge/record/increment_record.h>
 
+#include <optional>
 #include <string>
 
 #include <mpi.h>
@@ -56,12 +59,15 @@ namespace retroforge
     std::vector<bool> frozen(const TetMesh &mesh) const;
 
     /// Collective: made on rank 0, the same everywhere. Numbered with renumber().
+    /// @param timings  "transfer" gets what it takes to find J
     /// @throws Error  when no method gives a sound mesh
-    std::shared_ptr<const RemeshRecord>
-    remesh(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const;
+    std::shared_ptr<const RemeshRecord> remesh(const TetMesh              &mesh,
+                                               const NodalVectors<double> &X,
+                                               const DieStates            &states,
+                                               Timings                    &timings) const;
 
-    /// Wanted length of edges: near a curved die as its curvature asks for.
-    SizeField size_field(const NodalVectors<double> &X, const DieStates &states) const;
+    /// Wanted length of edges: near a curved die as its curvature asks for. Refers to this object.
+    SizeField size_field(const DieStates &states) const;
 
     /// How deep the middles of surface edges whose ends touch a die are inside it, at most [mm]: what the
     /// mesh does not see of the die.
@@ -75,10 +81,10 @@ namespace retroforge
     PushOut      push_out(const DieStates &states) const;
     TouchesDie   touches(const DieStates &states) const;
 
-    RemesherParameters               parameters_;
-    double                           element_size_;
-    const std::vector<Die>          &dies_;
-    MPI_Comm                         comm_;
-    std::vector<std::vector<double>> facet_size_; ///< of each curved die: the length its curvature asks for
+    RemesherParameters                     parameters_;
+    double                                 element_size_;
+    const std::vector<Die>                &dies_;
+    MPI_Comm                               comm_;
+    std::vector<std::optional<GradedSize>> near_die_; ///< of each curved die, in its first position
   };
 } // namespace retroforge

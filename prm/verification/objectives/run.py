@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""Every objective by every parameter:  run.py BUILD flat | curved | quick | several | methods
+"""Every objective by every parameter:  run.py BUILD flat | curved | quick | ranks | several | methods
 
 flat: a tilted plane, nodes that arrive. curved: the tripod, contact that changes, two remeshings. quick: the same with
-fewer parameters and steps. several: what three objectives at once cost. methods: adjoint against direct method by the
+fewer parameters and steps. ranks: on one, two and three. several: what three objectives at once cost. methods: adjoint against direct method by the
 number of parameters."""
 import os
 import sys
@@ -98,6 +98,24 @@ def curved(build, label, names, parameters, steps, more):
     judge(build, CURVED, settings, label)
 
 
+def ranks(build):
+    """Values and gradients of all objectives on two and three ranks against one, by parameters, curved dies, 2 remeshings."""
+    settings = {**COARSE, **objectives(PATH + END, "die upper"), "Design/parameters": ", ".join(CURVED_PARAMETERS),
+                "Objective late force/window begin": 2.6, "Newton/tolerance": 1e-13, "Adjoint/tolerance": 1e-13}
+    found = [case_tools.run(build, "gradient", CURVED, settings, f"run_ranks_{n}", ranks=n)[0] for n in (1, 2, 3)]
+    for n, other in zip((2, 3), found[1:]):
+        value = max(abs(a["value"] / b["value"] - 1.0) for a, b in zip(other["objectives"], found[0]["objectives"]))
+        # A derivative is measured against what it does to the objective: those that are zero but for rounding are zero.
+        scale = {o["name"]: abs(o["value"]) for o in found[0]["objectives"]}
+        worst = 0.0
+        for a, b in zip(other["parameters"], found[0]["parameters"]):
+            size = abs(b["value"]) or 40.0
+            for name, g in b["gradient"].items():
+                worst = max(worst, abs(a["gradient"][name] - g) / max(abs(g), 1e-3 * scale[name] / size))
+        case_tools.figure(f"value_change_{n}_ranks", value)
+        case_tools.figure(f"gradient_change_{n}_ranks", worst)
+
+
 def several(build):
     """Seconds of the backward sweep and of the whole gradient, for one objective and for three."""
     case = os.path.join(HERE, "..", "speed", "case.prm")
@@ -136,13 +154,13 @@ def methods(build):
 def main():
     build, what = sys.argv[1:3]
     if what == "curved":
-        curved(build, "curved", PATH + END, CURVED_PARAMETERS, "1e-3, 1e-4, 1e-5, 1e-6",
+        curved(build, "curved", PATH + END, CURVED_PARAMETERS, "1e-3, 1e-4, 3e-5, 1e-5, 1e-6",
                {"Press/stroke": 18, "Press/increments": 18, "Remeshing/every": 7})
     elif what == "quick":
         curved(build, "quick", ["energy", "late force", "dimensionless fold", "mean strain", "filling"],
                ["billet/radius", "die upper/depth"], "1e-4, 1e-5, 1e-6", {})
     else:
-        {"flat": flat, "several": several, "methods": methods}[what](build)
+        {"flat": flat, "ranks": ranks, "several": several, "methods": methods}[what](build)
 
 
 if __name__ == "__main__":

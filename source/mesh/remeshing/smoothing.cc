@@ -140,12 +140,22 @@ namespace retroforge
     return quality;
   }
 
+  // Putting a point on the old surface and out of the dies costs far more than looking at the cells that
+  // would be spoiled, and moves it by little.
+  static bool
+  is_promising(const EditableMesh &mesh, const Cavity &cavity, const Vec3 &x, const double quality)
+  {
+    const double bound = quality - 0.05;
+    return cavity_quality(mesh, cavity, x, bound) > bound;
+  }
+
   BestPosition
   best_position(const EditableMesh &mesh, const Cavity &cavity, const Place &place, const Vec3 &start)
   {
-    const double size       = cavity_size(mesh, cavity, start);
-    const auto   directions = directions_of(mesh, cavity, place, start, size);
-    BestPosition best       = {start, cavity_quality(mesh, cavity, start, -2)};
+    const double size           = cavity_size(mesh, cavity, start);
+    const auto   directions     = directions_of(mesh, cavity, place, start, size);
+    const bool   is_on_boundary = place.kind != NodeKind::interior;
+    BestPosition best           = {start, cavity_quality(mesh, cavity, start, -2)};
     for (double step = size / 4; step > size / 300; step /= 2)
     {
       bool is_better = !directions.empty();
@@ -154,7 +164,10 @@ namespace retroforge
         is_better = false;
         for (const Vec3 &direction : directions)
         {
-          const Vec3   x       = place(best.x + step * direction);
+          const Vec3 target = best.x + step * direction;
+          if (is_on_boundary && !is_promising(mesh, cavity, target, best.quality))
+            continue;
+          const Vec3   x       = place(target);
           const double quality = cavity_quality(mesh, cavity, x, best.quality);
           if (quality > best.quality)
           {

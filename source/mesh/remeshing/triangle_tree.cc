@@ -5,17 +5,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace retroforge
 {
   namespace
   {
-    constexpr unsigned int leaf_size = 4;
-
-    double centre(const std::array<Vec3, 3> &triangle, const unsigned int axis)
+    std::vector<BoundingBox> boxes_of(const std::vector<std::array<Vec3, 3>> &triangles)
     {
-      return triangle[0][axis] + triangle[1][axis] + triangle[2][axis];
+      std::vector<BoundingBox> boxes;
+      boxes.reserve(triangles.size());
+      for (const auto &triangle : triangles)
+      {
+        boxes.emplace_back(triangle[0]);
+        boxes.back().include(triangle[1]);
+        boxes.back().include(triangle[2]);
+      }
+      return boxes;
     }
 
     TrianglePoint closest_on_rim(const Vec3 &x, const std::array<Vec3, 3> &triangle)
@@ -82,94 +87,15 @@ namespace retroforge
   }
 
   TriangleTree::TriangleTree(std::vector<std::array<Vec3, 3>> triangles)
-      : triangles_(std::move(triangles)), order_(triangles_.size())
+      : triangles_(std::move(triangles)), tree_(boxes_of(triangles_))
   {
-    std::iota(order_.begin(), order_.end(), 0);
-    boxes_.push_back({Vec3(), Vec3(), 0, static_cast<unsigned int>(order_.size())});
-    for (unsigned int box = 0; box < boxes_.size(); ++box)
-      split(box);
-  }
-
-  void TriangleTree::split(const unsigned int box)
-  {
-    const unsigned int begin = boxes_[box].begin, end = boxes_[box].end;
-    Vec3               low, high;
-    for (unsigned int axis = 0; axis < 3; ++axis)
-    {
-      low[axis]  = std::numeric_limits<double>::max();
-      high[axis] = std::numeric_limits<double>::lowest();
-      for (unsigned int i = begin; i < end; ++i)
-        for (const Vec3 &corner : triangles_[order_[i]])
-        {
-          low[axis]  = std::min(low[axis], corner[axis]);
-          high[axis] = std::max(high[axis], corner[axis]);
-        }
-    }
-    boxes_[box].low  = low;
-    boxes_[box].high = high;
-    if (end - begin <= leaf_size)
-      return;
-
-    unsigned int axis = 0;
-    for (unsigned int other = 1; other < 3; ++other)
-      if (high[other] - low[other] > high[axis] - low[axis])
-        axis = other;
-    const unsigned int middle = (begin + end) / 2;
-    std::nth_element(order_.begin() + begin,
-                     order_.begin() + middle,
-                     order_.begin() + end,
-                     [&](const unsigned int a, const unsigned int b) {
-                       const double x = centre(triangles_[a], axis), y = centre(triangles_[b], axis);
-                       return x != y ? x < y : a < b;
-                     });
-    boxes_[box].left = boxes_.size();
-    boxes_.push_back({low, high, begin, middle});
-    boxes_.push_back({low, high, middle, end});
-  }
-
-  double TriangleTree::distance_square(const Box &box, const Vec3 &x) const
-  {
-    double sum = 0;
-    for (unsigned int axis = 0; axis < 3; ++axis)
-    {
-      const double outside = std::max({box.low[axis] - x[axis], x[axis] - box.high[axis], 0.});
-      sum += outside * outside;
-    }
-    return sum;
-  }
-
-  void TriangleTree::search(const unsigned int box, const Vec3 &x, double &best, Hit &hit) const
-  {
-    const Box &here = boxes_[box];
-    if (here.left == 0)
-    {
-      for (unsigned int i = here.begin; i < here.end; ++i)
-      {
-        const auto   at       = nearest_on_triangle(x, triangles_[order_[i]]);
-        const double distance = (x - at.point).norm_square();
-        if (distance < best)
-        {
-          best = distance;
-          hit  = {order_[i], at};
-        }
-      }
-      return;
-    }
-    const double left  = distance_square(boxes_[here.left], x);
-    const double right = distance_square(boxes_[here.left + 1], x);
-    // The nearer box first: it often excludes the other.
-    const bool left_first = left <= right;
-    if (std::min(left, right) < best)
-      search(left_first ? here.left : here.left + 1, x, best, hit);
-    if (std::max(left, right) < best)
-      search(left_first ? here.left + 1 : here.left, x, best, hit);
   }
 
   TriangleTree::Hit TriangleTree::closest(const Vec3 &x) const
   {
-    double best = std::numeric_limits<double>::max();
-    Hit    hit  = {};
-    search(0, x, best, hit);
-    return hit;
+    const unsigned int triangle = tree_.closest(x, [&](const unsigned int i) {
+      return (x - nearest_on_triangle(x, triangles_[i]).point).norm_square();
+    });
+    return {triangle, nearest_on_triangle(x, triangles_[triangle])};
   }
 } // namespace retroforge

@@ -9,6 +9,7 @@
 // - Rows sum to one, with weights in [0, 1] when linear (with gradients they are not). Linear
 //   fields are exact at X' - c,  J X + c = X', <J x, y> = <x, J^T y>.
 // - Rows of the surface hold nodes of the same patch only; ridge rows nodes of the ridge, corners one node.
+// - Of a quadratic field on a cube, gradients take away 99 % of the error inside, on patches and on ridges.
 // - Values that vanish on a symmetry plane vanish there afterwards.
 // - Kept nodes keep their values bit for bit; twice the same meshes give twice the same bits.
 
@@ -181,7 +182,7 @@ bool surface_rows_stay_on_surface(const TetMesh &old_mesh, const TetMesh &new_me
   for (NodeIndex k = 0; k < J.n_new(); ++k)
   {
     const auto &patches = new_patches[k];
-    if (patches.size() > 0 && J.begin[k + 1] - J.begin[k] > (patches.size() < 3 ? 4 - patches.size() : 1))
+    if (patches.size() > 2 && J.begin[k + 1] - J.begin[k] > 1)
       return false;
     for (unsigned int i = J.begin[k]; i < J.begin[k + 1]; ++i)
       if (!std::includes(
@@ -189,6 +190,39 @@ bool surface_rows_stay_on_surface(const TetMesh &old_mesh, const TetMesh &new_me
         return false;
   }
   return true;
+}
+
+// Quadratic field  x^2 + 2 yz - 0.5 z^2  against its value at the new nodes: the largest error of those
+// inside, of patches and of ridges.
+std::array<double, 3>
+defects_of_quadratic_field(const TetMesh &old_mesh, const TetMesh &new_mesh, const TransferOperator &J)
+{
+  const auto          value   = [](const Vec3 &x) { return quadratic(x) - 0.5 * x[2] * x[2]; };
+  const auto          patches = patches_at_nodes(new_mesh);
+  std::vector<double> q;
+  for (const Vec3 &x : old_mesh.X)
+    q.push_back(value(x));
+  const auto            transferred = J.apply(q);
+  std::array<double, 3> defects     = {};
+  for (NodeIndex k = 0; k < J.n_new(); ++k)
+    if (patches[k].size() < 3)
+      defects[patches[k].size()] =
+        std::max(defects[patches[k].size()], std::abs(transferred[k] - value(new_mesh.X[k])));
+  return defects;
+}
+
+// What gradients leave of the error of a quadratic field.
+void test_quadratic(const TetMesh &old_mesh, const TetMesh &new_mesh)
+{
+  const std::vector<NodeIndex> all_new(new_mesh.n_nodes(), invalid_index);
+  const auto                   defects = [&](const Interpolation interpolation) {
+    return defects_of_quadratic_field(
+      old_mesh, new_mesh, make_transfer(old_mesh, old_mesh.X, new_mesh, all_new, interpolation));
+  };
+  const auto linear = defects(Interpolation::linear), gradient = defects(Interpolation::half_gradient);
+  std::cout << "quadratic field, error with gradients below 1 % of that without: inside "
+            << yes(gradient[0] < 0.01 * linear[0]) << ", on patches " << yes(gradient[1] < 0.01 * linear[1])
+            << ", on ridges " << yes(gradient[2] < 0.01 * linear[2]) << "\n";
 }
 
 double largest_position_defect(const TetMesh &old_mesh, const TetMesh &new_mesh, const TransferOperator &J)
@@ -302,7 +336,7 @@ void test_kept_nodes(const TetMesh &old_mesh)
   std::cout << "kept nodes\n  keep their values: " << yes(kept)
             << "\n  offset is how they moved: " << yes(offset == 0)
             << "\n  J X + c = X': " << yes(largest_position_defect(old_mesh, new_mesh, J) < 1e-14)
-            << "\n  bytes per node below 60: " << yes(J.memory_consumption() < 60 * J.n_new()) << "\n";
+            << "\n  bytes per node below 100: " << yes(J.memory_consumption() < 100 * J.n_new()) << "\n";
 }
 
 int main(int argc, char **argv)
@@ -321,6 +355,7 @@ int main(int argc, char **argv)
   const TetMesh cube = octant("3");
   test_transfer("eighth of a cube", cube, octant("2.7"), true);
   test_transfer("sector of a cylinder", sector("5"), sector("4"), false);
+  test_quadratic(cube, octant("2.7"));
   test_shaken(cube);
   test_kept_nodes(cube);
 

@@ -7,8 +7,8 @@
 // to 0.3 h from where the first mesh has them. Beside it the lowest value met, and the largest that is left
 // of a random field in [-1, 1] around it (a transfer that amplifies would show there).
 // Proved: local remeshing loses 0.2 times as much as rebuilding or less; half the gradient correction loses
-// 0.6 times as much or less; its undershoot stays below 1 % of the peak; nothing is amplified. With an
-// argument, h instead of 4, the numbers are printed.
+// 0.5 times as much or less; its undershoot stays below 2.5 % of the peak (1 % local); nothing is amplified.
+// With an argument, h instead of 4, the numbers are printed.
 
 #include <deal.II/base/mpi.h>
 
@@ -221,11 +221,12 @@ int main(int argc, char **argv)
     report("3 % moved, half gradient", improved);
   }
   std::cout << "a local remeshing loses less than 0.2 times as much: " << yes(loses_less(moved, 0.2, rebuilt))
-            << "\nhalf the gradient loses less than 0.6 times as much, rebuilding: "
-            << yes(loses_less(better, 0.6, rebuilt)) << ", local: " << yes(loses_less(improved, 0.6, moved))
+            << "\nhalf the gradient loses less than 0.5 times as much, rebuilding: "
+            << yes(loses_less(better, 0.5, rebuilt)) << ", local: " << yes(loses_less(improved, 0.5, moved))
             << "\nno undershoot when linear: " << yes(rebuilt.lowest == 0 && moved.lowest == 0)
-            << "\nits undershoot is there and below 1 %: "
-            << yes(better.lowest < 0 && better.lowest > -0.01 && improved.lowest > -0.01)
+            << "\nits undershoot is there, rebuilding below 2.5 %: "
+            << yes(better.lowest < 0 && better.lowest > -0.025)
+            << ", local below 1 %: " << yes(improved.lowest > -0.01)
             << "\nnothing amplified: " << yes(better.largest_random <= 1 && improved.largest_random <= 1)
             << "\n";
 }

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/mesh/tet_mesh.h>
+#include <retroforge/geometry/box_tree.h>
 
 #include <vector>
 
@@ -23,7 +23,7 @@ namespace retroforge
   /// Smallest distance of two segments a-b and c-d.
   double segment_distance(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d);
 
-  /// Finds the closest of a set of triangles by a tree of boxes, in logarithmic time.
+  /// Finds the closest of a set of triangles, in logarithmic time.
   class TriangleTree
   {
   public:
@@ -36,24 +36,11 @@ namespace retroforge
     TriangleTree() = default;
     explicit TriangleTree(std::vector<std::array<Vec3, 3>> triangles);
 
-    /// Among equally close triangles, the first the walk meets: the same for the same input.
+    /// Of several triangles that are equally close the first in the list.
     Hit closest(const Vec3 &x) const;
 
   private:
-    // Children of box k are the boxes `left` and `left + 1`; a leaf has left = 0.
-    struct Box
-    {
-      Vec3         low, high;
-      unsigned int begin, end;
-      unsigned int left = 0;
-    };
-
-    void   split(unsigned int box);
-    void   search(unsigned int box, const Vec3 &x, double &best, Hit &hit) const;
-    double distance_square(const Box &box, const Vec3 &x) const;
-
     std::vector<std::array<Vec3, 3>> triangles_;
-    std::vector<unsigned int>        order_;
-    std::vector<Box>                 boxes_;
+    BoxTree                          tree_;
   };
 } // namespace retroforge

@@ -16,7 +16,7 @@ import case_tools  # noqa: E402
 import check_tools  # noqa: E402
 
 CASE = os.path.join(HERE, "case.prm")
-QUICK = {"Billet/element size": 8, "Press/increments": 5, "Press/stroke": 5, "Remeshing/when": "increments", "Remeshing/every": 2}
+QUICK = {"Billet/element size": 5, "Press/increments": 5, "Press/stroke": 5, "Remeshing/when": "increments", "Remeshing/every": 2}
 
 
 def check(build, settings, label):
