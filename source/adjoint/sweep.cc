@@ -179,9 +179,9 @@ namespace retroforge
       if (record.remesh)
       {
         const RemeshRecord &remesh = *record.remesh;
-        strain = transfer_cells(leg->scene.mesh, X, remesh.transfer, remesh.mesh, strain);
-        X      = remesh.transfer.positions(X);
-        leg    = std::make_shared<Leg>(record.remesh->mesh, run.model, run.timings);
+        strain                     = transfer_cells(leg->scene.mesh, X, remesh.transfer, remesh.mesh, strain);
+        X                          = remesh.transfer.positions(X);
+        leg                        = std::make_shared<Leg>(record.remesh->mesh, run.model, run.timings);
       }
       end = record.stroke + record.step;
       X   = leg->increment.tangent(process, X, record, [&](const StageView<Dual> &view, const Dual &dt) {

@@ -5,6 +5,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/design/billet_map.h>
+#include <retroforge/element/mini_element.h>
 #include <retroforge/mesh/mesh_quality.h>
 
 #include <sstream>
@@ -81,6 +82,27 @@ namespace retroforge
           dual[k][i].fastAccessDx(0) = direction[k][i];
         }
       return volume_at(cells, dual);
+    }
+
+    NodalVectors<double> volume_gradient(const std::vector<std::array<NodeIndex, 4>> &cells,
+                                         const NodalVectors<double>                  &X)
+    {
+      NodalVectors<double> gradient(X.size());
+      for (const auto &cell : cells)
+      {
+        const auto geometry = cell_geometry(Four<Vec3>{{X[cell[0]], X[cell[1]], X[cell[2]], X[cell[3]]}});
+        for (unsigned int a = 0; a < 4; ++a)
+          gradient[cell[a]] += geometry.volume * geometry.g[a];
+      }
+      return gradient;
+    }
+
+    double dot(const NodalVectors<double> &a, const NodalVectors<double> &b)
+    {
+      double sum = 0.;
+      for (std::size_t k = 0; k < a.size(); ++k)
+        sum += a[k] * b[k];
+      return sum;
     }
 
     template <typename Number>
@@ -244,6 +266,23 @@ namespace retroforge
     check(values_of(mu), held);
     check_cells(values_of(X));
     return X;
+  }
+
+  std::vector<double> BilletMap::pull_back(const std::vector<double>  &mu,
+                                           const NodalVectors<double> &X_bar) const
+  {
+    NodalVectors<double> bar = X_bar;
+    if (held_)
+    {
+      // The held parameter takes up what the others do to the volume.
+      const NodalVectors<double> &held     = shapes_.parameters[*held_].direction;
+      const NodalVectors<double>  gradient = volume_gradient(cells_, positions(mu));
+      add(bar, -dot(X_bar, held) / dot(gradient, held), gradient);
+    }
+    std::vector<double> mu_bar;
+    for (const ShapeParameter &parameter : free_)
+      mu_bar.push_back(dot(bar, parameter.direction));
+    return mu_bar;
   }
 
   template NodalVectors<double> BilletMap::positions(const std::vector<double> &) const;

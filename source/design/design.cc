@@ -144,7 +144,7 @@ namespace retroforge
   }
 
   template <typename Number>
-  NodalVectors<Number> Design::positions(const std::vector<Number> &mu) const
+  std::vector<Number> Design::shape_of(const std::vector<Number> &mu) const
   {
     std::vector<Number> shape;
     for (const ShapeParameter &parameter : billet_map_.parameters())
@@ -152,7 +152,13 @@ namespace retroforge
     for (unsigned int j = 0; j < parameters_.size(); ++j)
       if (parameters_[j].kind == Kind::billet)
         shape[parameters_[j].die] = mu[j];
-    return billet_map_.positions(shape);
+    return shape;
+  }
+
+  template <typename Number>
+  NodalVectors<Number> Design::positions(const std::vector<Number> &mu) const
+  {
+    return billet_map_.positions(shape_of(mu));
   }
 
   template <typename Number>
@@ -231,17 +237,18 @@ namespace retroforge
                                         const NodalVectors<double> &X_0_bar,
                                         const ProcessBar           &bar) const
   {
-    std::vector<double> gradient;
+    const std::vector<double> billet = billet_map_.pull_back(shape_of(mu), X_0_bar);
+    std::vector<double>       gradient;
     for (unsigned int j = 0; j < parameters_.size(); ++j)
     {
-      const auto direction = along(mu, j);
-      const auto X         = positions(direction);
-      const auto p         = process(direction);
-      double     sum       = bar.K * p.law.K.dx(0) + bar.m * p.law.m.dx(0) + bar.e0 * p.law.e0.dx(0) +
+      if (parameters_[j].kind == Kind::billet)
+      {
+        gradient.push_back(billet[parameters_[j].die]);
+        continue;
+      }
+      const auto p   = process(along(mu, j));
+      double     sum = bar.K * p.law.K.dx(0) + bar.m * p.law.m.dx(0) + bar.e0 * p.law.e0.dx(0) +
                    bar.rho * p.contact.rho.dx(0) + bar.v0 * p.contact.v0.dx(0);
-      for (std::size_t k = 0; k < X.size(); ++k)
-        for (unsigned int i = 0; i < 3; ++i)
-          sum += X_0_bar[k][i] * X[k][i].dx(0);
       for (unsigned int d = 0; d < p.dies.size(); ++d)
       {
         sum += bar.dies[d].friction * p.dies[d].friction.dx(0);

@@ -29,6 +29,10 @@ namespace retroforge
     template <typename Number>
     NodalVectors<Number> positions(const std::vector<Number> &mu) const;
 
+    /// X_bar · dX_0/dmu, for all parameters at once: a product of fields for each, and one gradient of the
+    /// volume where that is held.
+    std::vector<double> pull_back(const std::vector<double> &mu, const NodalVectors<double> &X_bar) const;
+
     /// f(mu), the value of the parameter that holds the volume.
     template <typename Number>
     Number held_value(const std::vector<Number> &mu) const;

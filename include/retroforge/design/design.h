@@ -65,7 +65,10 @@ namespace retroforge
     std::vector<std::string> available() const;
 
   private:
-    DesignParameter make(const std::string &name) const;
+    /// Values of the billet map's parameters.
+    template <typename Number>
+    std::vector<Number> shape_of(const std::vector<Number> &mu) const;
+    DesignParameter     make(const std::string &name) const;
 
     std::vector<DieParameters>   dies_;
     Process<double>              process_;

@@ -15,8 +15,9 @@ namespace retroforge
   /// distance. It moves with the surface, so that one field serves all positions of a die: ask for
   /// h(x - displacement).
   ///
-  /// Nothing is tabulated: a question is a branch-and-bound search among the facets with s_f < h_0. (An octree
-  /// that holds the same field answers faster, but a remeshing asks too few questions to pay for making it.)
+  /// Nothing is tabulated: a question is a branch-and-bound search among the facets with s_f < h_0. (An
+  /// octree that holds the same field answers faster, but a remeshing asks too few questions to pay for
+  /// making it.)
   class GradedSize
   {
   public:

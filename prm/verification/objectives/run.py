@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""Every objective by every parameter:  run.py BUILD flat | curved | quick | ranks | several | methods
+"""Every objective by every parameter:  run.py BUILD flat | curved | quick | ranks | several | many | methods
 
 flat: a tilted plane, nodes that arrive. curved: the tripod, contact that changes, two remeshings. quick: the same with
-fewer parameters and steps. ranks: on one, two and three. several: what three objectives at once cost. methods: adjoint against direct method by the
-number of parameters."""
+fewer parameters and steps. ranks: on one, two and three. several: what three objectives at once cost. many: what 100
+parameters cost. methods: adjoint against direct method by the number of parameters."""
 import os
 import sys
 
@@ -151,6 +151,25 @@ def methods(build):
     case_tools.figure("direct_over_adjoint_of_8", seconds[1] / seconds[0])
 
 
+def many(build):
+    """Seconds of the gradient by 1, 10 and 100 control points of the billet's contour; every node comes along in each."""
+    n = 51
+    points = "; ".join(f"20, {40.0 * i / (n - 1):.6g}" for i in range(n))
+    names = [f"billet/control point {i} r" for i in range(1, n + 1)] + [f"billet/control point {i} z" for i in range(2, n)]
+    case = os.path.join(HERE, "..", "speed", "case.prm")
+    base = {"Billet/shape": "profile", "Billet/control points": points, "Billet/element size": 2.55, "Press/increments": 4,
+            "Press/stroke": 2, "Output/fields every": 0}
+    seconds = {}
+    for _ in range(3):
+        for count in (1, 10, 100):
+            settings = {**base, "Design/parameters": ", ".join(names[::len(names) // count][:count])}
+            summary, _ = case_tools.run(build, "gradient", case, settings, "run_many")
+            seconds.setdefault(len(summary["parameters"]), []).append(summary["wall_seconds"]["adjoint"])
+    best = {count: min(of) for count, of in seconds.items()}
+    print(f"{summary['mesh']['nodes']} nodes; seconds of the gradient by the number of parameters, all nodes included: {best}")
+    case_tools.figure("hundred_over_one", best[max(best)] / best[1])
+
+
 def main():
     build, what = sys.argv[1:3]
     if what == "curved":
@@ -160,7 +179,7 @@ def main():
         curved(build, "quick", ["energy", "late force", "dimensionless fold", "mean strain", "filling"],
                ["billet/radius", "die upper/depth"], "1e-4, 1e-5, 1e-6", {})
     else:
-        {"flat": flat, "ranks": ranks, "several": several, "methods": methods}[what](build)
+        {"flat": flat, "ranks": ranks, "several": several, "many": many, "methods": methods}[what](build)
 
 
 if __name__ == "__main__":

@@ -60,7 +60,7 @@ public:
         W.V[k] = speed / h * Vec3({X[k][0] / 2., X[k][1] / 2., -X[k][2]});
       const Vec3            lower({0., 0., 0.}), upper({0., 0., -v - faster});
       const Physics<double> physics{
-        {K, 1., 0.}, {rho, 0.}, {{lower, Vec3(), 0.}, {upper, Vec3({0., 0., -i * step}), 0.}}};
+        {K, 1., 0.}, {rho, 0.}, {{lower, Vec3(), 0., {}}, {upper, Vec3({0., 0., -i * step}), 0., {}}}};
       const FrictionRamp ramp{0.1, false};
       const auto         pairs = find_contact_pairs(scene_.topology, scene_.dies, physics.dies, X, ramp, 1.);
       const auto         contact =
