@@ -3,8 +3,8 @@
 # Copyright (C) 2026 The Retroforge authors
 """How smooth is the energy in the design, and at which bias?   run.py BUILD default|grid
 
-`default`: the default law, mesh and increment. `grid`: five laws, three increments, three meshes, 40 points each, and the
-picture.
+`default`: the default mesh and increment, by the default law and by the thesis'. `grid`: five laws and three increments on two
+coarser meshes, 40 points each, and the picture.
 The die's offset is scanned over 1 % of the billet's size to either side. Roughness: the adjoint's local slopes against
 the slope of a cubic fitted to the energies. Bias: the fit against the law of approach 1 at vanishing increments.
 """
@@ -23,7 +23,7 @@ SHARP = {"Contact/layer": 0}
 LAWS = {f"approach {k}": {"Contact/approach": k, **SHARP} for k in (1, 2, 4, 8)}
 LAWS["default"] = {}
 DEFAULT_SIZE = 3  # a tenth of the billet
-MESHES = (10, 7, 5.5)  # element sizes: about 100, 200 and 350 nodes
+MESHES = (10, 7)  # element sizes: about 100 and 200 nodes
 INCREMENTS = (18, 36, 72)
 # (element size, increments (0: the default), points, laws)
 GRID = {"default": [(DEFAULT_SIZE, 0, 12, ("default", "approach 1"))],
