@@ -157,10 +157,10 @@ def many(build):
     points = "; ".join(f"20, {40.0 * i / (n - 1):.6g}" for i in range(n))
     names = [f"billet/control point {i} r" for i in range(1, n + 1)] + [f"billet/control point {i} z" for i in range(2, n)]
     case = os.path.join(HERE, "..", "speed", "case.prm")
-    base = {"Billet/shape": "profile", "Billet/control points": points, "Billet/element size": 2.55, "Press/increments": 4,
-            "Press/stroke": 2, "Output/fields every": 0}
+    base = {"Billet/shape": "profile", "Billet/control points": points, "Billet/element size": 2.55, "Press/increments": 8,
+            "Press/stroke": 4, "Output/fields every": 0}
     seconds = {}
-    for _ in range(3):
+    for _ in range(4):
         for count in (1, 10, 100):
             settings = {**base, "Design/parameters": ", ".join(names[::len(names) // count][:count])}
             summary, _ = case_tools.run(build, "gradient", case, settings, "run_many")
