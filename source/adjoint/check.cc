@@ -138,8 +138,9 @@ namespace retroforge
         // What moves the objective by less than 1e-7 of itself while the parameter moves by all of its size
         // is rounding. So is 1e-13 of that in a derivative, 1e-11 of it in a difference, and 1e-10 of the
         // value in a remainder.
-        const double whole   = std::abs(judged[o].value) / scale;
-        row.is_zero          = std::max(std::abs(row.adjoint), std::abs(row.tangent)) <= 1e-7 * whole;
+        const double whole = std::abs(judged[o].value) / scale;
+        row.is_zero        = std::max(std::abs(row.adjoint), std::abs(row.tangent)) <= 1e-7 * whole &&
+                      row.smallest_difference() <= 2e-7 * whole;
         row.least_difference = 1e-5 * whole;
         if (row.is_zero)
         {
@@ -161,6 +162,14 @@ namespace retroforge
   double CheckRow::tangent_error() const
   {
     return std::abs(adjoint - tangent) / std::max({std::abs(adjoint), std::abs(tangent), magnitude, 1e-300});
+  }
+
+  double CheckRow::smallest_difference() const
+  {
+    double smallest = std::numeric_limits<double>::max();
+    for (const auto &step : steps)
+      smallest = std::min(smallest, std::abs(step.replayed_central));
+    return smallest;
   }
 
   double CheckRow::best_replayed_error() const

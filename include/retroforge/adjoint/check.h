@@ -75,6 +75,8 @@ namespace retroforge
     /// the bar.
     double best_replayed_error() const;
     double best_free_error() const;
+    /// Of the replayed central differences: no derivative is zero for which all of them are not.
+    double smallest_difference() const;
   };
 
   /// Checks the derivative of each objective in each design parameter, along one random direction of all X_0,

@@ -61,6 +61,9 @@ def judge(build, case, settings, label):
     for name in scale:
         # Random directions cancel: the program measures them against their terms.
         of = [r for r in rows if r["objective"] == name and "random" not in r["parameter"] and r["verdict"] == "passed"]
+        if not of:
+            print(f"| {name} | {scale[name]:.6g} | - | - | - |")
+            continue
         tangent = max(abs(r["tangent"] / r["adjoint"] - 1.0) for r in of)
         replayed = max(min(abs(s["replayed_central"] / r["adjoint"] - 1.0) for s in r["steps"]) for r in of)
         # Where the remainder is rounding its order means nothing: the least is the program's to judge.

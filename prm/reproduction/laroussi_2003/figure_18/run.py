@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""The unfilled volume of a bell over the stroke, by both projections, their mean, and by samples:  run.py BUILD
+"""The unfilled volume of a bell over the stroke, by both projections, their mean, and by samples:  run.py BUILD [approach]
+
+`approach`: only the first contact, by a bell that starts at a distance: does the metal rest until then?
 
 The true one is what lies between the two dies within the region, minus the workpiece, as long as that has not left the
 region: the height of the die above a fine grid of points. Figure figure_18.png."""
@@ -45,7 +47,17 @@ def heights_above_grid(stl, n=400):
     return z
 
 
+def approach(build):
+    settings = {"Die bell/point": "0, 0, 56.5", "Press/stroke": 4, "Press/increments": 8, "Output/fields every": 0,
+                "Objectives/names": "energy"}
+    summary, text = case_tools.run(build, "simulate", os.path.join(HERE, "case.prm"), settings, "approach", may_fail=True)
+    print(text[-500:])
+    case_tools.figure("first_contact", 1 if summary and summary["objectives"][0]["value"] > 0 else 0)
+
+
 def main():
+    if sys.argv[2:] == ["approach"]:
+        return approach(sys.argv[1])
     summary, _ = case_tools.run(sys.argv[1], "simulate", os.path.join(HERE, "case.prm"), {}, "run")
     with open(os.path.join("run", "objectives.csv")) as file:
         rows = [{name.split(" [")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
