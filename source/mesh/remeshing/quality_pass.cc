@@ -7,14 +7,15 @@
 #include <retroforge/mesh/remeshing/smoothing.h>
 #include <retroforge/mesh/remeshing/split.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace retroforge
 {
   namespace
   {
-    // Less is not worth a change.
-    constexpr double least_gain = 1e-3;
+    // Less is not worth a change. A moved node costs values and time, and smaller gains add up to little.
+    constexpr double least_gain = 1e-3, least_gain_of_move = 0.02;
     // New edges must leave the length pass content, with a margin.
     constexpr double shortest_half = 0.4;
 
@@ -50,22 +51,20 @@ namespace retroforge
         ++report_.n_cells_left_bad;
   }
 
-  bool QualityPass::may_improve(const CellIndex cell) const
+  bool QualityPass::has_changed(const std::vector<NodeIndex> &nodes, const CellIndex since) const
   {
-    if (failed_at_[cell] == invalid_index)
-      return true;
-    for (const NodeIndex node : context_.mesh.cell(cell))
-      if (context_.mesh.last_change(node) > failed_at_[cell])
-        return true;
-    return false;
+    return since == invalid_index || std::any_of(nodes.begin(), nodes.end(), [&](const NodeIndex node) {
+             return context_.mesh.last_change(node) > since;
+           });
   }
 
   bool QualityPass::sweep()
   {
     const EditableMesh &mesh = context_.mesh;
-    failed_at_.resize(mesh.n_cells(), invalid_index);
+    cell_failed_at_.resize(mesh.n_cells(), invalid_index);
     for (CellIndex cell = 0; cell < mesh.n_cells(); ++cell)
-      if (mesh.is_alive(cell) && mesh.quality(cell) < swap_quality_ && may_improve(cell))
+      if (mesh.is_alive(cell) && mesh.quality(cell) < swap_quality_ &&
+          has_changed({mesh.cell(cell).begin(), mesh.cell(cell).end()}, cell_failed_at_[cell]))
         queue_.insert({mesh.quality(cell), cell});
     bool is_changed = false;
     while (!queue_.empty())
@@ -77,7 +76,7 @@ namespace retroforge
       if (improve(cell))
         is_changed = true;
       else
-        failed_at_[cell] = mesh.n_cells();
+        cell_failed_at_[cell] = mesh.n_cells();
     }
     return is_changed;
   }
@@ -94,7 +93,7 @@ namespace retroforge
     EditableMesh   &mesh  = context_.mesh;
     const CellIndex first = mesh.n_cells();
     mesh.apply(change);
-    failed_at_.resize(mesh.n_cells(), invalid_index);
+    cell_failed_at_.resize(mesh.n_cells(), invalid_index);
     for (CellIndex cell = first; cell < mesh.n_cells(); ++cell)
       if (mesh.quality(cell) < swap_quality_)
         queue_.insert({mesh.quality(cell), cell});
@@ -121,11 +120,38 @@ namespace retroforge
     return true;
   }
 
+  std::optional<CavityChange> QualityPass::smoothed(const NodeIndex node)
+  {
+    const EditableMesh &mesh = context_.mesh;
+    node_failed_at_.resize(mesh.n_nodes(), invalid_index);
+    if (!has_changed(mesh.neighbours(node), node_failed_at_[node]))
+      return {};
+    auto change           = plan_smoothing(context_, node, least_gain_of_move);
+    node_failed_at_[node] = change ? invalid_index : mesh.n_cells();
+    return change;
+  }
+
+  std::optional<CavityChange> QualityPass::halved(const NodeIndex a, const NodeIndex b)
+  {
+    const EditableMesh    &mesh  = context_.mesh;
+    const auto             cells = mesh.cells_at_edge(a, b);
+    std::vector<NodeIndex> nodes;
+    for (const CellIndex cell : cells)
+      nodes.insert(nodes.end(), mesh.cell(cell).begin(), mesh.cell(cell).end());
+    CellIndex &failed_at =
+      edge_failed_at_.insert({{{std::min(a, b), std::max(a, b)}}, invalid_index}).first->second;
+    if (!has_changed(nodes, failed_at))
+      return {};
+    auto change = plan_split(context_, a, b, minimum_quality(mesh, cells) + least_gain, true);
+    failed_at   = change ? invalid_index : mesh.n_cells();
+    return change;
+  }
+
   bool QualityPass::smooth(const CellIndex cell)
   {
     std::optional<CavityChange> best;
     for (const NodeIndex node : context_.mesh.cell(cell))
-      keep_better(best, plan_smoothing(context_, node, least_gain));
+      keep_better(best, smoothed(node));
     if (!best)
       return false;
     apply(*best);
@@ -157,11 +183,7 @@ namespace retroforge
     std::optional<CavityChange> best;
     for (const auto &[i, j] : edges)
       if (context_.relative_length(nodes[i], nodes[j]) > 2 * shortest_half)
-      {
-        const auto   cells = context_.mesh.cells_at_edge(nodes[i], nodes[j]);
-        const double bound = minimum_quality(context_.mesh, cells) + least_gain;
-        keep_better(best, plan_split(context_, nodes[i], nodes[j], bound, true));
-      }
+        keep_better(best, halved(nodes[i], nodes[j]));
     if (!best)
       return false;
     apply(*best);

@@ -23,23 +23,55 @@ namespace retroforge
       return std::find(cell.begin(), cell.end(), node) - cell.begin();
     }
 
-    double cavity_size(const EditableMesh &mesh, const Cavity &cavity, const Vec3 &x)
+    // The cells that the faces of a cavity make with a point to be chosen.
+    class Star
     {
-      double sum = 0;
-      for (const auto &face : cavity)
-        for (const NodeIndex node : face)
-          sum += (mesh.X(node) - x).norm();
-      return sum / (3 * cavity.size());
-    }
+    public:
+      Star(const EditableMesh &mesh, const Cavity &cavity)
+      {
+        for (const auto &face : cavity)
+          faces_.push_back(corners(face, mesh));
+      }
 
-    // Area vector of what the cavity leaves open: the boundary at its apex.
-    Vec3 open_side(const EditableMesh &mesh, const Cavity &cavity)
-    {
-      Vec3 sum;
-      for (const auto &face : cavity)
-        sum += cross_product_3d(mesh.X(face[1]) - mesh.X(face[0]), mesh.X(face[2]) - mesh.X(face[0]));
-      return sum;
-    }
+      // Smallest quality of the cells with the apex x. Stops at the first cell that is not above `bound`, and
+      // then returns something not above it. That face comes first from then on: what spoils one trial
+      // mostly spoils the next, and most trials fail.
+      double quality(const Vec3 &x, const double bound)
+      {
+        double quality = 1;
+        for (auto &face : faces_)
+        {
+          quality = std::min(quality, tet_quality({{face[0], face[1], face[2], x}}));
+          if (!(quality > bound))
+          {
+            std::swap(face, faces_.front());
+            return std::min(quality, bound);
+          }
+        }
+        return quality;
+      }
+
+      double size(const Vec3 &x) const
+      {
+        double sum = 0;
+        for (const auto &face : faces_)
+          for (const Vec3 &corner : face)
+            sum += (corner - x).norm();
+        return sum / (3 * faces_.size());
+      }
+
+      // Area vector of what the cavity leaves open: the boundary at its apex.
+      Vec3 open_side() const
+      {
+        Vec3 sum;
+        for (const auto &face : faces_)
+          sum += cross_product_3d(face[1] - face[0], face[2] - face[0]);
+        return sum;
+      }
+
+    private:
+      std::vector<std::array<Vec3, 3>> faces_;
+    };
 
     std::vector<Vec3> space_directions()
     {
@@ -94,15 +126,12 @@ namespace retroforge
       return directions;
     }
 
-    std::vector<Vec3> directions_of(const EditableMesh &mesh,
-                                    const Cavity       &cavity,
-                                    const Place        &place,
-                                    const Vec3         &start,
-                                    const double        size)
+    std::vector<Vec3>
+    directions_of(const Star &star, const Place &place, const Vec3 &start, const double size)
     {
       if (place.kind == NodeKind::interior)
         return space_directions();
-      const Vec3 open = open_side(mesh, cavity);
+      const Vec3 open = star.open_side();
       if (place.kind == NodeKind::surface && open.norm() > 0)
         return plane_directions(open / open.norm());
       if (place.kind == NodeKind::ridge)
@@ -128,35 +157,15 @@ namespace retroforge
     return cavity;
   }
 
-  double cavity_quality(const EditableMesh &mesh, const Cavity &cavity, const Vec3 &x, const double bound)
-  {
-    double quality = 1;
-    for (const auto &face : cavity)
-    {
-      quality = std::min(quality, tet_quality({{mesh.X(face[0]), mesh.X(face[1]), mesh.X(face[2]), x}}));
-      if (!(quality > bound))
-        return std::min(quality, bound);
-    }
-    return quality;
-  }
-
-  // Putting a point on the old surface and out of the dies costs far more than looking at the cells that
-  // would be spoiled, and moves it by little.
-  static bool
-  is_promising(const EditableMesh &mesh, const Cavity &cavity, const Vec3 &x, const double quality)
-  {
-    const double bound = quality - 0.05;
-    return cavity_quality(mesh, cavity, x, bound) > bound;
-  }
-
   BestPosition
   best_position(const EditableMesh &mesh, const Cavity &cavity, const Place &place, const Vec3 &start)
   {
-    const double size           = cavity_size(mesh, cavity, start);
-    const auto   directions     = directions_of(mesh, cavity, place, start, size);
+    Star         star(mesh, cavity);
+    const double size           = star.size(start);
+    const auto   directions     = directions_of(star, place, start, size);
     const bool   is_on_boundary = place.kind != NodeKind::interior;
-    BestPosition best           = {start, cavity_quality(mesh, cavity, start, -2)};
-    for (double step = size / 4; step > size / 300; step /= 2)
+    BestPosition best           = {start, star.quality(start, -2)};
+    for (double step = size / 4; step > size / 100; step /= 2)
     {
       bool is_better = !directions.empty();
       for (unsigned int turn = 0; turn < 8 && is_better; ++turn)
@@ -165,10 +174,13 @@ namespace retroforge
         for (const Vec3 &direction : directions)
         {
           const Vec3 target = best.x + step * direction;
-          if (is_on_boundary && !is_promising(mesh, cavity, target, best.quality))
+          // Putting a point on the old surface and out of the dies costs far more than looking at the cells
+          // that would be spoiled, and moves it by little.
+          const double promising = best.quality - 0.05;
+          if (is_on_boundary && !(star.quality(target, promising) > promising))
             continue;
           const Vec3   x       = place(target);
-          const double quality = cavity_quality(mesh, cavity, x, best.quality);
+          const double quality = star.quality(x, best.quality);
           if (quality > best.quality)
           {
             best      = {x, quality};

@@ -13,10 +13,6 @@ namespace retroforge
   Cavity cavity_of_node(const EditableMesh &mesh, NodeIndex node);
   Cavity cavity_of_edge(const EditableMesh &mesh, NodeIndex a, NodeIndex b);
 
-  /// Smallest quality of the cells from the faces of a cavity to x. Stops at the first that is not above
-  /// `bound`, and then returns something not above it.
-  double cavity_quality(const EditableMesh &mesh, const Cavity &cavity, const Vec3 &x, double bound);
-
   struct BestPosition
   {
     Vec3   x;
@@ -25,7 +21,7 @@ namespace retroforge
 
   /// Raises the smallest quality of a cavity by moving its apex from `start`, which is in its place: compass
   /// search in the directions the place allows (all, tangential, along the curve), with the step halved from
-  /// a quarter of the size of the cavity down to a sixty-fourth of that. The quality is not smooth, so that
+  /// a quarter of the size of the cavity down to a hundredth of the size. The quality is not smooth, so that
   /// gradients would not help.
   BestPosition
   best_position(const EditableMesh &mesh, const Cavity &cavity, const Place &place, const Vec3 &start);
