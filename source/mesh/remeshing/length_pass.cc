@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/mesh/remeshing/collapse.h>
+#include <retroforge/mesh/remeshing/fit_pass.h>
 #include <retroforge/mesh/remeshing/length_pass.h>
 #include <retroforge/mesh/remeshing/split.h>
 
@@ -153,7 +154,9 @@ namespace retroforge
     {
       const CellIndex    next      = context.mesh.n_cells();
       const unsigned int collapses = collapse_short_edges(context, first);
+      const NodeIndex    added     = context.mesh.n_nodes();
       const unsigned int splits    = split_long_edges(context, first);
+      fit_pass(context, added, report);
       report.n_length_collapses += collapses;
       report.n_length_splits += splits;
       if (collapses + splits == 0)

@@ -63,6 +63,16 @@ namespace retroforge
     return x;
   }
 
+  Vec3 Place::towards(const Vec3 &target, const Vec3 &x, const double part) const
+  {
+    const Vec3 between = x + part * (target - x);
+    if (kind == NodeKind::surface)
+      return snap_to_planes(between, old_surface.planes_of_region(feature));
+    if (kind == NodeKind::ridge)
+      return snap_to_planes(between, old_surface.planes_of_curve(feature));
+    return between;
+  }
+
   Place place_of_node(const RemeshingContext &context, const NodeIndex node)
   {
     const EditableMesh &mesh = context.mesh;

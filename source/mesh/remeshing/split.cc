@@ -12,6 +12,7 @@ namespace retroforge
     bool plan_faces(const EditableMesh &mesh, const NodeIndex a, const NodeIndex b, CavityChange &change)
     {
       change.removed_faces = mesh.faces_at_edge(a, b);
+      change.added_faces.clear();
       for (const unsigned int f : change.removed_faces)
         for (const NodeIndex end : {a, b})
         {
@@ -44,27 +45,33 @@ namespace retroforge
                                          const double            bound,
                                          const bool              optimised)
   {
-    const EditableMesh &mesh  = context.mesh;
-    const Place         place = place_of_edge(context, a, b);
-    CavityChange        change;
-    change.placed_node = mesh.n_nodes();
-    const Vec3 middle  = (mesh.X(a) + mesh.X(b)) / 2.;
-    change.position    = place(middle);
+    const EditableMesh &mesh   = context.mesh;
+    const Place         place  = place_of_edge(context, a, b);
+    const Vec3          middle = (mesh.X(a) + mesh.X(b)) / 2., target = place(middle);
+    const double        length = (mesh.X(b) - mesh.X(a)).norm();
     // Where the surface or a die is far from the edge, halving it would not shorten it.
-    if ((change.position - middle).norm() > 0.25 * (mesh.X(b) - mesh.X(a)).norm())
+    if ((target - middle).norm() > (optimised ? 0.25 : 0.5) * length)
       return {};
-    if (optimised)
-    {
-      const auto best = best_position(mesh, cavity_of_edge(mesh, a, b), place, change.position);
-      if (!(best.quality > bound))
-        return {};
-      change.position = best.x;
-    }
+    CavityChange change;
+    change.placed_node   = mesh.n_nodes();
     change.removed_cells = mesh.cells_at_edge(a, b);
     for (const CellIndex c : change.removed_cells)
       for (const NodeIndex end : {a, b})
         change.added_cells.push_back(replaced(mesh.cell(c), end, change.placed_node));
-    if (!evaluate(mesh, std::max(0., bound), change) || !plan_faces(mesh, a, b, change))
+    const auto fits = [&](const Vec3 &position) {
+      change.position = position;
+      return evaluate(mesh, std::max(0., bound), change) && plan_faces(mesh, a, b, change);
+    };
+    if (optimised)
+    {
+      const auto best = best_position(mesh, cavity_of_edge(mesh, a, b), place, target);
+      if (!(best.quality > bound) || !fits(best.x))
+        return {};
+    }
+    else if (!fits(target) &&
+             (place.kind == NodeKind::interior ||
+              !(fits(place.towards(target, middle, 0.5)) || fits(place.towards(target, middle, 0.25)) ||
+                fits(place.towards(target, middle, 0.)))))
       return {};
     plan_ridges(mesh, a, b, change);
     return change;

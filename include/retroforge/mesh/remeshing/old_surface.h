@@ -32,6 +32,10 @@ namespace retroforge
     Vec3 on_region(unsigned int region, const Vec3 &x) const;
     Vec3 on_curve(unsigned int curve, const Vec3 &x) const;
 
+    /// The symmetry planes that a region or a ridge curve lies in.
+    const std::vector<Plane> &planes_of_region(unsigned int region) const { return regions_[region].planes; }
+    const std::vector<Plane> &planes_of_curve(unsigned int curve) const { return lines_[curve].planes; }
+
   private:
     struct Region
     {

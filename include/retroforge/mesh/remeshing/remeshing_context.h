@@ -44,6 +44,9 @@ namespace retroforge
     NodeKind          kind;
     unsigned int      feature; ///< region or curve
     Vec3              operator()(const Vec3 &x) const;
+
+    /// The point at `part` of the way from x to another, on the planes of the region or curve.
+    Vec3 towards(const Vec3 &target, const Vec3 &x, double part) const;
   };
 
   Place place_of_node(const RemeshingContext &context, NodeIndex node);
