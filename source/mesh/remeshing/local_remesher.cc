@@ -113,7 +113,7 @@ namespace retroforge
     RemeshedMesh result;
     report_before(mesh, X, result.report);
 
-    const SurfaceFeatures features(mesh, X, parameters.ridge_angle, parameters.corner_angle);
+    const SurfaceFeatures features(mesh, X, parameters.ridge_angle, parameters.corner_angle, push_out);
     const OldSurface      old_surface(mesh, X, features, push_out);
     EditableMesh          edited(mesh, X, features);
     RemeshingContext      context = {edited, old_surface, size, parameters};

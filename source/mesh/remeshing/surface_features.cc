@@ -48,10 +48,22 @@ namespace retroforge
     };
     using RidgesByNode = std::map<NodeIndex, std::vector<RidgeAtNode>>;
 
+    // A chord that turns by 40 degrees is 0.09 of its length deep; faces on the planes of a sharp die, none.
+    bool cuts_into_die(const BoundaryFace &face, const NodalVectors<double> &X, const PushOut &push_out)
+    {
+      if (!push_out)
+        return false;
+      const Vec3  &a = X[face.nodes[0]], &b = X[face.nodes[1]], &c = X[face.nodes[2]];
+      const Vec3   middle = (a + b + c) / 3.;
+      const double length = std::sqrt(cross_product_3d(b - a, c - a).norm());
+      return (push_out(middle) - middle).norm() > 0.03 * length;
+    }
+
     std::vector<SurfaceEdge> ridge_edges(const TetMesh                  &mesh,
                                          const NodalVectors<double>     &X,
                                          const std::vector<SurfaceEdge> &edges,
-                                         const double                    ridge_angle)
+                                         const double                    ridge_angle,
+                                         const PushOut                  &push_out)
     {
       const auto               normals = face_unit_normals(mesh.faces, X);
       const double             cosine  = std::cos(ridge_angle * degree);
@@ -59,7 +71,9 @@ namespace retroforge
       for (const auto &edge : edges)
       {
         const auto [f, g] = edge.faces;
-        if (mesh.faces[f].patch != mesh.faces[g].patch || normals[f] * normals[g] < cosine)
+        if (mesh.faces[f].patch != mesh.faces[g].patch ||
+            (normals[f] * normals[g] < cosine && !cuts_into_die(mesh.faces[f], X, push_out) &&
+             !cuts_into_die(mesh.faces[g], X, push_out)))
           ridges.push_back(edge);
       }
       return ridges;
@@ -171,11 +185,12 @@ namespace retroforge
   SurfaceFeatures::SurfaceFeatures(const TetMesh              &mesh,
                                    const NodalVectors<double> &X,
                                    const double                ridge_angle,
-                                   const double                corner_angle)
+                                   const double                corner_angle,
+                                   const PushOut              &push_out)
       : is_corner(mesh.n_nodes(), false)
   {
     const auto edges  = surface_edges(mesh.faces);
-    const auto ridges = ridge_edges(mesh, X, edges, ridge_angle);
+    const auto ridges = ridge_edges(mesh, X, edges, ridge_angle, push_out);
     find_regions(mesh, edges, ridges, *this);
 
     RidgesByNode at_node;

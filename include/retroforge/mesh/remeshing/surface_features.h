@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/mesh/remeshing/remeshing_parameters.h>
 #include <retroforge/mesh/tet_mesh.h>
 
 #include <vector>
@@ -10,7 +11,8 @@ namespace retroforge
 {
   /// What of the boundary must survive remeshing, found from the patches and the positions.
   ///
-  /// A ridge is a boundary edge between two patches, or one whose faces turn by more than the ridge angle.
+  /// A ridge is a boundary edge between two patches, or one whose faces turn by more than the ridge angle,
+  /// unless one of them cuts into a die: then they are chords of the die's rounding, not an edge of the body.
   /// Ridges form curves from corner to corner, or closed ones. A corner is a node where the number of ridges
   /// is neither zero nor two, or where a ridge turns by more than the corner angle. A region is a piece of
   /// one patch bounded by ridges.
@@ -32,7 +34,8 @@ namespace retroforge
     SurfaceFeatures(const TetMesh              &mesh,
                     const NodalVectors<double> &X,
                     double                      ridge_angle,
-                    double                      corner_angle);
+                    double                      corner_angle,
+                    const PushOut              &push_out = {});
   };
 
   /// Two boundary faces that share an edge; `nodes` ascending, faces[0] < faces[1].
