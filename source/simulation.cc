@@ -381,6 +381,7 @@ namespace retroforge
     summary_.linear_solves_adjoint = sweep.linear_solves;
     for (std::size_t j = 0; j < judged_.size(); ++j)
     {
+      const auto timing   = timings_.scope("design");
       judged_[j].gradient = design_.pull_back(mu_, sweep.of[j].X_0, sweep.of[j].process);
       judged_[j].shape    = {sweep.of[j].X_0, sweep.of[j].process.die_vertices};
     }
