@@ -16,7 +16,8 @@ import case_tools  # noqa: E402
 FLAT = os.path.join(HERE, "..", "tilted_die", "case.prm")
 CURVED = os.path.join(HERE, "..", "..", "reproduction", "laroussi_2003", "tripod", "case.prm")
 PATH = ["energy", "mean effort", "late force", "maximum effort", "fold", "dimensionless fold", "contact pressure"]
-END = ["mean strain", "strain variance", "maximum strain", "volume", "filling", "unfilled volume", "shape distance"]
+END = ["mean strain", "strain variance", "maximum strain", "volume", "filling", "unfilled volume", "shape distance",
+       "cylinder distance"]
 LATE = {"Objective late force/type": "mean effort", "Objective late force/by": "force"}
 COARSE = {"Billet/element size": 8, "Press/increments": 5, "Press/stroke": 5, "Remeshing/when": "increments",
           "Remeshing/every": 2, "Contact/penetration": 1e-3, "Contact/slip regularisation": 0.1,
@@ -73,7 +74,7 @@ def judge(build, case, settings, label):
     case_tools.figure(f"derivatives_{label}", len(rows))
 
 
-def objectives(names, target, more=None):
+def objectives(names, target, patches, more=None):
     settings = {"Objectives/names": ", ".join(names), "Objectives/history every": 0}
     for name in names:
         if name in ("filling", "unfilled volume", "shape distance"):
@@ -82,6 +83,8 @@ def objectives(names, target, more=None):
             settings[f"Objective {name}/rounding"] = 0.05
         if name == "unfilled volume":
             settings[f"Objective {name}/samples"] = 16
+    if "cylinder distance" in names:
+        settings["Objective cylinder distance/patches"] = patches
     if "late force" in names:
         settings.update(LATE)
     return {**settings, **(more or {})}
@@ -89,13 +92,13 @@ def objectives(names, target, more=None):
 
 def flat(build):
     write_ball("ball.stl", 24.0, (1.0, 2.0, 14.0))
-    settings = objectives(PATH + END, "ball.stl", {"Check/free differences": "false", "Check/taylor start": 1e-4, "Check/taylor halvings": 4})
+    settings = objectives(PATH + END, "ball.stl", "side -x, side +x, side -y, side +y", {"Check/free differences": "false", "Check/taylor start": 1e-4, "Check/taylor halvings": 4})
     settings["Objective late force/window begin"] = 3.1
     judge(build, FLAT, settings, "flat")
 
 
 def curved(build, label, names, parameters, steps, more):
-    settings = {**COARSE, **objectives(names, "die upper"), "Check/steps": steps, "Design/parameters": ", ".join(parameters), **more}
+    settings = {**COARSE, **objectives(names, "die upper", "side"), "Check/steps": steps, "Design/parameters": ", ".join(parameters), **more}
     if "late force" in names:
         settings["Objective late force/window begin"] = 2.6
     judge(build, CURVED, settings, label)
@@ -103,7 +106,7 @@ def curved(build, label, names, parameters, steps, more):
 
 def ranks(build):
     """Values and gradients of all objectives on two and three ranks against one, by parameters, curved dies, 2 remeshings."""
-    settings = {**COARSE, **objectives(PATH + END, "die upper"), "Design/parameters": ", ".join(CURVED_PARAMETERS),
+    settings = {**COARSE, **objectives(PATH + END, "die upper", "side"), "Design/parameters": ", ".join(CURVED_PARAMETERS),
                 "Objective late force/window begin": 2.6, "Newton/tolerance": 1e-13, "Adjoint/tolerance": 1e-13}
     found = [case_tools.run(build, "gradient", CURVED, settings, f"run_ranks_{n}", ranks=n)[0] for n in (1, 2, 3)]
     for n, other in zip((2, 3), found[1:]):

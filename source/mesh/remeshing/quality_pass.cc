@@ -37,6 +37,7 @@ namespace retroforge
       : context_(context)
       , report_(report)
       , swap_quality_(quality_of_angle(context.parameters.swap_angle))
+      , trigger_quality_(quality_of_angle(context.parameters.trigger_angle))
       , goal_quality_(quality_of_angle(context.parameters.goal_angle))
   {
   }
@@ -126,7 +127,12 @@ namespace retroforge
     node_failed_at_.resize(mesh.n_nodes(), invalid_index);
     if (!has_changed(mesh.neighbours(node), node_failed_at_[node]))
       return {};
-    auto change           = plan_smoothing(context_, node, least_gain_of_move);
+    // Cells that would call for the next remeshing at once are worth any gain.
+    const double before   = minimum_quality(mesh, mesh.cells_at(node));
+    const double gain     = before < trigger_quality_
+                              ? least_gain
+                              : std::clamp(goal_quality_ - before, least_gain, least_gain_of_move);
+    auto         change   = plan_smoothing(context_, node, gain);
     node_failed_at_[node] = change ? invalid_index : mesh.n_cells();
     return change;
   }

@@ -43,6 +43,7 @@ namespace retroforge
     RemeshingContext &context_;
     RemeshingReport  &report_;
     const double      swap_quality_;
+    const double      trigger_quality_;
     const double      goal_quality_;
     // Number of cells there were when nothing helped a cell, when a node could not be moved for the better,
     // nor an edge be split.

@@ -74,14 +74,15 @@ def cost(build):
 def mesh(build):
     print("| element size [mm] | nodes at the start | energy [mJ] | d/d radius [mJ/mm] |\n" + "| --- " * 4 + "|")
     results = []
-    for size in (6, 4.5, 3.4):
+    sizes = (5.6, 4, 2.8)
+    for size in sizes:
         summary, E, g = forged(build, {"Billet/element size": size}, f"mesh_{size}")
         results.append((E, g))
         print(f"| {size} | {summary['mesh']['nodes']} | {E:.8g} | {g:.8g} |", flush=True)
     for i, name in enumerate(("energy", "gradient")):
         coarse, fine = abs(results[0][i] - results[1][i]), abs(results[1][i] - results[2][i])
         case_tools.figure(f"{name}_step", fine / coarse)
-        case_tools.figure(f"{name}_order", math.log(coarse / fine) / math.log(6 / 4.5))
+        case_tools.figure(f"{name}_order", math.log(coarse / fine) / math.log(sizes[0] / sizes[1]))
 
 
 def main():
