@@ -45,30 +45,6 @@ namespace
                                                            {Term::dt, "d dt/d(speed)"},
                                                            {Term::tau, "d tau/d(speed)"}};
 
-  Parameters tilted_die()
-  {
-    Parameters p;
-    p.billet.size         = Vec3({30, 30, 30});
-    p.billet.element_size = 14;
-    p.dies                = {DieParameters("lower"), DieParameters("upper")};
-    p.dies[0].facing      = Vec3({0, 0, 1});
-    p.dies[1].point       = Vec3({15, -15, 30});
-    p.dies[1].facing      = Vec3({-0.029809, 0.081900, -0.996195});
-    p.dies[1].velocity    = Vec3({0, 0, -100});
-    for (DieParameters &die : p.dies)
-      die.friction = 0.4;
-    p.material.minimal_strain_rate = 0.3;
-    p.press.stroke                 = 3.;
-    p.press.increments             = 4;
-    p.contact.approach             = 2.;
-    p.contact.penetration          = 1e-2;
-    p.contact.slip_fraction        = 0.1;
-    p.newton.tolerance             = 1e-13;
-    p.adjoint.tolerance            = 1e-13;
-    p.linear_solver.method         = "direct";
-    return p;
-  }
-
   using Problem = RecordedRun;
 
   /// The contact's part of a reverse sweep; `reverse_node` is that of one node.
@@ -304,7 +280,7 @@ namespace
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  Problem                                  problem(tilted_die());
+  Problem                                  problem(tilted_block());
   const auto                               along   = directions(problem);
   const AdjointResult                      library = problem.adjoint(), complete = sweep(problem, Term::none);
   std::vector<double>                      differences;

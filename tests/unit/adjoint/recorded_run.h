@@ -7,10 +7,36 @@
 
 namespace retroforge
 {
+  /// A small block under a tilted die, with a soft penalty: nodes arrive one by one, and no term is small.
+  inline Parameters tilted_block()
+  {
+    Parameters p;
+    p.billet.size         = Vec3({30, 30, 30});
+    p.billet.element_size = 14;
+    p.dies                = {DieParameters("lower"), DieParameters("upper")};
+    p.dies[0].facing      = Vec3({0, 0, 1});
+    p.dies[1].point       = Vec3({15, -15, 30});
+    p.dies[1].facing      = Vec3({-0.029809, 0.081900, -0.996195});
+    p.dies[1].velocity    = Vec3({0, 0, -100});
+    for (DieParameters &die : p.dies)
+      die.friction = 0.4;
+    p.material.minimal_strain_rate = 0.3;
+    p.press.stroke                 = 3.;
+    p.press.increments             = 4;
+    p.contact.approach             = 2.;
+    p.contact.penetration          = 1e-2;
+    p.contact.slip_fraction        = 0.1;
+    p.newton.tolerance             = 1e-13;
+    p.adjoint.tolerance            = 1e-13;
+    p.linear_solver.method         = "direct";
+    return p;
+  }
+
   /// A scene forged once, its increments kept, to be differentiated and replayed.
   struct RecordedRun
   {
-    RecordedRun(const Parameters &all, std::vector<Die> dies)
+    /// @param judged  the objectives; those of the parameters when it is empty
+    RecordedRun(const Parameters &all, std::vector<Die> dies, Objectives judged = {})
         : parameters(all)
         , process(all.process(all.billet.size[2]))
         , model{std::move(dies), all.step_model(), all.newton, all.linear_solver, MPI_COMM_WORLD}
@@ -19,7 +45,7 @@ namespace retroforge
         , remesher(parameters.remeshing, parameters.edge_length(scene.mesh), model.dies, MPI_COMM_WORLD)
         , forging(model, parameters.press, remesher, timings)
         , forged(forging.start(leg, scene.mesh.X))
-        , objectives(all.make_objectives(model.dies))
+        , objectives(judged.empty() ? all.make_objectives(model.dies) : std::move(judged))
         , trace(objectives, model, process)
     {
       forging.run(process, forged, [&](const IncrementEvent &event) {
