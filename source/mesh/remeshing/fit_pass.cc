@@ -5,7 +5,6 @@
 #include <retroforge/mesh/remeshing/smoothing.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace retroforge
 {
@@ -59,21 +58,6 @@ namespace retroforge
           context.mesh.apply(*change);
     }
 
-    bool
-    collapse_best(RemeshingContext &context, const NodeIndex node, const double bound, const double longest)
-    {
-      std::optional<CavityChange> best;
-      for (const NodeIndex to : context.mesh.neighbours(node))
-      {
-        auto change = plan_collapse(context, node, to, bound, longest);
-        if (change && (!best || change->quality_after > best->quality_after))
-          best = std::move(change);
-      }
-      if (best)
-        context.mesh.apply(*best);
-      return best.has_value();
-    }
-
     // Takes away the node inside that is next to where this one belongs.
     void remove_neighbour(RemeshingContext &context, const NodeIndex node)
     {
@@ -84,21 +68,22 @@ namespace retroforge
         if (mesh.kind(other) == NodeKind::interior &&
             (closest == invalid_index || (mesh.X(other) - target).norm() < (mesh.X(closest) - target).norm()))
           closest = other;
-      if (closest != invalid_index)
-        collapse_best(context,
-                      closest,
-                      std::min(minimum_quality(mesh, mesh.cells_at(closest)), lowest_quality),
-                      context.parameters.longest_edge);
-    }
-
-    // The long edge is the lesser evil: contact would throw a node out that lies inside a die.
-    bool undo_split(RemeshingContext &context, const NodeIndex node)
-    {
-      return collapse_best(context, node, 0., std::numeric_limits<double>::max());
+      if (closest == invalid_index)
+        return;
+      const double bound = std::min(minimum_quality(mesh, mesh.cells_at(closest)), lowest_quality);
+      std::optional<CavityChange> best;
+      for (const NodeIndex to : mesh.neighbours(closest))
+      {
+        auto change = plan_collapse(context, closest, to, bound, context.parameters.longest_edge);
+        if (change && (!best || change->quality_after > best->quality_after))
+          best = std::move(change);
+      }
+      if (best)
+        context.mesh.apply(*best);
     }
   } // namespace
 
-  void fit_pass(RemeshingContext &context, const NodeIndex first, RemeshingReport &report)
+  std::vector<NodeIndex> fit_pass(RemeshingContext &context, const NodeIndex first)
   {
     std::vector<NodeIndex> waiting;
     for (NodeIndex node = first; node < context.mesh.n_nodes(); ++node)
@@ -117,7 +102,6 @@ namespace retroforge
         move_neighbours(context, node);
       }
     }
-    for (const NodeIndex node : waiting)
-      report.n_nodes_off_surface += !undo_split(context, node);
+    return waiting;
   }
 } // namespace retroforge

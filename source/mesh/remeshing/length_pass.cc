@@ -3,6 +3,7 @@
 #include <retroforge/mesh/remeshing/collapse.h>
 #include <retroforge/mesh/remeshing/fit_pass.h>
 #include <retroforge/mesh/remeshing/length_pass.h>
+#include <retroforge/mesh/remeshing/peel.h>
 #include <retroforge/mesh/remeshing/split.h>
 
 #include <algorithm>
@@ -120,12 +121,19 @@ namespace retroforge
       return n_done;
     }
 
-    unsigned int split_long_edges(RemeshingContext &context, const CellIndex first)
+    using Edge = std::array<NodeIndex, 2>;
+
+    // Returns the edges split: the new nodes are theirs, in this order.
+    // @param straight  edges whose new node must reach its place at once
+    std::vector<Edge> split_long_edges(RemeshingContext     &context,
+                                       const CellIndex       first,
+                                       const std::set<Edge> &straight,
+                                       const bool            all_straight)
     {
       const auto is_long = [&](const double length) { return length > context.parameters.longest_edge; };
       std::set<WeightedEdge> queue;
       add_edges(context, first, queue, is_long);
-      unsigned int n_done = 0;
+      std::vector<Edge> done;
       while (!queue.empty())
       {
         const WeightedEdge edge = *queue.rbegin();
@@ -134,16 +142,45 @@ namespace retroforge
           continue;
         const double before = minimum_quality(context.mesh, context.mesh.cells_at_edge(edge.a, edge.b));
         // Halving an edge at most halves the quality, about; but not time and again.
-        const double bound = std::max(0.3 * before, std::min(0.9 * before, lowest_quality));
-        if (const auto change = plan_split(context, edge.a, edge.b, bound, false))
+        const double bound  = std::max(0.3 * before, std::min(0.9 * before, lowest_quality));
+        const Edge   nodes  = {{edge.a, edge.b}};
+        auto         change = plan_split(context, edge.a, edge.b, bound, SplitAt::middle);
+        if (!change)
+          if (const auto peel = plan_peel(context, edge.a, edge.b))
+          {
+            context.mesh.apply(*peel);
+            continue;
+          }
+        if (!change && !all_straight && !straight.count(nodes))
+          change = plan_split(context, edge.a, edge.b, bound, SplitAt::towards);
+        if (change)
         {
           const CellIndex next = context.mesh.n_cells();
           context.mesh.apply(*change);
           add_edges(context, next, queue, is_long);
-          ++n_done;
+          done.push_back(nodes);
         }
       }
-      return n_done;
+      return done;
+    }
+
+    // Splits, and takes back those whose nodes cannot be brought out of the dies.
+    unsigned int split_and_fit(RemeshingContext &context, const CellIndex first)
+    {
+      const EditableMesh     before  = context.mesh;
+      constexpr unsigned int n_tries = 4;
+      std::set<Edge>         straight;
+      for (unsigned int i = 0;; ++i)
+      {
+        const bool all_straight = i == n_tries;
+        const auto done         = split_long_edges(context, first, straight, all_straight);
+        const auto stuck = all_straight ? std::vector<NodeIndex>() : fit_pass(context, before.n_nodes());
+        if (stuck.empty())
+          return done.size();
+        for (const NodeIndex node : stuck)
+          straight.insert(done[node - before.n_nodes()]);
+        context.mesh = before;
+      }
     }
   } // namespace
 
@@ -154,9 +191,7 @@ namespace retroforge
     {
       const CellIndex    next      = context.mesh.n_cells();
       const unsigned int collapses = collapse_short_edges(context, first);
-      const NodeIndex    added     = context.mesh.n_nodes();
-      const unsigned int splits    = split_long_edges(context, first);
-      fit_pass(context, added, report);
+      const unsigned int splits    = split_and_fit(context, first);
       report.n_length_collapses += collapses;
       report.n_length_splits += splits;
       if (collapses + splits == 0)

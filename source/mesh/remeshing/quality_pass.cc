@@ -148,7 +148,7 @@ namespace retroforge
       edge_failed_at_.insert({{{std::min(a, b), std::max(a, b)}}, invalid_index}).first->second;
     if (!has_changed(nodes, failed_at))
       return {};
-    auto change = plan_split(context_, a, b, minimum_quality(mesh, cells) + least_gain, true);
+    auto change = plan_split(context_, a, b, minimum_quality(mesh, cells) + least_gain, SplitAt::best);
     failed_at   = change ? invalid_index : mesh.n_cells();
     return change;
   }

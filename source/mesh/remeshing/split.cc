@@ -43,14 +43,14 @@ namespace retroforge
                                          const NodeIndex         a,
                                          const NodeIndex         b,
                                          const double            bound,
-                                         const bool              optimised)
+                                         const SplitAt           at)
   {
     const EditableMesh &mesh   = context.mesh;
     const Place         place  = place_of_edge(context, a, b);
     const Vec3          middle = (mesh.X(a) + mesh.X(b)) / 2., target = place(middle);
     const double        length = (mesh.X(b) - mesh.X(a)).norm();
     // Where the surface or a die is far from the edge, halving it would not shorten it.
-    if ((target - middle).norm() > (optimised ? 0.25 : 0.5) * length)
+    if ((target - middle).norm() > (at == SplitAt::towards ? 0.5 : 0.25) * length)
       return {};
     CavityChange change;
     change.placed_node   = mesh.n_nodes();
@@ -62,15 +62,15 @@ namespace retroforge
       change.position = position;
       return evaluate(mesh, std::max(0., bound), change) && plan_faces(mesh, a, b, change);
     };
-    if (optimised)
+    if (at == SplitAt::best)
     {
       const auto best = best_position(mesh, cavity_of_edge(mesh, a, b), place, target);
       if (!(best.quality > bound) || !fits(best.x))
         return {};
     }
     else if (!fits(target) &&
-             (place.kind == NodeKind::interior ||
-              !(fits(place.towards(target, middle, 0.5)) || fits(place.towards(target, middle, 0.25)) ||
+             !(at == SplitAt::towards && place.kind != NodeKind::interior &&
+               (fits(place.towards(target, middle, 0.5)) || fits(place.towards(target, middle, 0.25)) ||
                 fits(place.towards(target, middle, 0.)))))
       return {};
     plan_ridges(mesh, a, b, change);

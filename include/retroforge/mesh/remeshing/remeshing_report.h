@@ -18,9 +18,6 @@ namespace retroforge
     unsigned int n_quality_collapses = 0;
     unsigned int n_quality_splits    = 0;
 
-    /// Nodes of split edges that did not reach their place on the surface, out of the dies.
-    unsigned int n_nodes_off_surface = 0;
-
     unsigned int n_nodes_before = 0;
     unsigned int n_nodes_after  = 0;
     unsigned int n_nodes_kept   = 0; ///< new nodes that are old ones

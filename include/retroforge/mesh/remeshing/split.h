@@ -6,11 +6,16 @@
 
 namespace retroforge
 {
-  /// Puts a new node on the edge a-b, at the middle or, if `optimised`, where the smallest quality of the new
-  /// cells is greatest; on the boundary it lies on the old region or curve. Refused unless every new cell is
-  /// better than `bound` and new boundary faces look the same way as the ones they halve. A node at the
-  /// middle that nodes behind it keep from its place goes as far towards it as they let it; fit_pass() does
-  /// the rest.
+  /// Where the new node of a split edge goes.
+  enum class SplitAt
+  {
+    middle,  ///< on the boundary: the place of the middle on the old region or curve
+    towards, ///< the same, or as far on the way there as the nodes behind let it; fit_pass() does the rest
+    best     ///< where the smallest quality of the new cells is greatest
+  };
+
+  /// Puts a new node on the edge a-b. Refused unless every new cell is better than `bound` and new boundary
+  /// faces look the same way as the ones they halve.
   std::optional<CavityChange>
-  plan_split(const RemeshingContext &context, NodeIndex a, NodeIndex b, double bound, bool optimised);
+  plan_split(const RemeshingContext &context, NodeIndex a, NodeIndex b, double bound, SplitAt at);
 } // namespace retroforge

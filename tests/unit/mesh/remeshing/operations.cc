@@ -87,11 +87,11 @@ void operations_on_box()
         if (mesh.kind(from) == kind)
           collapses.add(bench, plan_collapse(bench.context, from, to, 0, 10));
   }
-  for (const bool optimised : {false, true})
+  for (const SplitAt at : {SplitAt::middle, SplitAt::best})
   {
-    Tally splits{optimised ? "optimised splits" : "splits"};
+    Tally splits{at == SplitAt::best ? "optimised splits" : "splits"};
     for (const auto &[a, b] : edges)
-      splits.add(bench, plan_split(bench.context, a, b, 0, optimised));
+      splits.add(bench, plan_split(bench.context, a, b, 0, at));
   }
   {
     Tally smoothings{"smoothings"};
