@@ -22,11 +22,10 @@ namespace retroforge
         opposite.push_back(node);
     if (!mesh.faces_at_edge(opposite[0], opposite[1]).empty())
       return {};
-    const auto distance = [&](const NodeIndex p, const NodeIndex q) {
-      const Vec3 middle = (mesh.X(p) + mesh.X(q)) / 2.;
-      return (context.old_surface.on_region(region, middle) - middle).norm();
+    const auto depth = [&](const NodeIndex p, const NodeIndex q) {
+      return context.old_surface.depth_in_dies((mesh.X(p) + mesh.X(q)) / 2.);
     };
-    if (!(distance(opposite[0], opposite[1]) < distance(a, b)))
+    if (!(depth(opposite[0], opposite[1]) < depth(a, b)))
       return {};
     CavityChange change;
     change.removed_cells = cells;

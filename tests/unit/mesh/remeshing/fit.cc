@@ -10,6 +10,7 @@
 
 #include "remeshing_test_tools.h"
 #include <retroforge/mesh/remeshing/length_pass.h>
+#include <retroforge/mesh/remeshing/peel.h>
 
 using namespace retroforge;
 
@@ -47,18 +48,16 @@ double deepest_edge(const TetMesh &mesh)
   return deepest;
 }
 
-int main(int argc, char **argv)
+void drawn_over_an_edge()
 {
-  measured(argc > 1);
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  const TetMesh                            mesh = drawn_box();
-  const SizeField                          size = [](const Vec3 &) { return 2.5; };
-  const RemeshingParameters                parameters;
-  const SurfaceFeatures features(mesh, mesh.X, parameters.ridge_angle, parameters.corner_angle);
-  const OldSurface      old_surface(mesh, mesh.X, features, leave);
-  EditableMesh          edited(mesh, mesh.X, features);
-  RemeshingContext      context = {edited, old_surface, size, parameters};
-  RemeshingReport       report;
+  const TetMesh             mesh = drawn_box();
+  const SizeField           size = [](const Vec3 &) { return 2.5; };
+  const RemeshingParameters parameters;
+  const SurfaceFeatures     features(mesh, mesh.X, parameters.ridge_angle, parameters.corner_angle);
+  const OldSurface          old_surface(mesh, mesh.X, features, leave);
+  EditableMesh              edited(mesh, mesh.X, features);
+  RemeshingContext          context = {edited, old_surface, size, parameters};
+  RemeshingReport           report;
   length_pass(context, report);
 
   std::vector<NodeIndex> old_node;
@@ -76,4 +75,65 @@ int main(int argc, char **argv)
             << "\n";
   measured() << deepest_edge(mesh) << " " << deepest_edge(after) << " " << node << " "
              << minimum_quality(after.cells, after.X) << " " << report.n_length_splits << "\n";
+}
+
+// Two faces of the top become a valley, bridged by one more cell; the die comes down into that.
+void bridged_valley()
+{
+  TetMesh    mesh     = kuhn_box(3, 0.);
+  const auto opposite = [](const BoundaryFace &face, const std::array<NodeIndex, 2> &edge) {
+    return *std::find_if(
+      face.nodes.begin(), face.nodes.end(), [&](const NodeIndex k) { return !contains(edge, k); });
+  };
+  NodeIndex a = invalid_index, b = invalid_index;
+  for (const auto &edge : surface_edges(mesh.faces))
+  {
+    const BoundaryFace &f = mesh.faces[edge.faces[0]], &g = mesh.faces[edge.faces[1]];
+    const Vec3          middle = (mesh.X[edge.nodes[0]] + mesh.X[edge.nodes[1]]) / 2.;
+    if ((middle - Vec3({1.5, 1.5, 3})).norm() > 0.1)
+      continue;
+    a = opposite(f, edge.nodes);
+    b = opposite(g, edge.nodes);
+    mesh.cells.push_back({{a, b, edge.nodes[0], edge.nodes[1]}});
+  }
+  mesh.X[a][2] += 0.3;
+  mesh.X[b][2] += 0.3;
+  Cell &bridge = mesh.cells.back();
+  if (tet_volume(corners(bridge, mesh.X)) < 0)
+    std::swap(bridge[2], bridge[3]);
+  const double bridge_volume = tet_volume(corners(bridge, mesh.X));
+  add_one_patch(mesh);
+
+  const RemeshingParameters parameters;
+  const PushOut             above = [](const Vec3 &x) { return Vec3({x[0], x[1], std::min(x[2], 3.05)}); };
+  const SurfaceFeatures     features(mesh, mesh.X, parameters.ridge_angle, parameters.corner_angle, above);
+  const OldSurface          old_surface(mesh, mesh.X, features, above);
+  const SizeField           size = [](const Vec3 &) { return 1.; };
+  EditableMesh              edited(mesh, mesh.X, features);
+  const RemeshingContext    context  = {edited, old_surface, size, parameters};
+  unsigned int              n_others = 0;
+  for (const auto &edge : surface_edges(mesh.faces))
+    if (!contains(edge.nodes, a) || !contains(edge.nodes, b))
+      n_others += plan_peel(context, edge.nodes[0], edge.nodes[1]).has_value();
+  const auto change = plan_peel(context, a, b);
+  std::cout << "a cell in the die: peeled off: " << yes(change.has_value()) << ", others: " << n_others;
+  if (change)
+  {
+    edited.apply(*change);
+    std::vector<NodeIndex> old_node;
+    TetMesh                after = compacted(edited, features, old_node);
+    after.patches                = mesh.patches;
+    const double lost            = volume(mesh.cells, mesh.X) - volume(after.cells, after.X);
+    std::cout << ", " << verdict(after)
+              << ", its volume is gone: " << yes(std::abs(lost - bridge_volume) < 1e-12);
+  }
+  std::cout << "\n";
+}
+
+int main(int argc, char **argv)
+{
+  measured(argc > 1);
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  drawn_over_an_edge();
+  bridged_valley();
 }
