@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""How smooth is the energy in the design, and at which bias?   run.py BUILD default|grid
+"""How smooth is the energy in the design, and at which bias?   run.py BUILD default|grid|third
 
 `default`: the default mesh and increment, by the default law and by the thesis'. `grid`: five laws and three increments on two
-coarser meshes, 40 points each, and the picture.
+coarser meshes, 40 points each, and the picture. `third`: the same laws and increments on a mesh between these and the
+default, 12 points each.
 The die's offset is scanned over 1 % of the billet's size to either side. Roughness: the adjoint's local slopes against
 the slope of a cubic fitted to the energies. Bias: the fit against the law of approach 1 at vanishing increments.
 """
@@ -27,7 +28,8 @@ MESHES = (10, 7)  # element sizes: about 100 and 200 nodes
 INCREMENTS = (18, 36, 72)
 # (element size, increments (0: the default), points, laws)
 GRID = {"default": [(DEFAULT_SIZE, 0, 12, ("default", "approach 1"))],
-        "grid": [(size, increments, 40, tuple(LAWS)) for size in MESHES for increments in INCREMENTS]}
+        "grid": [(size, increments, 40, tuple(LAWS)) for size in MESHES for increments in INCREMENTS],
+        "third": [(5, increments, 12, tuple(LAWS)) for increments in INCREMENTS]}
 
 
 def scan(build, size, increments, settings, half_width, points):
