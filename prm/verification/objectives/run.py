@@ -84,7 +84,8 @@ def objectives(names, target, patches, more=None):
         if name == "unfilled volume":
             settings[f"Objective {name}/samples"] = 16
     if "cylinder distance" in names:
-        settings["Objective cylinder distance/patches"] = patches
+        # Beside the billet's axis: of the side that is nearly a cylinder about it nothing is left but rounding.
+        settings.update({"Objective cylinder distance/patches": patches, "Objective cylinder distance/axis point": "4, 3, 0"})
     if "late force" in names:
         settings.update(LATE)
     return {**settings, **(more or {})}
