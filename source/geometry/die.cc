@@ -17,16 +17,33 @@ namespace retroforge
     }
   } // namespace
 
-  Die::Die(std::string name, TriangleSurface surface, const double depth)
-      : name(std::move(name)), surface_(std::make_shared<const Surface>(std::move(surface), depth))
+  Die::Die(std::string name, TriangleSurface surface, const double depth, const DieSurfaceLaw &law)
+      : name(std::move(name))
   {
+    std::optional<CornerNormals> normals;
+    if (law.smooth)
+      normals.emplace(surface, law.feature_angle);
+    surface_ = std::make_shared<const Surface>(std::move(surface), depth, std::move(normals));
   }
 
   Die Die::moved(NodalVectors<double> vertices) const
   {
-    TriangleSurface shape = surface_->shape;
+    Die             die     = *this;
+    TriangleSurface shape   = surface_->shape;
+    auto            normals = surface_->normals;
     shape.move_vertices(std::move(vertices));
-    return Die(name, std::move(shape), surface_->depth);
+    if (normals)
+      normals->update(shape);
+    die.surface_ = std::make_shared<const Surface>(std::move(shape), surface_->depth, std::move(normals));
+    return die;
+  }
+
+  DieFeature Die::closest_on_surface(const Vec3 &x, const double within) const
+  {
+    const DieFeature feature = surface_->closest(x, within);
+    return feature.found() && surface_->normals
+             ? feature_of_smooth_surface(surface_->shape, *surface_->normals, feature, x)
+             : feature;
   }
 
   DieFeature Die::closest(const Vec3 &X, const Vec3 &displacement, const double reach) const
@@ -37,7 +54,7 @@ namespace retroforge
     const double within = std::max(reach, surface_->depth);
     if (distance_to_box(x, surface_->shape.box()) > within)
       return DieFeature::none();
-    const DieFeature feature = surface_->closest(x, within);
+    const DieFeature feature = closest_on_surface(x, within);
     if (!feature.found())
       return feature;
     const double delta = project(x, Vec3(), feature).delta;
@@ -46,7 +63,8 @@ namespace retroforge
 
   double Die::signed_distance(const Vec3 &X, const Vec3 &displacement) const
   {
-    const DieFeature feature = surface_ ? surface_->closest(X - displacement) : DieFeature();
+    const DieFeature feature =
+      surface_ ? closest_on_surface(X - displacement, std::numeric_limits<double>::max()) : DieFeature();
     return feature.found() ? project(X, displacement, feature).delta
                            : std::numeric_limits<double>::infinity();
   }
@@ -60,6 +78,20 @@ namespace retroforge
                             Vec3                 &displacement_bar,
                             NodalVectors<double> *vertices_bar) const
   {
+    if (surface_ && surface_->normals)
+    {
+      reverse_project_smoothly(surface_->shape,
+                               *surface_->normals,
+                               feature,
+                               X,
+                               displacement,
+                               delta_bar,
+                               n_bar,
+                               X_bar,
+                               displacement_bar,
+                               vertices_bar);
+      return;
+    }
     if (surface_)
     {
       reverse_project_on_feature(

@@ -91,6 +91,16 @@ namespace retroforge
                       "Nodes deeper than this behind a surface are not in contact with it; 0 for a tenth of "
                       "its extent. Units: mm.",
                       Double(0.));
+    prm.add_parameter("surface",
+                      surface_law,
+                      "smooth: facets stand for a smooth surface, normals and gaps are interpolated between "
+                      "their corners; facets: they are the surface. On facets the gradient misses the die's "
+                      "curvature. Units: none.",
+                      dealii::Patterns::Selection("smooth|facets"));
+    prm.add_parameter("feature angle",
+                      feature_angle,
+                      "Edges where the facets of a smooth surface turn by more stay sharp. Units: degrees.",
+                      Double(0., 180.));
     prm.add_parameter(
       "file", file, "STL file, ASCII or binary, from the folder the program is started in. Units: none.");
     prm.add_parameter("scale", scale, "Factor to mm of the file's lengths. Units: none.", Double(1e-300));
@@ -269,6 +279,7 @@ namespace retroforge
       return Die(name, point, facing);
     TriangleSurface made     = surface();
     const double    diagonal = made.diagonal();
-    return Die(name, std::move(made), depth > 0. ? depth : 0.1 * diagonal);
+    return Die(
+      name, std::move(made), depth > 0. ? depth : 0.1 * diagonal, {surface_law == "smooth", feature_angle});
   }
 } // namespace retroforge

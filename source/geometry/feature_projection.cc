@@ -9,36 +9,6 @@ namespace retroforge
 {
   namespace
   {
-    template <typename Number>
-    Vector3<Number> cross(const Vector3<Number> &a, const Vector3<Number> &b)
-    {
-      Vector3<Number> c;
-      for (unsigned int i = 0; i < 3; ++i)
-        c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-      return c;
-    }
-
-    template <typename Number>
-    Number length(const Vector3<Number> &a)
-    {
-      using std::sqrt;
-      return sqrt(Number(a * a));
-    }
-
-    template <typename Number>
-    Vector3<Number> unit(const Vector3<Number> &a)
-    {
-      return a * Number(1. / length(a));
-    }
-
-    /// Pull-back of unit(a) = u:  a_bar = (u_bar - (u·u_bar) u) / |a|.
-    Vec3 reverse_unit(const Vec3 &a, const Vec3 &u_bar)
-    {
-      const double norm = a.norm();
-      const Vec3   u    = a / norm;
-      return (u_bar - (u * u_bar) * u) / norm;
-    }
-
     /// Vertices as numbers of the type that is computed with.
     template <typename Number, typename VertexNumber>
     class Vertices

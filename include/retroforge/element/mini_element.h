@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/core/types.h>
+#include <retroforge/geometry/vector_algebra.h>
 #include <retroforge/material/norton_hoff.h>
 
 #include <array>

@@ -55,16 +55,6 @@ namespace retroforge
   }
 
   template <typename Number>
-  Vector3<Number> cross(const Vector3<Number> &a, const Vector3<Number> &b)
-  {
-    Vector3<Number> c;
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-    return c;
-  }
-
-  template <typename Number>
   CellGeometry<Number> cell_geometry(const Four<Vector3<Number>> &X)
   {
     const Vector3<Number> a = X[1] - X[0], b = X[2] - X[0], c = X[3] - X[0];

@@ -13,9 +13,10 @@ namespace retroforge
   struct DieFeature
   {
     unsigned int  facet = 0;
-    unsigned char kind  = 0; ///< 0 the face, 1 + e its edge e, 4 + c its corner c
+    unsigned char kind  = 0; ///< 0 the face, 1 + e its edge e, 4 + c its corner c, or `flat_face`
 
-    static constexpr unsigned char n_kinds = 7;
+    static constexpr unsigned char n_kinds   = 8;
+    static constexpr unsigned char flat_face = 7; ///< of a smooth surface: the face as a plane, see Die
 
     static constexpr DieFeature none() { return {invalid_index, 0}; }
     bool                        found() const { return facet != invalid_index; }

@@ -2,9 +2,10 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/geometry/feature_projection.h>
+#include <retroforge/geometry/smooth_projection.h>
 
 #include <memory>
+#include <optional>
 
 namespace retroforge
 {
@@ -19,7 +20,18 @@ namespace retroforge
     std::shared_ptr<const NodalVectors<Number>> vertices;
   };
 
+  /// How the facets of a triangulated die are understood.
+  struct DieSurfaceLaw
+  {
+    bool   smooth        = true; ///< they stand for a smooth surface; else they are the surface
+    double feature_angle = 40.;  ///< edges where a smooth surface turns by more are sharp [degrees]
+  };
+
   /// A rigid die: a plane in closed form, or a triangulated surface whose normals point to the workpiece.
+  ///
+  /// A triangulated die stands for a smooth one (project_smoothly). On facets as they are the normal does not
+  /// change with the point, the die's curvature is missing from every derivative, and gradients are off
+  /// however fine the facets. A smooth die falls back to a facet's plane beyond its centre of curvature.
   ///
   /// Which feature a point sees is a decision (`closest`), the distance to it a formula (`project`): replays
   /// and derivatives pass the recorded feature.
@@ -33,7 +45,7 @@ namespace retroforge
     }
 
     /// @param depth  points deeper than this behind the surface are not in contact [mm]
-    Die(std::string name, TriangleSurface surface, double depth);
+    Die(std::string name, TriangleSurface surface, double depth, const DieSurfaceLaw &law = {});
 
     /// The closest feature seen from X, or none: none of it within `reach`, or X deeper inside than `depth`,
     /// or behind the rim of an open surface. A plane is always found.
@@ -50,7 +62,7 @@ namespace retroforge
     project(const Vector3<Number> &X, const Vector3<Number> &displacement, const DieFeature &feature) const
     {
       if (surface_)
-        return project_on_feature(surface_->shape, surface_->shape.vertices(), feature, X, displacement);
+        return project_on_surface<Number, double>(nullptr, feature, X, displacement);
       Projection<Number> projection;
       projection.delta = Number(0.);
       for (unsigned int i = 0; i < 3; ++i)
@@ -67,7 +79,7 @@ namespace retroforge
     project(const Vector3<Number> &X, const DieState<Number> &state, const DieFeature &feature) const
     {
       if (state.vertices)
-        return project_on_feature(surface_->shape, *state.vertices, feature, X, state.displacement);
+        return project_on_surface(state.vertices.get(), feature, X, state.displacement);
       return project(X, state.displacement, feature);
     }
 
@@ -96,14 +108,32 @@ namespace retroforge
   private:
     struct Surface
     {
-      TriangleSurface shape;
-      ClosestFeature  closest;
-      double          depth;
+      TriangleSurface              shape;
+      ClosestFeature               closest;
+      double                       depth;
+      std::optional<CornerNormals> normals; ///< of a smooth surface
 
-      Surface(TriangleSurface made, const double depth) : shape(std::move(made)), closest(shape), depth(depth)
+      Surface(TriangleSurface made, const double depth, std::optional<CornerNormals> normals)
+          : shape(std::move(made)), closest(shape), depth(depth), normals(std::move(normals))
       {
       }
     };
+
+    template <typename Number, typename VertexNumber>
+    Projection<Number> project_on_surface(const NodalVectors<VertexNumber> *vertices,
+                                          const DieFeature                 &feature,
+                                          const Vector3<Number>            &X,
+                                          const Vector3<Number>            &displacement) const
+    {
+      const TriangleSurface &shape = surface_->shape;
+      if (surface_->normals)
+        return project_smoothly(shape, *surface_->normals, vertices, feature, X, displacement);
+      return vertices ? project_on_feature(shape, *vertices, feature, X, displacement)
+                      : project_on_feature(shape, shape.vertices(), feature, X, displacement);
+    }
+
+    /// Whatever the distance, but for what is farther away than `within`.
+    DieFeature closest_on_surface(const Vec3 &x, double within) const;
 
     Vec3                           point_;
     Vec3                           into_; ///< unit normal into the die

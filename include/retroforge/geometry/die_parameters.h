@@ -29,6 +29,9 @@ namespace retroforge
     double      friction = 0.;
     double      depth    = 0.; ///< 0: a tenth of the surface's diagonal [mm]
 
+    std::string surface_law   = "smooth";
+    double      feature_angle = 40.; ///< [degrees]
+
     std::string file;
     double      scale = 1.;
     Vec3        axis  = Vec3({0., 0., 1.});

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/geometry/closest_feature.h>
+#include <retroforge/geometry/vector_algebra.h>
 
 #include <utility>
 
