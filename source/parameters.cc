@@ -25,6 +25,18 @@ namespace retroforge
       "Units: none.",
       Selection("smooth|sharp"));
     prm.add_parameter(
+      "points",
+      points,
+      "Where dies that are no planes are felt: nodes and edges adds the middles of edges that the die bulges "
+      "into, which nodes alone let into it. Units: none.",
+      Selection("nodes|nodes and edges"));
+    prm.add_parameter(
+      "edge sinking",
+      edge_sinking,
+      "Part of the leading die's speed at which an edge sinks into a die under the mean pressure: the "
+      "penalty of edges, softer than the nodes'. Units: none.",
+      Double(1e-14, 1.));
+    prm.add_parameter(
       "approach",
       approach,
       "Approach time in increments: a gap closes within this many. 1 closes it in one, larger values "
@@ -332,7 +344,17 @@ namespace retroforge
       press.increments = number;
     }
     check_derived(size);
+    const Process<double> made = process(size);
+    edge_stiffness_ =
+      std::min(1., mean_pressure(size) / (contact.edge_sinking * made.speed()) / made.contact.rho);
     return *this;
+  }
+
+  double Parameters::mean_pressure(const double size) const
+  {
+    const auto   law  = material.law();
+    const double rate = dies[leading_die()].velocity.norm() / height(size);
+    return law.stress_factor(law.q(1.5 * rate * rate)) * 1.5 * rate;
   }
 
   Process<double> Parameters::process(const double size) const
@@ -343,10 +365,8 @@ namespace retroforge
     for (const DieParameters &die : dies)
       process.dies.push_back(die.initial_state());
     const double speed = process.speed();
-    // Mean pressure of a frictionless upsetting.
-    const double rate     = speed / height(size);
-    const double pressure = process.law.stress_factor(process.law.q(1.5 * rate * rate)) * 1.5 * rate;
-    process.contact.rho   = contact.penalty > 0. ? contact.penalty : pressure / (contact.penetration * speed);
+    process.contact.rho =
+      contact.penalty > 0. ? contact.penalty : mean_pressure(size) / (contact.penetration * speed);
     process.contact.v0    = contact.slip_fraction * speed;
     return process;
   }
@@ -375,6 +395,8 @@ namespace retroforge
     model.scheme       = press.scheme == "euler" ? Scheme::euler : Scheme::midpoint;
     model.approach     = contact.approach;
     model.ramp.sharp   = contact.law == "sharp";
+    model.edges_touch  = contact.points == "nodes and edges";
+    model.edge_stiffness = edge_stiffness_;
     model.ramp.width   = contact.ramp_width * contact.approach * step;
     const double layer = model.ramp.sharp ? 0. : contact.layer;
     model.layer        = layer * contact.approach * step;

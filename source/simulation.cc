@@ -4,6 +4,7 @@
 #include <retroforge/core/version.h>
 #include <retroforge/geometry/stl_file.h>
 #include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/objective/surface_areas.h>
 #include <retroforge/output/blas.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/output/vtu_writer.h>
@@ -313,16 +314,23 @@ namespace retroforge
       contact_pressure{"contact_pressure", std::vector<double>(mesh.n_nodes(), 0.)}, rate{"strain_rate", {}};
     const LastStage      last(scene, model_.step, process_, event.X_before, event.record);
     const Stage<double> &stage = last.stage;
+    std::vector<double>  force(mesh.n_nodes(), 0.);
     for (unsigned int p = 0; p < event.record.pairs.size(); ++p)
     {
       const auto      node = stage.contact_node(p, W, event.record.solves.back().active);
-      const NodeIndex k    = event.record.pairs[p].node;
+      const ContactPoint &point = event.record.pairs[p].point;
       if (node.active)
-      {
-        state.values[k] = event.record.pairs[p].die + 1.;
-        contact_pressure.values[k] += stage.physics.contact.rho * approach_excess(node);
-      }
+        for (unsigned int i = 0; i < point.n_nodes(); ++i)
+        {
+          const NodeIndex k = point.nodes[i];
+          state.values[k]   = event.record.pairs[p].die + 1.;
+          force[k] += point.weight() * stage.physics.contact.rho * node.S * approach_excess(node);
+        }
     }
+    const std::vector<double> area = lumped_areas(surface_triangles(mesh), stage.X);
+    for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
+      if (force[k] > 0.)
+        contact_pressure.values[k] = force[k] / area[k];
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
       const auto e =

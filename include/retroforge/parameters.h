@@ -18,6 +18,8 @@ namespace retroforge
     double      penetration   = 3e-7;
     double      penalty       = 0.;
     double      slip_fraction = 1e-2;
+    std::string points        = "nodes and edges";
+    double      edge_sinking  = 0.05;
 
     void add_parameters(dealii::ParameterHandler &prm);
   };
@@ -103,7 +105,11 @@ namespace retroforge
     double edge_length(const TetMesh &billet) const;
 
   private:
+    double edge_stiffness_ = 1.; ///< of edges' penalty over the nodes', once settled
+
     double       height(double size) const;
+    /// Of a frictionless upsetting [MPa].
+    double       mean_pressure(double size) const;
     void         check_all();
     void         check_derived(double size) const;
     unsigned int leading_die() const;

@@ -3,6 +3,9 @@
 #include <retroforge/contact/contact.h>
 #include <retroforge/element/mini_element.templates.h>
 
+#include <algorithm>
+#include <map>
+
 namespace retroforge
 {
   namespace
@@ -83,27 +86,120 @@ namespace retroforge
     return -30. * t * t * (1. - t) * (1. - t) / width;
   }
 
+  namespace
+  {
+    /// Where a die bulges into an edge by more than this part of its length, as seen from its ends.
+    constexpr double least_bulge = 1e-6;
+
+    /// Adds the middles of edges in reach of die d that are deeper in it than their ends.
+    /// @param delta  of each node to this die; infinite out of reach
+    void add_edges(const Topology             &topology,
+                   const Die                  &die,
+                   const unsigned int          d,
+                   const DieState<double>     &state,
+                   const NodalVectors<double> &X,
+                   const std::vector<double>  &delta,
+                   const FrictionRamp         &ramp,
+                   const double                reach,
+                   std::vector<ContactPair>   &pairs)
+    {
+      std::vector<NodeIndex> ends;
+      for (const auto &[a, b] : topology.surface_edges)
+      {
+        const ContactPoint point   = ContactPoint::middle(a, b);
+        const Vec3         x       = point.mean(X);
+        const DieFeature   feature = die.closest(x, state.displacement, reach);
+        if (!feature.found())
+          continue;
+        const double at_middle = die.project(x, state, feature).delta;
+        if (at_middle <= reach &&
+            at_middle < 0.5 * (delta[a] + delta[b]) - least_bulge * (X[a] - X[b]).norm())
+        {
+          pairs.push_back({point, d, at_middle <= ramp.width, feature});
+          for (const NodeIndex k : point.nodes)
+            if (!(delta[k] <= reach))
+              ends.push_back(k);
+        }
+      }
+      std::sort(ends.begin(), ends.end());
+      ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+      for (const NodeIndex k : ends)
+        if (const DieFeature feature = die.closest(X[k], state.displacement); feature.found())
+          pairs.push_back({ContactPoint::node(k), d, false, feature});
+    }
+  } // namespace
+
   std::vector<ContactPair> find_contact_pairs(const Topology                      &topology,
                                               const std::vector<Die>              &dies,
                                               const std::vector<DieState<double>> &states,
                                               const NodalVectors<double>          &X,
                                               const FrictionRamp                  &ramp,
-                                              const double                         reach)
+                                              const double                         reach,
+                                              const bool                           with_edges)
   {
     std::vector<ContactPair> pairs;
     for (unsigned int d = 0; d < dies.size(); ++d)
+    {
+      std::vector<double> delta(X.size(), std::numeric_limits<double>::infinity());
       for (NodeIndex k = 0; k < X.size(); ++k)
         if (topology.is_on_surface(k))
         {
           const DieFeature feature = dies[d].closest(X[k], states[d].displacement, reach);
           if (!feature.found())
             continue;
-          const double delta = dies[d].project(X[k], states[d], feature).delta;
-          if (delta <= reach)
-            pairs.push_back({k, d, delta <= ramp.width, feature});
+          delta[k] = dies[d].project(X[k], states[d], feature).delta;
+          if (delta[k] <= reach)
+            pairs.push_back({ContactPoint::node(k), d, delta[k] <= ramp.width, feature});
         }
+      if (with_edges && dies[d].surface())
+        add_edges(topology, dies[d], d, states[d], X, delta, ramp, reach, pairs);
+    }
     return pairs;
   }
+
+  namespace
+  {
+    /// (pair of a node, pair of an edge at it), in a fixed order.
+    std::vector<std::pair<unsigned int, unsigned int>>
+    touched_by_edges(const std::vector<ContactPair> &pairs)
+    {
+      std::map<std::pair<unsigned int, NodeIndex>, unsigned int> of_node;
+      for (unsigned int p = 0; p < pairs.size(); ++p)
+        if (pairs[p].point.is_node())
+          of_node[{pairs[p].die, pairs[p].point.nodes[0]}] = p;
+      std::vector<std::pair<unsigned int, unsigned int>> touched;
+      for (unsigned int p = 0; p < pairs.size(); ++p)
+        if (!pairs[p].point.is_node())
+          for (const NodeIndex k : pairs[p].point.nodes)
+            if (const auto found = of_node.find({pairs[p].die, k}); found != of_node.end())
+              touched.emplace_back(found->second, p);
+      return touched;
+    }
+
+    /// Adds to the ramps' derivatives those of the points' own ramps: the reverse of how edges let nodes touch.
+    std::vector<double> reverse_touched_by_edges(const ContactSet<double>  &contact,
+                                                 const FrictionRamp        &ramp,
+                                                 const std::vector<double> &ramps_bar)
+    {
+      std::vector<double> own_bar = ramps_bar, at;
+      const auto          touched = touched_by_edges(contact.pairs);
+      for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+        at.push_back(ramp(contact.projections[p].delta, contact.pairs[p].touching));
+      std::vector<double> before; // of the node, at each step
+      for (const auto &[node, edge] : touched)
+      {
+        before.push_back(at[node]);
+        at[node] += (1. - at[node]) * at[edge];
+      }
+      for (std::size_t i = touched.size(); i-- > 0;)
+      {
+        const auto &[node, edge] = touched[i];
+        own_bar[edge] += (1. - before[i]) * own_bar[node];
+        own_bar[node] *= 1. - at[edge];
+      }
+      return own_bar;
+    }
+  } // namespace
 
   template <typename Number>
   ContactSet<Number> make_contact_set(const TetMesh                       &mesh,
@@ -114,23 +210,30 @@ namespace retroforge
                                       const FrictionRamp                  &ramp,
                                       const Number                        &tau,
                                       const NodalVectors<Number>          &X,
-                                      const double                         layer)
+                                      const double                         layer,
+                                      const double                         edge_stiffness)
   {
     ContactSet<Number> contact;
+    contact.edge_stiffness = edge_stiffness;
     contact.pairs = pairs;
     contact.tau   = tau;
     contact.layer = layer;
     std::map<std::pair<unsigned int, NodeIndex>, unsigned int> index; // (die, node) -> pair
     for (const ContactPair &pair : pairs)
     {
-      index[{pair.die, pair.node}] = contact.projections.size();
-      contact.projections.push_back(dies[pair.die].project(X[pair.node], states[pair.die], pair.feature));
+      if (pair.point.is_node())
+        index[{pair.die, pair.point.nodes[0]}] = contact.projections.size();
+      contact.projections.push_back(
+        dies[pair.die].project(pair.point.mean(X), states[pair.die], pair.feature));
       contact.ramps.push_back(ramp(contact.projections.back().delta, pair.touching));
     }
+    for (const auto &[node, edge] : touched_by_edges(pairs))
+      contact.ramps[node] += (1. - contact.ramps[node]) * contact.ramps[edge];
     // A face is visited from its first pair of each die.
     for (unsigned int p = 0; p < pairs.size(); ++p)
-      if (value_of(states[pairs[p].die].friction) != 0. && value_of(contact.ramps[p]) > 0.)
-        for (const unsigned int f : topology.surface_faces[pairs[p].node])
+      if (pairs[p].point.is_node() && value_of(states[pairs[p].die].friction) != 0. &&
+          value_of(contact.ramps[p]) > 0.)
+        for (const unsigned int f : topology.surface_faces[pairs[p].point.nodes[0]])
         {
           typename ContactSet<Number>::Face face{f, {}, Number(1.)};
           bool                              whole = true;
@@ -159,22 +262,35 @@ namespace retroforge
                            NodalVectors<double>                &X_bar,
                            ContactSensitivity                  &sensitivity)
   {
+    const std::vector<double> ramps_bar = reverse_touched_by_edges(contact, ramp, bar.ramp);
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
     {
       const ContactPair &pair  = contact.pairs[p];
-      const double delta_bar   = bar.delta[p] + bar.ramp[p] * ramp.derivative(contact.projections[p].delta);
+      const double delta_bar   = bar.delta[p] + ramps_bar[p] * ramp.derivative(contact.projections[p].delta);
       const bool   by_vertices = dies[pair.die].surface() && pair.die < sensitivity.die_vertices.size() &&
                                !sensitivity.die_vertices[pair.die].empty();
-      dies[pair.die].reverse_project(X[pair.node],
+      Vec3 at_point;
+      dies[pair.die].reverse_project(pair.point.mean(X),
                                      states[pair.die].displacement,
                                      pair.feature,
                                      delta_bar,
                                      bar.n[p],
-                                     X_bar[pair.node],
+                                     at_point,
                                      sensitivity.dies[pair.die].displacement,
                                      by_vertices ? &sensitivity.die_vertices[pair.die] : nullptr);
+      pair.point.add(at_point, X_bar);
     }
   }
+
+  namespace
+  {
+    /// Of a face's area, what counts for a point of it.
+    template <typename Number>
+    double part_of_face(const ContactSet<Number> &contact, const unsigned int p)
+    {
+      return (contact.pairs[p].point.is_node() ? 1. : contact.edge_stiffness) / 3.;
+    }
+  } // namespace
 
   template <typename Number>
   ContactAreas<Number> contact_areas(const TetMesh              &mesh,
@@ -186,8 +302,9 @@ namespace retroforge
     areas.S.assign(contact.pairs.size(), Number(0.));
     areas.Sf.assign(contact.pairs.size(), Number(0.));
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-      for (const unsigned int f : topology.surface_faces[contact.pairs[p].node])
-        areas.S[p] += face_area(mesh.faces[f], X) / 3.;
+      contact.pairs[p].point.for_each_face(mesh, topology, [&](const unsigned int f) {
+        areas.S[p] += part_of_face(contact, p) * face_area(mesh.faces[f], X);
+      });
     for (const auto &face : contact.friction_faces)
     {
       const Number third = face.weight * face_area(mesh.faces[face.face], X) / 3.;
@@ -207,8 +324,9 @@ namespace retroforge
   {
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (areas_bar.S[p] != 0.)
-        for (const unsigned int f : topology.surface_faces[contact.pairs[p].node])
-          reverse_face_area(mesh.faces[f], X, areas_bar.S[p] / 3., X_bar);
+        contact.pairs[p].point.for_each_face(mesh, topology, [&](const unsigned int f) {
+          reverse_face_area(mesh.faces[f], X, areas_bar.S[p] * part_of_face(contact, p), X_bar);
+        });
     for (const auto &face : contact.friction_faces)
     {
       const double third_bar =
@@ -346,6 +464,7 @@ namespace retroforge
                                                  const FrictionRamp &,                            \
                                                  const Number &,                                  \
                                                  const NodalVectors<Number> &,                    \
+                                                 double,                                          \
                                                  double);                                         \
   template ContactAreas<Number> contact_areas(                                                    \
     const TetMesh &, const Topology &, const ContactSet<Number> &, const NodalVectors<Number> &); \

@@ -37,6 +37,21 @@ namespace retroforge
       return make_rows(std::move(pairs), mesh.n_nodes());
     }
 
+    std::vector<std::array<NodeIndex, 2>> edges_of_surface(const TetMesh &mesh)
+    {
+      std::vector<std::array<NodeIndex, 2>> edges;
+      for (const BoundaryFace &face : mesh.faces)
+        if (mesh.is_surface(face))
+          for (unsigned int e = 0; e < 3; ++e)
+          {
+            const auto [a, b] = std::minmax(face.nodes[e], face.nodes[(e + 1) % 3]);
+            edges.push_back({{a, b}});
+          }
+      std::sort(edges.begin(), edges.end());
+      edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+      return edges;
+    }
+
     Rows<CellIndex> cells_at_nodes(const TetMesh &mesh)
     {
       std::vector<std::pair<unsigned int, unsigned int>> pairs;
@@ -96,6 +111,7 @@ namespace retroforge
 
   Topology::Topology(const TetMesh &mesh)
       : surface_faces(surface_faces_at_nodes(mesh))
+      , surface_edges(edges_of_surface(mesh))
       , cells(cells_at_nodes(mesh))
       , neighbours(neighbours_of_nodes(mesh, cells))
       , fixed_directions(fixed_directions_of_nodes(mesh))

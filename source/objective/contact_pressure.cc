@@ -8,20 +8,52 @@ namespace retroforge
 {
   namespace
   {
-    /// Is pair p one of the die's, on a node of this rank?
+    /// Is pair p one of the die's, and of a node of this rank?
     template <typename Number>
     bool is_mine(const StageView<Number> &view, const unsigned int p, const unsigned int die)
     {
       const ContactPair &pair = view.stage.contact.pairs[p];
-      return pair.die == die && view.stage.scene.partition.owns(pair.node);
+      return pair.die == die && pair.point.is_node() && view.stage.scene.partition.owns(pair.point.nodes[0]);
     }
 
-    /// p_k over the reference, zero where the die does not press.
+    /// Pushing force of a point along the die's normal, zero where the die does not press.
     template <typename Number>
-    Number relative_pressure(const ContactNode<Number> &node, const Number &rho, const double reference)
+    Number pushing_force(const ContactNode<Number> &node, const Number &rho)
     {
       const Number h = approach_excess(node);
-      return node.active && value_of(h) > 0. ? Number(rho * h / reference) : Number(0.);
+      return node.active && value_of(h) > 0. ? Number(rho * node.S * h) : Number(0.);
+    }
+
+    constexpr unsigned int none = invalid_index;
+
+    /// The pair of each node that is in reach of the die.
+    template <typename Number>
+    std::vector<unsigned int> pairs_of_nodes(const StageView<Number> &view, const unsigned int die)
+    {
+      std::vector<unsigned int> pairs(view.stage.scene.mesh.n_nodes(), none);
+      for (unsigned int p = 0; p < view.stage.contact.pairs.size(); ++p)
+        if (const ContactPair &pair = view.stage.contact.pairs[p]; pair.die == die && pair.point.is_node())
+          pairs[pair.point.nodes[0]] = p;
+      return pairs;
+    }
+
+    /// Of each pair of a node: its force and its part of those of the edges at it, over its area.
+    template <typename Number>
+    std::vector<Number> nodal_pressures(const StageView<Number> &view, const unsigned int die)
+    {
+      const Stage<Number>            &stage = view.stage;
+      const std::vector<unsigned int> of    = pairs_of_nodes(view, die);
+      std::vector<Number>             pressure(stage.contact.pairs.size(), Number(0.));
+      for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
+        if (const ContactPair &pair = stage.contact.pairs[p]; pair.die == die)
+        {
+          const Number force =
+            pushing_force(stage.contact_node(p, view.W, view.active), stage.physics.contact.rho);
+          for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)
+            if (const unsigned int q = of[pair.point.nodes[i]]; q != none)
+              pressure[q] += pair.point.weight() * force / stage.areas.S[q];
+        }
+      return pressure;
     }
   } // namespace
 
@@ -42,28 +74,25 @@ namespace retroforge
 
   double ContactPressure::largest(const StageView<double> &view) const
   {
-    double largest = 0.;
+    double     largest  = 0.;
+    const auto pressure = nodal_pressures(view, die_);
     for (unsigned int p = 0; p < view.stage.contact.pairs.size(); ++p)
       if (is_mine(view, p, die_))
-        largest =
-          std::max(largest,
-                   relative_pressure(
-                     view.stage.contact_node(p, view.W, view.active), view.stage.physics.contact.rho, 1.));
+        largest = std::max(largest, pressure[p]);
     return largest;
   }
 
   template <typename Number>
   std::vector<Number> ContactPressure::compute_integrals(const StageView<Number> &view) const
   {
-    const Stage<Number> &stage = view.stage;
+    const Stage<Number> &stage    = view.stage;
+    const auto           pressure = nodal_pressures(view, die_);
     std::vector<Number>  sums(2, Number(0.));
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_mine(view, p, die_))
       {
-        const ContactNode<Number> node     = stage.contact_node(p, view.W, view.active);
-        const Number              pressure = relative_pressure(node, stage.physics.contact.rho, reference_);
-        sums[0] += node.S * power(pressure, Number(exponent_));
-        sums[1] += node.S * stage.contact.ramps[p];
+        sums[0] += stage.areas.S[p] * power(Number(pressure[p] / reference_), Number(exponent_));
+        sums[1] += stage.areas.S[p] * stage.contact.ramps[p];
       }
     return sums;
   }
@@ -72,27 +101,39 @@ namespace retroforge
                                           const std::vector<double> &weights,
                                           StageBar                  &bar) const
   {
-    const Stage<double> &stage = view.stage;
+    const Stage<double> &stage    = view.stage;
+    const auto           pressure = nodal_pressures(view, die_);
+    const auto           of       = pairs_of_nodes(view, die_);
     ContactPullback      pullback(view, bar);
-    for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
+    std::vector<double>  force_bar(pressure.size(), 0.); ///< of the force on the node of a pair
+    for (unsigned int p = 0; p < pressure.size(); ++p)
       if (is_mine(view, p, die_))
       {
-        const ContactNode<double> node     = stage.contact_node(p, view.W, view.active);
-        const double              rho      = stage.physics.contact.rho;
-        const double              pressure = relative_pressure(node, rho, reference_);
-        ContactNodeBar            node_bar;
-        node_bar.S = weights[0] * std::pow(pressure, exponent_) + weights[1] * stage.contact.ramps[p];
-        bar.contact.ramp[p] += weights[1] * node.S;
-        double h_bar = 0.;
-        if (pressure > 0.)
-        {
-          const double slope =
-            weights[0] * node.S * exponent_ * std::pow(pressure, exponent_ - 1.) / reference_;
-          node_bar.rho = slope * approach_excess(node);
-          h_bar        = slope * rho;
-        }
+        // S (F/S)^e
+        const double   relative = pressure[p] / reference_, whole = std::pow(relative, exponent_);
+        ContactNodeBar node_bar;
+        node_bar.S = weights[0] * (1. - exponent_) * whole + weights[1] * stage.contact.ramps[p];
+        bar.contact.ramp[p] += weights[1] * stage.areas.S[p];
         pullback.add(p, node_bar);
-        pullback.add_excess(p, node, h_bar);
+        if (relative > 0.)
+          force_bar[p] = weights[0] * exponent_ * whole / pressure[p];
+      }
+    for (unsigned int p = 0; p < pressure.size(); ++p)
+      if (const ContactPair &pair = stage.contact.pairs[p]; pair.die == die_)
+      {
+        double of_point = 0.;
+        for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)
+          if (const unsigned int q = of[pair.point.nodes[i]]; q != none)
+            of_point += pair.point.weight() * force_bar[q];
+        const ContactNode<double> node = stage.contact_node(p, view.W, view.active);
+        const double              rho = stage.physics.contact.rho, force = pushing_force(node, rho);
+        if (of_point == 0. || force == 0.)
+          continue;
+        ContactNodeBar node_bar;
+        node_bar.S   = of_point * force / node.S;
+        node_bar.rho = of_point * force / rho;
+        pullback.add(p, node_bar);
+        pullback.add_excess(p, node, of_point * rho * node.S);
       }
     pullback.finish();
   }

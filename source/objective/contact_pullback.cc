@@ -15,7 +15,7 @@ namespace retroforge
     const ContactPair  &pair = view_.stage.contact.pairs[p];
     ContactSensitivity &law  = bar_.physics.contact;
     DieState<double>   &die  = law.dies[pair.die];
-    bar_.W.V[pair.node] += node_bar.u;
+    pair.point.add(node_bar.u, bar_.W.V);
     die.velocity -= node_bar.u;
     die.friction += node_bar.alpha;
     areas_bar_.S[p] += node_bar.S;

@@ -44,7 +44,7 @@ namespace retroforge
       return;
     ContactPullback pullback(view, bar);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-      if (stage.scene.partition.owns(stage.contact.pairs[p].node))
+      if (stage.scene.partition.owns(stage.contact.pairs[p].point.nodes[0]))
         pullback.add(p,
                      reverse_friction_power(stage.contact_node(p, view.W, view.active),
                                             stage.physics.law,

@@ -87,7 +87,8 @@ namespace retroforge
     {
       std::vector<std::vector<std::pair<unsigned int, unsigned int>>> pairs(stage.scene.mesh.n_nodes());
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-        pairs[stage.contact.pairs[p].node].emplace_back(stage.contact.pairs[p].die, p);
+        if (const ContactPair &pair = stage.contact.pairs[p]; pair.point.is_node())
+          pairs[pair.point.nodes[0]].emplace_back(pair.die, p);
       return pairs;
     }
 

@@ -15,7 +15,7 @@ namespace retroforge
 {
   namespace
   {
-    constexpr unsigned int format = 3;
+    constexpr unsigned int format = 4;
 
     static_assert(sizeof(Vec3) == 3 * sizeof(double),
                   "nodal vectors are read and written as arrays of numbers");
@@ -138,9 +138,14 @@ namespace retroforge
       return mesh;
     }
 
+    bool is_there(const ContactPoint &point, const unsigned int n_nodes)
+    {
+      return point.nodes[0] < n_nodes && (point.is_node() || point.nodes[1] < n_nodes);
+    }
+
     bool is_there(const ContactPair &pair, const unsigned int n_nodes, const RecordShape &shape)
     {
-      return pair.node < n_nodes && pair.die < shape.die_facets.size() &&
+      return is_there(pair.point, n_nodes) && pair.die < shape.die_facets.size() &&
              pair.feature.facet < shape.die_facets[pair.die] && pair.feature.kind < DieFeature::n_kinds;
     }
 
@@ -222,12 +227,12 @@ namespace retroforge
       std::vector<unsigned char> touching, kind;
       for (const ContactPair &pair : pairs)
       {
-        indices.insert(indices.end(), {pair.node, pair.die});
+        indices.insert(indices.end(), {pair.point.nodes[0], pair.point.nodes[1], pair.die});
         touching.push_back(pair.touching);
         facet.push_back(pair.feature.facet);
         kind.push_back(pair.feature.kind);
       }
-      hdf5::write_array(group, "pairs", {pairs.size(), 2}, indices.data());
+      hdf5::write_array(group, "pairs", {pairs.size(), 3}, indices.data());
       hdf5::write_array(group, "touching", {pairs.size()}, touching.data());
       hdf5::write_array(group, "facet", {pairs.size()}, facet.data());
       hdf5::write_array(group, "kind", {pairs.size()}, kind.data());
@@ -246,25 +251,29 @@ namespace retroforge
     std::vector<ContactPair>
     read_pairs(const hid_t group, const RecordShape &shape, const unsigned int n_nodes)
     {
-      const auto               indices  = hdf5::read_array<unsigned int>(group, "pairs", {hdf5::any, 2});
-      const auto               touching = read_flags(group, "touching", {indices.size() / 2});
+      const auto               indices  = hdf5::read_array<unsigned int>(group, "pairs", {hdf5::any, 3});
+      const auto               touching = read_flags(group, "touching", {indices.size() / 3});
       const hsize_t            n        = touching.size();
       const auto               facet    = hdf5::read_array<unsigned int>(group, "facet", {n});
       const auto               kind     = hdf5::read_array<unsigned char>(group, "kind", {n});
       std::vector<ContactPair> pairs;
       for (std::size_t i = 0; i < n; ++i)
       {
-        pairs.push_back({indices[2 * i], indices[2 * i + 1], touching[i] != 0, {facet[i], kind[i]}});
+        pairs.push_back({{{{indices[3 * i], indices[3 * i + 1]}}},
+                         indices[3 * i + 2],
+                         touching[i] != 0,
+                         {facet[i], kind[i]}});
         if (is_there(pairs[i], n_nodes, shape))
           continue;
-        const bool        feature = pairs[i].node < n_nodes && pairs[i].die < shape.die_facets.size();
+        const bool        feature = is_there(pairs[i].point, n_nodes) && pairs[i].die < shape.die_facets.size();
         const std::string pair    = "contact pair " + std::to_string(i) + " is of ";
         if (feature)
           throw hdf5::Failure(pair + "facet " + std::to_string(facet[i]) + ", kind " +
                               std::to_string(kind[i]) + " of a die of " +
                               std::to_string(shape.die_facets[pairs[i].die]) + " facets and " +
                               std::to_string(DieFeature::n_kinds) + " kinds, counted from 0");
-        throw hdf5::Failure(pair + "node " + std::to_string(pairs[i].node) + " and die " +
+        throw hdf5::Failure(pair + "node " + std::to_string(pairs[i].point.nodes[0]) + ", node " +
+                            std::to_string(pairs[i].point.nodes[1]) + " and die " +
                             std::to_string(pairs[i].die) + " where there are " + std::to_string(n_nodes) +
                             " nodes and " + std::to_string(shape.die_facets.size()) +
                             " dies, counted from 0");

@@ -65,8 +65,12 @@ namespace retroforge
         append(k, direction);
       frames[k].n_fixed = n_axes[k];
     }
-    for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-      append(contact.pairs[p].node, contact.projections[p].n);
+    // Nodes come before edges, so that a node that touches has its own normal for an axis.
+    for (const bool of_nodes : {true, false})
+      for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+        if (const ContactPoint &point = contact.pairs[p].point; point.is_node() == of_nodes)
+          for (unsigned int i = 0; i < point.n_nodes(); ++i)
+            append(point.nodes[i], contact.projections[p].n);
     for (NodeIndex k = 0; k < frames.size(); ++k)
       if (n_axes[k] > 0)
       {
@@ -230,6 +234,15 @@ namespace retroforge
     }
   }
 
+  unsigned int LinearSystem::position_of(const unsigned int local_row, const NodeIndex column) const
+  {
+    const int begin = C_->row_begin[local_row];
+    int       entry = begin;
+    while (C_->node_of(entry) != column)
+      ++entry;
+    return entry - begin;
+  }
+
   void LinearSystem::add_cell(const CellIndex    c,
                               const unsigned int visited,
                               const TangentPack &t,
@@ -360,21 +373,38 @@ namespace retroforge
     const Partition    &partition = scene_.partition;
     const unsigned int  n_owned   = partition.node_end - partition.node_begin;
     std::vector<double> added(3 * n_owned, 0.);
+    edges_press_ = false;
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-      if (const NodeIndex k = stage.contact.pairs[p].node; partition.owns(k))
+    {
+      const ContactPoint &point = stage.contact.pairs[p].point;
+      if (!partition.sees(point.nodes))
+        continue;
+      edges_press_ |= !point.is_node();
+      const Tensor<2, 3> of_point = point.weight() * point.weight() *
+                                    contact_tangent(stage.contact_node(p, W, active),
+                                                    stage.physics.law,
+                                                    stage.physics.contact);
+      for (unsigned int a = 0; a < point.n_nodes(); ++a)
       {
-        const Tensor<2, 3> &Q = frames_[k].axes;
-        const Tensor<2, 3>  tangent =
-          Q * contact_tangent(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact) *
-          transpose(Q);
+        const NodeIndex k = point.nodes[a];
+        if (!partition.owns(k))
+          continue;
         const unsigned int local = k - partition.node_begin;
-        for (unsigned int i = 0; i < 3; ++i)
+        for (unsigned int b = 0; b < point.n_nodes(); ++b)
         {
-          added[3 * local + i] += tangent[i][i];
-          for (unsigned int j = 0; j < 3; ++j)
-            A_->entry(local, i, diagonal_[local])[j] += tangent[i][j];
+          const Tensor<2, 3> tangent =
+            frames_[k].axes * of_point * transpose(frames_[point.nodes[b]].axes);
+          const unsigned int position = a == b ? diagonal_[local] : position_of(local, point.nodes[b]);
+          for (unsigned int i = 0; i < 3; ++i)
+          {
+            if (a == b)
+              added[3 * local + i] += tangent[i][i];
+            for (unsigned int j = 0; j < 3; ++j)
+              A_->entry(local, i, position)[j] += tangent[i][j];
+          }
         }
       }
+    }
     scale_.assign(3 * scene_.mesh.n_nodes(), 1.);
     for (unsigned int a = 0; a < n_owned; ++a)
       for (unsigned int i = 0; i < 3; ++i)
@@ -597,13 +627,76 @@ namespace retroforge
     matrix_.residual(r, x_, rhs_);
     const double *residual = r.block(0).trilinos_vector()[0];
     double       *velocity = x_.block(0).trilinos_vector()[0];
+    std::vector<unsigned int> rows;
     for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
       for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
         if (scale_[3 * k + i] < 0.1)
-        {
-          const unsigned int local = k - partition.node_begin;
-          velocity[3 * local + i] += residual[3 * local + i] / A_->entry(local, i, diagonal_[local])[i];
-        }
+          rows.push_back(3 * (k - partition.node_begin) + i);
+    if (edges_press_)
+    {
+      std::vector<double> change;
+      solve_rows(rows, residual, change);
+      for (std::size_t n = 0; n < rows.size(); ++n)
+        velocity[rows[n]] += change[n];
+    }
+    else
+      for (const unsigned int row : rows)
+        velocity[row] += residual[row] / A_->entry(row / 3, row % 3, diagonal_[row / 3])[row % 3];
+  }
+
+  void LinearSystem::solve_rows(const std::vector<unsigned int> &rows,
+                                const double                    *r,
+                                std::vector<double>             &d) const
+  {
+    const std::size_t                                 n = rows.size();
+    std::vector<unsigned int>                         number(A_->column_map->NumMyElements(), invalid_index);
+    std::vector<double>                               diagonal(n), residual(n), z(n), direction(n), image(n);
+    std::vector<std::vector<std::pair<unsigned int, double>>> entries(n);
+    for (std::size_t i = 0; i < n; ++i)
+      number[rows[i]] = i; // owned columns come first, in the order of the rows
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      for (int e = A_->row_begin[rows[i]]; e < A_->row_begin[rows[i] + 1]; ++e)
+        if (const unsigned int j = number[A_->column_indices[e]]; j != invalid_index)
+          entries[i].emplace_back(j, A_->values[e]);
+      diagonal[i] = A_->entry(rows[i] / 3, rows[i] % 3, diagonal_[rows[i] / 3])[rows[i] % 3];
+      residual[i] = r[rows[i]];
+    }
+    d.assign(n, 0.);
+    const auto precondition = [&]() {
+      double product = 0.;
+      for (std::size_t i = 0; i < n; ++i)
+      {
+        z[i] = residual[i] / diagonal[i];
+        product += residual[i] * z[i];
+      }
+      return product;
+    };
+    constexpr unsigned int most  = 30;
+    double                 rz    = precondition();
+    const double           first = rz;
+    direction                    = z;
+    for (unsigned int step = 0; step < most && rz > 1e-20 * first; ++step)
+    {
+      double curvature = 0.;
+      for (std::size_t i = 0; i < n; ++i)
+      {
+        image[i] = 0.;
+        for (const auto &[j, value] : entries[i])
+          image[i] += value * direction[j];
+        curvature += image[i] * direction[i];
+      }
+      const double length = rz / curvature;
+      for (std::size_t i = 0; i < n; ++i)
+      {
+        d[i] += length * direction[i];
+        residual[i] -= length * image[i];
+      }
+      const double next = precondition();
+      for (std::size_t i = 0; i < n; ++i)
+        direction[i] = z[i] + next / rz * direction[i];
+      rz = next;
+    }
   }
 
   unsigned int LinearSystem::solve_iteratively(const double                      tolerance,

@@ -18,7 +18,7 @@ namespace retroforge
     const ContactPair      &pair = contact.pairs[p];
     const DieState<Number> &die  = physics.dies[pair.die];
     ContactNode<Number>     node;
-    node.u      = W.V[pair.node] - die.velocity;
+    node.u      = pair.point.mean(W.V) - die.velocity;
     node.n      = contact.projections[p].n;
     node.delta  = contact.projections[p].delta;
     node.tau    = contact.tau;
@@ -56,8 +56,9 @@ namespace retroforge
       r.beta[c] = cell.beta;
     }
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-      if (partition.owns(contact.pairs[p].node))
-        r.V[contact.pairs[p].node] += contact_force(contact_node(p, W, active), physics.law, physics.contact);
+      if (partition.sees(contact.pairs[p].point.nodes))
+        contact.pairs[p].point.add(
+          contact_force(contact_node(p, W, active), physics.law, physics.contact), r.V);
     return r;
   }
 
@@ -70,7 +71,7 @@ namespace retroforge
       power.first += cell_dissipation(
         cell_geometry(positions_of_cell(scene.mesh, X, c)), W.on_cell(scene.mesh, c), physics.law);
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-      if (partition.owns(contact.pairs[p].node))
+      if (partition.owns(contact.pairs[p].point.nodes[0]))
         power.second += friction_power(contact_node(p, W, active), physics.law, physics.contact);
     return power;
   }
@@ -191,11 +192,13 @@ namespace retroforge
     }
     ContactAreas<double> areas_bar = no_areas(stage);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-      if (const NodeIndex k = stage.contact.pairs[p].node; partition.owns(k))
+      if (const ContactPoint &point = stage.contact.pairs[p].point; partition.owns(point.nodes[0]))
         scatter(stage,
                 p,
-                reverse_contact_force(
-                  stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, lambda.V[k]),
+                reverse_contact_force(stage.contact_node(p, W, active),
+                                      stage.physics.law,
+                                      stage.physics.contact,
+                                      point.mean(lambda.V)),
                 areas_bar,
                 contact_bar,
                 physics_bar);
@@ -232,11 +235,11 @@ namespace retroforge
     }
     ContactAreas<double> areas_bar = no_areas(stage);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-      if (const NodeIndex k = stage.contact.pairs[p].node; partition.owns(k))
+      if (const ContactPoint &point = stage.contact.pairs[p].point; partition.owns(point.nodes[0]))
       {
         const ContactNodeBar node_bar = reverse_friction_power(
           stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, weight);
-        W_bar.V[k] += node_bar.u;
+        point.add(node_bar.u, W_bar.V);
         scatter(stage, p, node_bar, areas_bar, contact_bar, physics_bar);
       }
     reverse_contact_areas(mesh, stage.scene.topology, stage.contact, stage.X, areas_bar, X_bar, contact_bar);

@@ -116,7 +116,8 @@ namespace retroforge
                                   model.ramp,
                                   model.approach * dt_,
                                   X_before,
-                                  model.layer))
+                                  model.layer,
+                                  model.edge_stiffness))
       , X_(record.solves.size() == 1 ? X_before : advanced(X_before, 0.5 * dt_, record.solves[0].V))
       , stage(scene, physics_, contact_, X_)
   {
@@ -145,7 +146,8 @@ namespace retroforge
                             model_.ramp,
                             model_.approach * dt,
                             X,
-                            model_.layer);
+                            model_.layer,
+                            model_.edge_stiffness);
   }
 
   bool Increment::escaped(const Stage<double> &stage, const Field<double> &W) const
@@ -153,7 +155,8 @@ namespace retroforge
     // A node that was not watched must not have run into a die.
     std::vector<std::vector<bool>> watched(scene_.dies.size(), std::vector<bool>(W.V.size(), false));
     for (const ContactPair &pair : stage.contact.pairs)
-      watched[pair.die][pair.node] = true;
+      if (pair.point.is_node())
+        watched[pair.die][pair.point.nodes[0]] = true;
     for (unsigned int d = 0; d < scene_.dies.size(); ++d)
       for (NodeIndex k = 0; k < W.V.size(); ++k)
         if (!watched[d][k] && scene_.topology.is_on_surface(k))
@@ -189,7 +192,8 @@ namespace retroforge
       if (!replay)
       {
         const auto timing = timings_.scope("contact");
-        record.pairs = find_contact_pairs(scene_.topology, scene_.dies, physics.dies, X, model_.ramp, reach);
+        record.pairs = find_contact_pairs(
+          scene_.topology, scene_.dies, physics.dies, X, model_.ramp, reach, model_.edges_touch);
       }
       const ContactSet<double> contact       = contact_set(physics, X, record, dt);
       Field<double>            trial         = W;
@@ -397,7 +401,8 @@ namespace retroforge
                                                       model_.ramp,
                                                       Dual(model_.approach * dt),
                                                       X,
-                                                      model_.layer);
+                                                      model_.layer,
+                            model_.edge_stiffness);
     const Physics<double>    physics_value = values_of(physics);
     const ContactSet<double> contact_value = contact_set(physics_value, values_of(X), record, dt.val());
     NodalVectors<Dual>       position      = X;

@@ -19,6 +19,9 @@ namespace retroforge
 
     bool owns(const NodeIndex node) const { return node_begin <= node && node < node_end; }
 
+    /// Whether one of the nodes is owned.
+    bool sees(const std::array<NodeIndex, 2> &nodes) const { return owns(nodes[0]) || owns(nodes[1]); }
+
     /// Completes arrays whose owned entries are right: `width` doubles per node, or per cell.
     void gather_nodes(double *values, unsigned int width) const;
     void gather_cells(double *values, unsigned int width) const;

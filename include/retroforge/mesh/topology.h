@@ -6,6 +6,7 @@
 
 #include <retroforge/mesh/tet_mesh.h>
 
+#include <array>
 #include <vector>
 
 namespace retroforge
@@ -30,6 +31,8 @@ namespace retroforge
     /// Indices into TetMesh::faces of the surface faces (those not on a symmetry plane) at each node,
     /// ascending.
     Rows<unsigned int> surface_faces;
+    /// The edges of these faces, each once, the smaller node first, ascending.
+    std::vector<std::array<NodeIndex, 2>> surface_edges;
     /// Cells at each node, ascending.
     Rows<CellIndex> cells;
     /// Nodes that share a cell with each node, itself included, ascending.

@@ -81,6 +81,8 @@ namespace retroforge
 
     void make_pattern();
     void add_cell(CellIndex c, unsigned int visited, const TangentPack &tangent, unsigned int lane);
+    /// Where a node stands in the row of an owned node, given by its local number.
+    unsigned int position_of(unsigned int local_row, NodeIndex column) const;
     void add_contact(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
     void scale_and_fix();
     void make_preconditioner();
@@ -94,6 +96,8 @@ namespace retroforge
     /// sees would decide which nodes a die pushes, because a contact force is the penalty times a small
     /// difference.
     void polish_penalised();
+    /// d = A_II^(-1) r_I for the rows I of this rank, as well as a few steps of conjugate gradients can.
+    void solve_rows(const std::vector<unsigned int> &rows, const double *r, std::vector<double> &d) const;
     void solve_directly();
     bool direct() const { return parameters_.method == "direct"; }
 
@@ -105,6 +109,7 @@ namespace retroforge
     std::vector<double>                    scale_; ///< of each velocity component in its frame
     double                                 pressure_scale_ = 1.;
     std::vector<double>                    viscous_diagonal_;
+    bool                                   edges_press_ = false; ///< penalties couple nodes
     std::vector<BubbleElimination<double>> eliminations_;  ///< of the visited cells
     std::vector<CellIndex>                 visited_index_; ///< cell -> position in visited_cells
 

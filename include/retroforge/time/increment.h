@@ -22,6 +22,8 @@ namespace retroforge
     double           approach = 1.; ///< approach time in increments: tau = approach * dt
     double           layer    = 0.; ///< of the approach speed [mm]
     FrictionRamp     ramp;
+    double           edge_stiffness    = 1.;    ///< of edges' penalty over the nodes'
+    bool             edges_touch       = true;  ///< middles of edges are contact points of curved dies
     double           reach             = 0.;    ///< nodes nearer than this to a die are watched [mm]
     double           adjoint_tolerance = 1e-10; ///< of the adjoint and tangent linear systems
     ShapeDerivatives shape_derivatives;         ///< of the backward sweep
