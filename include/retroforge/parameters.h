@@ -19,7 +19,7 @@ namespace retroforge
     double      penalty       = 0.;
     double      slip_fraction = 1e-2;
     std::string points        = "nodes and edges";
-    double      edge_sinking  = 0.05;
+    double      edge_sinking  = 0.02;
 
     void add_parameters(dealii::ParameterHandler &prm);
   };

@@ -3,6 +3,8 @@
 #include <retroforge/core/error.h>
 #include <retroforge/solver/newton.h>
 
+#include <sstream>
+
 namespace retroforge
 {
   void NewtonParameters::add_parameters(dealii::ParameterHandler &prm)
@@ -226,10 +228,13 @@ namespace retroforge
         W.add(1., step);
       last = statistics.residual;
     }
-    throw Error("Newton",
-                "the equilibrium was not reached in " + std::to_string(parameters_.max_iterations) +
-                  " iterations (residual " + std::to_string(statistics.residual) + ")",
-                "each increment must be in equilibrium before the next",
-                "raise the slip regularisation or the regularising strain rate, or shorten the increments");
+    std::ostringstream what;
+    what << "the equilibrium was not reached in " << parameters_.max_iterations << " iterations (residual "
+         << statistics.residual << ")";
+    throw NoEquilibrium("Newton",
+                        what.str(),
+                        "each increment must be in equilibrium before the next",
+                        "raise the slip regularisation or the regularising strain rate, or shorten the "
+                        "increments");
   }
 } // namespace retroforge

@@ -6,6 +6,8 @@
 #include <retroforge/mesh/rebuild.h>
 #include <retroforge/time/forging.h>
 
+#include <sstream>
+
 namespace retroforge
 {
   void PressParameters::add_parameters(dealii::ParameterHandler &prm)
@@ -38,7 +40,16 @@ namespace retroforge
       "this part of its length. Units: none.",
       Double(1e-6));
     prm.add_parameter(
-      "max cuts", max_cuts, "Times an increment may be halved before the run stops. Units: none.");
+      "largest slip",
+      largest_slip,
+      "An increment is halved when a node would slip along a curved die by more than this times the edge "
+      "length wanted there. Units: none.",
+      Double(1e-3));
+    prm.add_parameter(
+      "max cuts",
+      max_cuts,
+      "Times an increment may be halved, counted from the whole one, before the run stops. Units: none.",
+      Integer(0, 30));
     prm.leave_subsection();
   }
 
@@ -63,22 +74,82 @@ namespace retroforge
     return state;
   }
 
-  bool
-  Forging::acceptable(const Leg &leg, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const
+  namespace
+  {
+    std::string at(const Vec3 &x)
+    {
+      std::ostringstream text;
+      text.precision(4);
+      text << " at (" << x[0] << ", " << x[1] << ", " << x[2] << ")";
+      return text.str();
+    }
+  } // namespace
+
+  std::string Forging::too_much(const Leg                  &leg,
+                                const NodalVectors<double> &X,
+                                const NodalVectors<double> &X_next) const
   {
     const TetMesh &mesh = leg.scene.mesh;
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
-      const auto before = positions_of_cell(mesh, X, c), after = positions_of_cell(mesh, X_next, c);
-      if (!(cell_geometry(after).volume > press_.smallest_volume * cell_geometry(before).volume))
-        return false;
+      const auto   before = positions_of_cell(mesh, X, c), after = positions_of_cell(mesh, X_next, c);
+      const double volume = cell_geometry(after).volume;
+      if (!(volume > press_.smallest_volume * cell_geometry(before).volume))
+        return (volume > 0. ? "an element would be crushed" : "an element would be inverted") + at(before[0]);
       for (unsigned int a = 0; a < 4; ++a)
         for (unsigned int b = 0; b < a; ++b)
           if (((after[a] - before[a]) - (after[b] - before[b])).norm() >
               press_.largest_move * (before[a] - before[b]).norm())
-            return false;
+            return "an edge would be turned or stretched by more than Press/largest move" + at(before[a]);
     }
-    return true;
+    return "";
+  }
+
+  std::string Forging::slips_too_far(const Process<double>      &process,
+                                     const IncrementRecord      &record,
+                                     const NodalVectors<double> &X,
+                                     const NodalVectors<double> &X_next) const
+  {
+    if (!remesher_.enabled())
+      return "";
+    const auto      dies = process.at_stroke(record.stroke).dies;
+    const SizeField size = remesher_.size_field(dies);
+    const double    time = record.step / process.speed();
+    for (const ContactPair &pair : record.pairs)
+      if (pair.point.is_node() && model_.dies[pair.die].surface())
+      {
+        const NodeIndex k    = pair.point.nodes[0];
+        const Vec3      path = X_next[k] - X[k] - time * dies[pair.die].velocity;
+        if (path.norm() > press_.largest_slip * size(X[k]))
+          return "a node would slip along die " + model_.dies[pair.die].name +
+                 " by more than Press/largest slip" + at(X[k]);
+      }
+    return "";
+  }
+
+  std::string Forging::attempt(const Process<double> &process,
+                               const ForgingState    &state,
+                               IncrementRecord       &record,
+                               NodalVectors<double>  &X_next,
+                               Field<double>         &solution) const
+  {
+    solution = state.W;
+    try
+    {
+      X_next = state.leg->increment.forward(process, state.X, false, record, solution);
+    }
+    catch (const NoEquilibrium &failure)
+    {
+      return failure.what();
+    }
+    catch (const dealii::ExceptionBase &)
+    {
+      return "the linear systems of an increment have no solution";
+    }
+    std::string reason = too_much(*state.leg, state.X, X_next);
+    if (reason.empty())
+      reason = slips_too_far(process, record, state.X, X_next);
+    return reason;
   }
 
   void Forging::change_mesh(const RemeshRecord &remesh, ForgingState &state) const
@@ -130,6 +201,22 @@ namespace retroforge
       --state.depth;
   }
 
+  void Forging::throw_stuck(const IncrementRecord &record, const double whole, const std::string &reason) const
+  {
+    std::ostringstream what;
+    what.precision(5);
+    what << "stops at stroke " << record.stroke << " mm, where even an increment of "
+         << whole * std::ldexp(1., -static_cast<int>(press_.max_cuts)) << " mm is too long: " << reason;
+    throw Error("Press/stroke",
+                what.str(),
+                "an increment may be halved " + std::to_string(press_.max_cuts) +
+                  " times (Press/max cuts), and elements must stay sound",
+                remesher_.enabled()
+                  ? "if the dies nearly close or the cavity is full there, shorten the stroke; else use more "
+                    "increments or a finer mesh"
+                  : "the mesh may be too distorted to go on: set Remeshing/when = quality");
+  }
+
   void Forging::run(const Process<double> &process, ForgingState &state, const Watch &watch) const
   {
     const double      whole = press_.stroke / press_.increments;
@@ -150,7 +237,8 @@ namespace retroforge
       };
       if (remesher_.enabled() &&
           remesher_.due(
-            state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies, frozen, since_remeshing()))
+            state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies, frozen, since_remeshing(),
+            state.increments == 0))
         renew();
       record.stroke = state.stroke;
       record.step   = std::min(whole / (1 << state.depth), press_.stroke - state.stroke);
@@ -158,9 +246,8 @@ namespace retroforge
       Field<double>        solution;
       for (;;)
       {
-        solution = state.W;
-        X_next   = state.leg->increment.forward(process, state.X, false, record, solution);
-        if (acceptable(*state.leg, state.X, X_next))
+        const std::string reason = attempt(process, state, record, X_next, solution);
+        if (reason.empty())
           break;
         if (remesher_.enabled() && !record.remesh && since_remeshing() > 0)
         {
@@ -168,14 +255,9 @@ namespace retroforge
           continue;
         }
         record.step *= 0.5;
-        if (++record.cuts > press_.max_cuts)
-          throw Error("Press/increments",
-                      "an increment at stroke " + std::to_string(state.stroke) + " mm was halved " +
-                        std::to_string(press_.max_cuts) + " times and still inverts an element",
-                      "elements must keep a positive volume",
-                      remesher_.enabled()
-                        ? "shorten the stroke or use a finer mesh"
-                        : "the mesh is too distorted to go on: set Remeshing/when = quality");
+        ++record.cuts;
+        if (record.step < whole * std::ldexp(1., -static_cast<int>(press_.max_cuts)) * (1. - 1e-9))
+          throw_stuck(record, whole, reason);
       }
       const NodalVectors<double> X_before = state.X;
       state.W                             = std::move(solution);

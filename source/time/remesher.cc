@@ -36,11 +36,16 @@ namespace retroforge
                       element_size,
                       "Wanted length of the edges; 0 for that of the billet. Units: mm.",
                       Double(0.));
+    prm.add_parameter("sizes",
+                      sizes,
+                      "dies: edges are shorter near curved dies, as their curvature and sharp edges ask for; "
+                      "uniform: the same length everywhere. Units: none.",
+                      Selection("uniform|dies"));
     prm.add_parameter(
       "chord error",
       chord_error,
       "Wanted distance between a surface edge and a curved die, r its radius there: edges are "
-      "sqrt(8 r error) long. 0: the same length everywhere. Units: mm.",
+      "sqrt(8 r error) long. 0 for 2 % of the element size. Units: mm.",
       Double(0.));
     prm.add_parameter(
       "smallest size",
@@ -72,6 +77,10 @@ namespace retroforge
 
   namespace
   {
+    constexpr double relative_chord_error = 0.02;
+    // Edges at a die longer than this times the wanted length call for a remeshing, which halves them.
+    constexpr double coarse = 2.;
+
     /// Positions rounded to about 1e-10 of the workpiece's size. Decisions must not hang on rounding, which
     /// is another one on another number of ranks: edges of equal length would be taken in another order.
     NodalVectors<double> on_grid(const NodalVectors<double> &X)
@@ -92,14 +101,16 @@ namespace retroforge
                      MPI_Comm                  comm)
       : parameters_(parameters), element_size_(element_size), dies_(dies), comm_(comm), near_die_(dies.size())
   {
-    if (parameters_.chord_error == 0.)
+    if (parameters_.sizes == "uniform")
       return;
+    const double chord_error =
+      parameters_.chord_error > 0. ? parameters_.chord_error : relative_chord_error * element_size;
     for (unsigned int d = 0; d < dies.size(); ++d)
       if (dies[d].surface())
       {
         std::vector<double> size;
         for (const double curvature : facet_curvature(*dies[d].surface()))
-          size.push_back(std::clamp(std::sqrt(8. * parameters_.chord_error / std::max(curvature, 1e-300)),
+          size.push_back(std::clamp(std::sqrt(8. * chord_error / std::max(curvature, 1e-300)),
                                     parameters_.smallest_size * element_size,
                                     element_size));
         near_die_[d].emplace(*dies[d].surface(), size, element_size, parameters_.growth);
@@ -110,16 +121,43 @@ namespace retroforge
                      const NodalVectors<double> &X,
                      const DieStates            &states,
                      const std::vector<bool>    &frozen,
-                     const unsigned int          increments) const
+                     const unsigned int          increments,
+                     const bool                  first) const
   {
     if (increments == 0)
-      return false;
+      return first && too_coarse(mesh, X, states);
     if (parameters_.when == "increments" && increments >= parameters_.every)
       return true;
     if (needs_remeshing(mesh, X, parameters_.local, frozen))
       return true;
     // A mesh that cannot follow its die does so no better when it is remade each time.
-    return increments > 2 && misfit(mesh, X, states) > parameters_.fit * element_size_;
+    return increments > 2 &&
+           (too_coarse(mesh, X, states) || misfit(mesh, X, states) > parameters_.fit * element_size_);
+  }
+
+  bool Remesher::too_coarse(const TetMesh              &mesh,
+                            const NodalVectors<double> &X,
+                            const DieStates            &states) const
+  {
+    const SizeField size     = size_field(states);
+    const double    smallest = parameters_.smallest_size * element_size_;
+    for (const BoundaryFace &face : mesh.faces)
+      if (mesh.is_surface(face))
+        for (unsigned int e = 0; e < 3; ++e)
+        {
+          const Vec3  &a = X[face.nodes[e]], &b = X[face.nodes[(e + 1) % 3]], middle = 0.5 * (a + b);
+          const double length = (b - a).norm();
+          if (face.nodes[e] > face.nodes[(e + 1) % 3] || length < coarse * smallest ||
+              length < coarse * size(middle))
+            continue;
+          for (unsigned int d = 0; d < dies_.size(); ++d)
+            if (near_die_[d])
+              if (const DieFeature feature =
+                    dies_[d].closest(middle, states[d].displacement, 0.5 * length);
+                  feature.found())
+                return true;
+        }
+    return false;
   }
 
   std::vector<bool> Remesher::frozen(const TetMesh &mesh) const

@@ -22,8 +22,8 @@
 /// Nodes alone do not keep an edge out of a die whose convex part it spans: its ends touch, and its middle is in the die.
 /// So the middles of such edges are points, too. Their penalty is soft: nodes and edges together are more constraints
 /// than the surface has motions, and stiff ones would fight. Since gaps are found anew in each increment, what an edge
-/// gives way does not add up: a penalty at which it sinks with 5 % of the press speed leaves it 5 % of an increment's
-/// stroke in the die.
+/// gives way does not add up: a penalty at which it sinks with 2 % of the press speed leaves it 2 % of an increment's
+/// stroke in the die, times the pressure there over the mean one.
 ///
 /// What belongs to the increment (delta, n, w, tau) is found once at X_i and kept for all its stages:
 /// ContactSet. What belongs to a stage (S, S^f) is computed from the stage's positions: ContactAreas.

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/core/error.h>
 #include <retroforge/solver/linear_system.h>
 
 namespace retroforge
@@ -13,6 +14,12 @@ namespace retroforge
     unsigned int max_iterations = 60;
 
     void add_parameters(dealii::ParameterHandler &prm);
+  };
+
+  /// No equilibrium was found: an increment that is shorter may have one that is.
+  struct NoEquilibrium : Error
+  {
+    using Error::Error;
   };
 
   struct NewtonStatistics

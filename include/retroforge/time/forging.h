@@ -15,6 +15,7 @@ namespace retroforge
     std::string  scheme          = "midpoint";
     double       smallest_volume = 0.2;
     double       largest_move    = 0.5;
+    double       largest_slip    = 1.;
     unsigned int max_cuts        = 8;
 
     void add_parameters(dealii::ParameterHandler &prm);
@@ -83,7 +84,21 @@ namespace retroforge
     void change_mesh(const RemeshRecord &remesh, ForgingState &state) const;
 
   private:
-    bool acceptable(const Leg &leg, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const;
+    /// Solves an increment of record.step. @return why it must be shorter, or nothing
+    std::string attempt(const Process<double> &process,
+                        const ForgingState    &state,
+                        IncrementRecord       &record,
+                        NodalVectors<double>  &X_next,
+                        Field<double>         &solution) const;
+    std::string too_much(const Leg                  &leg,
+                         const NodalVectors<double> &X,
+                         const NodalVectors<double> &X_next) const;
+    std::string slips_too_far(const Process<double>      &process,
+                              const IncrementRecord      &record,
+                              const NodalVectors<double> &X,
+                              const NodalVectors<double> &X_next) const;
+    [[noreturn]] void
+         throw_stuck(const IncrementRecord &record, double whole, const std::string &reason) const;
     void remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
     void finish_increment(const Process<double> &process,
                           const IncrementRecord &record,

@@ -20,8 +20,9 @@ namespace retroforge
     std::string         method        = "local";
     unsigned int        every         = 5;
     double              element_size  = 0.;
+    std::string         sizes         = "dies"; ///< uniform, dies
     double              chord_error   = 0.;
-    double              smallest_size = 0.4;
+    double              smallest_size = 0.2;
     double              growth        = 0.3;
     double              fit           = 0.1;
     bool                first_mesh    = false;
@@ -49,11 +50,13 @@ namespace retroforge
 
     /// @param frozen      cells that the last remeshing could not make better, see frozen_cells()
     /// @param increments  since the last remeshing
+    /// @param first       whether no increment has been made yet: then the mesh may be too coarse for its dies
     bool due(const TetMesh              &mesh,
              const NodalVectors<double> &X,
              const DieStates            &states,
              const std::vector<bool>    &frozen,
-             unsigned int                increments) const;
+             unsigned int                increments,
+             bool                        first) const;
 
     /// Cells that remeshing cannot make better, of a mesh just made.
     std::vector<bool> frozen(const TetMesh &mesh) const;
@@ -68,6 +71,9 @@ namespace retroforge
 
     /// Wanted length of edges: near a curved die as its curvature asks for. Refers to this object.
     SizeField size_field(const DieStates &states) const;
+
+    /// Whether a surface edge at a curved die is much longer than wanted there.
+    bool too_coarse(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const;
 
     /// How deep the middles of surface edges whose ends touch a die are inside it, at most [mm]: what the
     /// mesh does not see of the die.
