@@ -36,6 +36,8 @@ namespace retroforge
 
     bool changes_the_run(const std::string &path)
     {
+      if (path == "Design/at")
+        return true;
       for (const char *section : {"Adjoint/", "Check/", "Design/", "Objective", "Output/"})
         if (path.rfind(section, 0) == 0)
           return false;

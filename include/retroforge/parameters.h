@@ -44,9 +44,13 @@ namespace retroforge
 
   struct DesignParameters
   {
-    std::vector<std::string> names = {"material/K"};
+    std::vector<std::string>           names = {"material/K"};
+    std::multimap<std::string, double> at;
 
     void add_parameters(dealii::ParameterHandler &prm);
+
+    /// `names`, and those of `at` that are not among them.
+    std::vector<std::string> all_names() const;
   };
 
   struct ObjectivesParameters
