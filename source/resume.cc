@@ -21,15 +21,17 @@ namespace retroforge
     {
       std::map<std::string, std::string> values;
       std::istringstream                 lines(parameters);
-      std::string                        section;
+      std::vector<std::string>           paths = {""}; // of the sections that are open
       for (std::string line; std::getline(lines, line);)
       {
         line              = trimmed(line);
         const auto equals = line.find('=');
         if (line.rfind("subsection ", 0) == 0)
-          section = trimmed(line.substr(11));
+          paths.push_back(paths.back() + trimmed(line.substr(11)) + "/");
+        else if (line == "end" && paths.size() > 1)
+          paths.pop_back();
         else if (line.rfind("set ", 0) == 0 && equals != std::string::npos)
-          values[section + "/" + trimmed(line.substr(4, equals - 4))] = trimmed(line.substr(equals + 1));
+          values[paths.back() + trimmed(line.substr(4, equals - 4))] = trimmed(line.substr(equals + 1));
       }
       return values;
     }
