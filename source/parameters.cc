@@ -186,6 +186,7 @@ namespace retroforge
     objectives.add_parameters(prm);
     design.add_parameters(prm);
     check.add_parameters(prm);
+    scan.add_parameters(prm);
     output.add_parameters(prm);
   }
 
@@ -270,6 +271,7 @@ namespace retroforge
     billet.check();
     material.check();
     remeshing.check();
+    scan.check();
     if (dies.empty())
       throw Error(
         "Dies/names", "names no die", "a billet is forged by at least one die", "set names = lower, upper");

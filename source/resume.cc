@@ -40,7 +40,7 @@ namespace retroforge
     {
       if (path == "Design/at")
         return true;
-      for (const char *section : {"Adjoint/", "Check/", "Design/", "Objective", "Output/"})
+      for (const char *section : {"Adjoint/", "Check/", "Design/", "Objective", "Output/", "Scan/"})
         if (path.rfind(section, 0) == 0)
           return false;
       return true;
@@ -80,5 +80,20 @@ namespace retroforge
         "its mesh is another one than that in the record of " + directory,
         "a run goes on with the billet it began with",
         "use the same mesh file and the same version of the mesher, or start anew without --resume");
+  }
+
+  bool make_same_results(const std::string &parameters, const std::string &others)
+  {
+    const auto that_matter = [](const std::string &text) {
+      auto values = values_of(text);
+      for (auto entry = values.begin(); entry != values.end();)
+      {
+        const std::string section = entry->first.substr(0, entry->first.find('/'));
+        const bool        matters = section != "Check" && section != "Output" && section != "Scan";
+        entry                     = matters ? std::next(entry) : values.erase(entry);
+      }
+      return values;
+    };
+    return that_matter(parameters) == that_matter(others);
   }
 } // namespace retroforge

@@ -5,6 +5,7 @@
 #include <retroforge/adjoint/check.h>
 #include <retroforge/design/design.h>
 #include <retroforge/objective/objective_parameters.h>
+#include <retroforge/scan/scan_parameters.h>
 #include <retroforge/time/forging.h>
 
 namespace retroforge
@@ -75,6 +76,7 @@ namespace retroforge
     ObjectivesParameters       objectives;
     DesignParameters           design;
     CheckParameters            check;
+    ScanParameters             scan;
     OutputParameters           output;
     AdjointParameters          adjoint;
     RemesherParameters         remeshing;

@@ -173,7 +173,7 @@ namespace retroforge
 
   const std::vector<std::string> &known_commands()
   {
-    static const std::vector<std::string> commands = {"simulate", "gradient", "check"};
+    static const std::vector<std::string> commands = {"simulate", "gradient", "check", "scan"};
     return commands;
   }
 
@@ -214,20 +214,23 @@ namespace retroforge
 
 Usage:
   retroforge COMMAND CASE.prm [--set Section/name=value]... [--at NAME=VALUE]... [--output DIR] [--resume]
-  mpirun -np N retroforge COMMAND CASE.prm ...
+  mpirun -np N retroforge COMMAND CASE.prm ...    (not for scan)
   retroforge --print-parameters | --version | --help
 
 Commands:
   simulate   run the forging and report its objectives
   gradient   simulate, then sweep back: gradients of the objectives with respect to the parameters
   check      compare these gradients with the tangent method and with finite differences
+  scan       vary one design parameter after the other (section Scan), a run for each value, as many at a time as
+             there are cores: how smooth the objectives are, and how true their local gradients
 
 Options:
   --set Section/name=value   replace a parameter of the case; may be repeated, the last one counts
   --at NAME=VALUE            change a design parameter (billet/radius, die upper/offset, ...) on the mesh of the
                              unchanged design; may be repeated; replaces Design/at
   --output DIR               folder of the results (default: CASE-results in the current folder)
-  --resume                   go on with the run in that folder, to the same bits as if it had not been stopped
+  --resume                   go on with the run in that folder, to the same bits as if it had not been stopped;
+                             of a scan, keep the points that are finished
   --print-parameters         write all parameters with their meaning; as a case file they are the defaults
   --version                  write version and commit
   --help                     write this text

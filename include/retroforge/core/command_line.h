@@ -12,7 +12,8 @@ namespace retroforge
   /// [--at NAME=VALUE]... [--resume]`.
   struct CommandLine
   {
-    std::string command; ///< simulate, gradient or check; empty only with one of the three questions below
+    std::string
+      command; ///< simulate, gradient, check or scan; empty only with one of the three questions below
     std::string case_file;
 
     /// Folder of the results. Without --output: the name of the case followed by `-results`, in the
