@@ -149,6 +149,8 @@ def failing_points():
     judge("and say why", all("inside it" in entry["reason"] for entry in found["failed"]) and "inside it" in rows[6]["failure"])
     judge("the others are fitted", objective["values"] == 5 and objective["noise_rms"] is not None)
     judge("without gradients no slopes", objective["slopes"] == 0 and objective["bias"] is None and rows[0]["energy: gradient"] == "")
+    done = run(REPORT, "--no-vtk", "failing")
+    judge("reported", done.returncode == 0 and "inside it" in text_of("failing/report.html"), done.stderr)
     done = run(*command("scan", "all", "--set", "Die upper/point=0, 0, 13", "--set", "Scan/parameter=material/K"))
     judge("all failed", done.returncode == 1 and "5 points, 5 failed" in done.stdout, done.stderr)
 
@@ -197,7 +199,7 @@ def report():
     judge("report", done.returncode == 0, done.stderr)
     if done.returncode == 0:
         page = text_of("whole/report.html")
-        judge("its pictures", page.count("data:image/png;base64") == 2 and "roughness" in page)
+        judge("its pictures", page.count("data:image/png;base64") == 4 and "Roughness" in page)
 
 
 def main():
