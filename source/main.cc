@@ -3,6 +3,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/parameter_list.h>
 #include <retroforge/core/version.h>
+#include <retroforge/scan.h>
 #include <retroforge/simulation.h>
 
 #include <chrono>
@@ -30,12 +31,16 @@ namespace
 
 int main(int argc, char **argv)
 {
+  const auto environment = retroforge::environment_now(); // MPI adds to it
+
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   try
   {
     const auto command = retroforge::CommandLine::parse(argc, argv);
     if (command.help || command.version || command.print_parameters)
       return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0 ? answer(command) : 0;
+    if (command.command == "scan")
+      return retroforge::Scan(command, environment, MPI_COMM_WORLD).run();
     return retroforge::Simulation(command, MPI_COMM_WORLD).run();
   }
   catch (const std::exception &problem)

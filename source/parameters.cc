@@ -127,7 +127,25 @@ namespace retroforge
       "shape: of a box billet/stretch, billet/height, of a cylinder billet/radius, billet/height, of a ring "
       "billet/mu1 to billet/mu4, of a profile `billet/control point I r', `billet/control point I z'. "
       "The gradient by every node of the billet always comes along. Units: none.");
+    prm.add_parameter(
+      "at",
+      at,
+      "Design parameters and values they have instead of the nominal ones, `NAME: VALUE, NAME: VALUE'; any "
+      "that "
+      "the scene offers. The mesh stays that of the nominal design, its nodes moved, and so do increments, "
+      "penalty and sizes that follow from the nominal design. Their gradients come along. Units: those of "
+      "the "
+      "parameters.");
     prm.leave_subsection();
+  }
+
+  std::vector<std::string> DesignParameters::all_names() const
+  {
+    std::vector<std::string> all = names;
+    for (const auto &[name, value] : at)
+      if (std::find(all.begin(), all.end(), name) == all.end())
+        all.push_back(name);
+    return all;
   }
 
   void ObjectivesParameters::add_parameters(dealii::ParameterHandler &prm)
@@ -180,6 +198,7 @@ namespace retroforge
     objectives.add_parameters(prm);
     design.add_parameters(prm);
     check.add_parameters(prm);
+    scan.add_parameters(prm);
     output.add_parameters(prm);
   }
 
@@ -264,6 +283,7 @@ namespace retroforge
     billet.check();
     material.check();
     remeshing.check();
+    scan.check();
     if (dies.empty())
       throw Error(
         "Dies/names", "names no die", "a billet is forged by at least one die", "set names = lower, upper");

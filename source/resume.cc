@@ -21,22 +21,26 @@ namespace retroforge
     {
       std::map<std::string, std::string> values;
       std::istringstream                 lines(parameters);
-      std::string                        section;
+      std::vector<std::string>           paths = {""}; // of the sections that are open
       for (std::string line; std::getline(lines, line);)
       {
         line              = trimmed(line);
         const auto equals = line.find('=');
         if (line.rfind("subsection ", 0) == 0)
-          section = trimmed(line.substr(11));
+          paths.push_back(paths.back() + trimmed(line.substr(11)) + "/");
+        else if (line == "end" && paths.size() > 1)
+          paths.pop_back();
         else if (line.rfind("set ", 0) == 0 && equals != std::string::npos)
-          values[section + "/" + trimmed(line.substr(4, equals - 4))] = trimmed(line.substr(equals + 1));
+          values[paths.back() + trimmed(line.substr(4, equals - 4))] = trimmed(line.substr(equals + 1));
       }
       return values;
     }
 
     bool changes_the_run(const std::string &path)
     {
-      for (const char *section : {"Adjoint/", "Check/", "Design/", "Objective", "Output/"})
+      if (path == "Design/at")
+        return true;
+      for (const char *section : {"Adjoint/", "Check/", "Design/", "Objective", "Output/", "Scan/"})
         if (path.rfind(section, 0) == 0)
           return false;
       return true;
@@ -76,5 +80,20 @@ namespace retroforge
         "its mesh is another one than that in the record of " + directory,
         "a run goes on with the billet it began with",
         "use the same mesh file and the same version of the mesher, or start anew without --resume");
+  }
+
+  bool make_same_results(const std::string &parameters, const std::string &others)
+  {
+    const auto that_matter = [](const std::string &text) {
+      auto values = values_of(text);
+      for (auto entry = values.begin(); entry != values.end();)
+      {
+        const std::string section = entry->first.substr(0, entry->first.find('/'));
+        const bool        matters = section != "Check" && section != "Output" && section != "Scan";
+        entry                     = matters ? std::next(entry) : values.erase(entry);
+      }
+      return values;
+    };
+    return that_matter(parameters) == that_matter(others);
   }
 } // namespace retroforge

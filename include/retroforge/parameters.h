@@ -5,6 +5,7 @@
 #include <retroforge/adjoint/check.h>
 #include <retroforge/design/design.h>
 #include <retroforge/objective/objective_parameters.h>
+#include <retroforge/scan/scan_parameters.h>
 #include <retroforge/time/forging.h>
 
 namespace retroforge
@@ -46,9 +47,13 @@ namespace retroforge
 
   struct DesignParameters
   {
-    std::vector<std::string> names = {"material/K"};
+    std::vector<std::string>           names = {"material/K"};
+    std::multimap<std::string, double> at;
 
     void add_parameters(dealii::ParameterHandler &prm);
+
+    /// `names`, and those of `at` that are not among them.
+    std::vector<std::string> all_names() const;
   };
 
   struct ObjectivesParameters
@@ -73,6 +78,7 @@ namespace retroforge
     ObjectivesParameters       objectives;
     DesignParameters           design;
     CheckParameters            check;
+    ScanParameters             scan;
     OutputParameters           output;
     AdjointParameters          adjoint;
     RemesherParameters         remeshing;

@@ -16,4 +16,8 @@ namespace retroforge
                        const NodalVectors<double> &X_0,
                        const std::vector<Die>     &dies,
                        const std::string          &directory);
+
+  /// Whether two complete inputs give the same results, gradients included: all of them is equal but for the
+  /// sections Check, Output and Scan.
+  bool make_same_results(const std::string &parameters, const std::string &others);
 } // namespace retroforge

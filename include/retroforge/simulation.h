@@ -64,8 +64,12 @@ namespace retroforge
     Parameters      parameters_;
     const TetMesh   billet_;
     Process<double> nominal_;
-    ForgingModel    model_;
     Design          design_;
+
+    std::vector<double>  mu_;
+    Process<double>      process_;
+    NodalVectors<double> X_0_;
+    ForgingModel         model_;
 
     Objectives               objectives_;
     std::vector<Combination> combinations_;
@@ -73,9 +77,6 @@ namespace retroforge
     Remesher                 remesher_;
     Forging                  forging_;
 
-    std::vector<double>          mu_;
-    Process<double>              process_;
-    NodalVectors<double>         X_0_;
     std::vector<IncrementRecord> records_;
     ForgingState                 forged_;
     ObjectiveTrace               trace_;

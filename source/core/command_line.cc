@@ -5,7 +5,10 @@
 #include <retroforge/core/nearest_name.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <sstream>
 #include <utility>
 
 namespace retroforge
@@ -13,7 +16,7 @@ namespace retroforge
   namespace
   {
     const std::vector<std::string> known_options =
-      {"--set", "--output", "--resume", "--print-parameters", "--version", "--help"};
+      {"--set", "--at", "--output", "--resume", "--print-parameters", "--version", "--help"};
 
     const std::string where = "command line";
     const std::string usage = "retroforge --help shows the usage";
@@ -82,10 +85,38 @@ namespace retroforge
       return {assignment.substr(0, equals), assignment.substr(equals + 1)};
     }
 
+    bool is_number(const std::string &text)
+    {
+      std::istringstream in(text);
+      double             value = 0.;
+      return (in >> value) && std::isfinite(value) && in.peek() == EOF;
+    }
+
+    /// The last value of a name counts.
+    void take_design_value(CommandLine &line, const std::string &assignment)
+    {
+      const std::size_t equals = assignment.find('=');
+      const std::string name   = assignment.substr(0, equals);
+      const std::string value  = equals == std::string::npos ? "" : assignment.substr(equals + 1);
+      if (name.empty() || name.find_first_of(",:") != std::string::npos || !is_number(value))
+        throw Error(where,
+                    "--at " + assignment + " gives no number to a design parameter",
+                    "it must read NAME=VALUE, with names as in Design/parameters",
+                    "write for instance --at billet/radius=20.5, in quotes where the name contains spaces");
+      const auto same =
+        std::find_if(line.at.begin(), line.at.end(), [&](const auto &other) { return other.first == name; });
+      if (same == line.at.end())
+        line.at.emplace_back(name, value);
+      else
+        same->second = value;
+    }
+
     void take_option(CommandLine &line, Arguments &arguments, const std::string &option)
     {
       if (option == "--set")
         line.overrides.push_back(split_override(arguments.value(option, "an assignment Section/name=value")));
+      else if (option == "--at")
+        take_design_value(line, arguments.value(option, "a design parameter and its value, NAME=VALUE"));
       else if (option == "--output")
         line.output_directory = arguments.value(option, "the folder of the results");
       else if (option == "--resume")
@@ -142,7 +173,7 @@ namespace retroforge
 
   const std::vector<std::string> &known_commands()
   {
-    static const std::vector<std::string> commands = {"simulate", "gradient", "check"};
+    static const std::vector<std::string> commands = {"simulate", "gradient", "check", "scan"};
     return commands;
   }
 
@@ -166,23 +197,40 @@ namespace retroforge
     return line;
   }
 
+  std::vector<std::pair<std::string, std::string>> CommandLine::settings() const
+  {
+    auto        settings = overrides;
+    std::string design;
+    for (const auto &[name, value] : at)
+      design += (design.empty() ? "" : ", ") + name + ": " + value;
+    if (!at.empty())
+      settings.emplace_back("Design/at", design);
+    return settings;
+  }
+
   std::string help_text()
   {
     return R"(Retroforge simulates hot metal forging in 3D and computes exact gradients of its results.
 
 Usage:
-  retroforge COMMAND CASE.prm [--set Section/name=value]... [--output DIR]
-  mpirun -np N retroforge COMMAND CASE.prm ...
+  retroforge COMMAND CASE.prm [--set Section/name=value]... [--at NAME=VALUE]... [--output DIR] [--resume]
+  mpirun -np N retroforge COMMAND CASE.prm ...    (not for scan)
   retroforge --print-parameters | --version | --help
 
 Commands:
   simulate   run the forging and report its objectives
   gradient   simulate, then sweep back: gradients of the objectives with respect to the parameters
   check      compare these gradients with the tangent method and with finite differences
+  scan       vary one design parameter after the other (section Scan), a run for each value, as many at a time as
+             there are cores: how smooth the objectives are, and how true their local gradients
 
 Options:
   --set Section/name=value   replace a parameter of the case; may be repeated, the last one counts
+  --at NAME=VALUE            change a design parameter (billet/radius, die upper/offset, ...) on the mesh of the
+                             unchanged design; may be repeated; replaces Design/at
   --output DIR               folder of the results (default: CASE-results in the current folder)
+  --resume                   go on with the run in that folder, to the same bits as if it had not been stopped;
+                             of a scan, keep the points that are finished
   --print-parameters         write all parameters with their meaning; as a case file they are the defaults
   --version                  write version and commit
   --help                     write this text
@@ -190,6 +238,7 @@ Options:
 Examples:
   retroforge simulate upsetting.prm
   retroforge gradient upsetting.prm --set "Die upper/friction=0.4" --output rough-die
+  retroforge gradient upsetting.prm --at billet/radius=20.2 --output wider
 )";
   }
 } // namespace retroforge

@@ -143,6 +143,43 @@ namespace retroforge
     return mu;
   }
 
+  namespace
+  {
+    /// Shapes are checked where they are made.
+    void check_value(const DesignParameter &parameter, const double value)
+    {
+      const bool may_vanish = parameter.kind == Kind::friction || parameter.kind == Kind::strain_rate ||
+                              parameter.kind == Kind::slip;
+      const bool is_free  = parameter.kind == Kind::offset || parameter.kind == Kind::billet;
+      const bool is_sound = std::isfinite(value) && (is_free || value > 0. || (may_vanish && value == 0.)) &&
+                            (parameter.kind != Kind::sensitivity || value <= 1.);
+      if (!is_sound)
+        throw Error("Design/at",
+                    "gives " + parameter.name + " the value " + std::to_string(value),
+                    parameter.kind == Kind::sensitivity ? "it lies above 0 and up to 1"
+                    : may_vanish                        ? "it is not negative"
+                                                        : "it is positive",
+                    "stay closer to the nominal value, " + std::to_string(parameter.nominal));
+    }
+  } // namespace
+
+  std::vector<double> Design::at(const std::multimap<std::string, double> &values) const
+  {
+    std::vector<double> mu = nominal();
+    for (unsigned int j = 0; j < parameters_.size(); ++j)
+      if (const auto found = values.find(parameters_[j].name); found != values.end())
+      {
+        if (values.count(parameters_[j].name) > 1)
+          throw Error("Design/at",
+                      "'" + parameters_[j].name + "' stands twice",
+                      "each parameter has one value",
+                      "leave one of them out");
+        check_value(parameters_[j], found->second);
+        mu[j] = found->second;
+      }
+    return mu;
+  }
+
   template <typename Number>
   std::vector<Number> Design::shape_of(const std::vector<Number> &mu) const
   {

@@ -9,10 +9,11 @@
 namespace retroforge
 {
   /// What the user asked for:  `retroforge COMMAND CASE.prm [--set Section/name=value]... [--output DIR]
-  /// [--resume]`.
+  /// [--at NAME=VALUE]... [--resume]`.
   struct CommandLine
   {
-    std::string command; ///< simulate, gradient or check; empty only with one of the three questions below
+    std::string
+      command; ///< simulate, gradient, check or scan; empty only with one of the three questions below
     std::string case_file;
 
     /// Folder of the results. Without --output: the name of the case followed by `-results`, in the
@@ -22,7 +23,13 @@ namespace retroforge
     /// Full path of a parameter (`Contact/Friction/coefficient`) and its new value, in the order given.
     std::vector<std::pair<std::string, std::string>> overrides;
 
-    bool resume = false; ///< asked to go on from the record in output_directory; refused for now
+    /// Design parameters (`billet/radius`) and their values, each name once.
+    std::vector<std::pair<std::string, std::string>> at;
+
+    /// `overrides`, and `at` as the parameter Design/at: all that replaces what the case says.
+    std::vector<std::pair<std::string, std::string>> settings() const;
+
+    bool resume = false; ///< asked to go on with what is in output_directory
 
     bool print_parameters = false; ///< write the annotated parameters and stop
     bool version          = false; ///< write version and commit and stop

@@ -48,7 +48,10 @@ namespace retroforge
 
     const std::vector<DesignParameter> &parameters() const { return parameters_; }
     std::vector<double>                 nominal() const;
-    const std::string                  &die_name(const unsigned int d) const { return dies_[d].name; }
+    /// The nominal values but for those given by name, which are among parameters().
+    /// @throws Error  for values that no process has, as a negative friction
+    std::vector<double> at(const std::multimap<std::string, double> &values) const;
+    const std::string  &die_name(const unsigned int d) const { return dies_[d].name; }
 
     template <typename Number>
     NodalVectors<Number> positions(const std::vector<Number> &mu) const;

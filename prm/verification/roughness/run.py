@@ -7,8 +7,10 @@
 coarser meshes, 40 points each, and the picture. `third`: the same laws and increments on a mesh between these and the
 default, 12 points each.
 The die's offset is scanned over 1 % of the billet's size to either side. Roughness: the adjoint's local slopes against
-the slope of a cubic fitted to the energies. Bias: the fit against the law of approach 1 at vanishing increments.
+the slope of a cubic fitted to the energies, by `retroforge scan`. Bias: the fit against the law of approach 1 at vanishing increments.
 """
+import csv
+import json
 import os
 import subprocess
 import sys
@@ -19,7 +21,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", ".."))
 import case_tools  # noqa: E402
 
-RANGE = 0.3  # mm, 1 % of 30
+RANGE = 0.01  # of the billet's 30 mm
 SHARP = {"Contact/layer": 0}
 LAWS = {f"approach {k}": {"Contact/approach": k, **SHARP} for k in (1, 2, 4, 8)}
 LAWS["default"] = {}
@@ -32,26 +34,35 @@ GRID = {"default": [(DEFAULT_SIZE, 0, 12, ("default", "approach 1"))],
         "third": [(5, increments, 12, tuple(LAWS)) for increments in INCREMENTS]}
 
 
-def scan(build, size, increments, settings, half_width, points):
-    program = os.path.join(build, "tests", "verification", "roughness", "roughness_scan")
-    settings = {"Billet/element size": size, "Press/increments": increments, **settings}
-    done = subprocess.run([program, os.path.join(HERE, "case.prm"), str(-half_width), str(half_width), str(points)]
-                          + [f"{name}={value}" for name, value in settings.items()], capture_output=True, text=True)
-    if done.returncode:
-        sys.exit(done.stderr)
-    return np.genfromtxt(done.stdout.splitlines(), delimiter=",", names=True, ndmin=1)
+def scan(build, size, increments, settings, points):
+    """Columns of scan.csv, and the summary of the first point."""
+    settings = {"Billet/element size": size, "Press/increments": increments, "Scan/points": points, "Scan/range": RANGE,
+                **settings}
+    arguments = [os.path.join(build, "retroforge"), "scan", os.path.join(HERE, "case.prm"), "--output", "scan"]
+    for name, value in settings.items():
+        arguments += ["--set", f"{name}={value}"]
+    done = subprocess.run(arguments, capture_output=True, text=True)
+    with open(os.path.join("scan", "scan.json")) as file:
+        if done.returncode or json.load(file)["failed"]:
+            sys.exit(done.stdout[-4000:] + done.stderr)
+    with open(os.path.join("scan", "scan.csv"), newline="") as file:
+        rows = list(csv.DictReader(file))
+    with open(os.path.join("scan", "points", "die_upper_offset_001", "summary.json")) as file:
+        first = json.load(file)
+    names = {"mu": "value", "energy": "energy [mJ]", "gradient": "energy: gradient", "slope": "energy: slope of the fit"}
+    return {key: np.array([float(row[name]) for row in rows]) for key, name in names.items()}, first
 
 
 def evaluate(line):
     """(rms and largest relative deviation of the local slopes, energy of the fit in the middle)"""
-    fit = np.polynomial.Polynomial.fit(line["mu"], line["energy"], 3)
-    deviation = line["gradient"] / fit.deriv()(line["mu"]) - 1.0
-    return np.sqrt(np.mean(deviation**2)), np.abs(deviation).max(), fit(0.0), deviation
+    deviation = line["gradient"] / line["slope"] - 1.0
+    middle = np.polynomial.Polynomial.fit(line["mu"], line["energy"], 3)(0.0)
+    return np.sqrt(np.mean(deviation**2)), np.abs(deviation).max(), middle, deviation
 
 
 def reference(build, size):
     """Energy of approach 1 at vanishing increments, extrapolated linearly from 67 and 134; a fit takes out its own kinks."""
-    coarse, fine = (evaluate(scan(build, size, n, SHARP, RANGE, 6))[2] for n in (67, 134))
+    coarse, fine = (evaluate(scan(build, size, n, SHARP, 6)[0])[2] for n in (67, 134))
     return 2.0 * fine - coarse
 
 
@@ -80,10 +91,10 @@ def main():
         if size not in references:
             references[size] = reference(build, size)
         for name in laws:
-            line = scan(build, size, increments, LAWS[name], RANGE, points)
+            line, first = scan(build, size, increments, LAWS[name], points)
             rms, largest, energy, _ = evaluate(line)
             bias = energy / references[size] - 1.0
-            print(f"| {int(line['nodes'][0])} | {int(line['increments'][0])} | {name} | {rms:.2%} | {largest:.2%} "
+            print(f"| {first['mesh']['nodes']} | {first['increments']} | {name} | {rms:.2%} | {largest:.2%} "
                   f"| {bias:+.2%} |", flush=True)
             if size == MESHES[1]:
                 lines.setdefault(increments, {})[name] = line

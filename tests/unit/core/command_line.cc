@@ -23,7 +23,7 @@ void show(const std::vector<const char *> &words)
     std::cout << "command '" << line.command << "' case '" << line.case_file << "' output '"
               << line.output_directory << "' resume " << line.resume << " print " << line.print_parameters
               << " version " << line.version << " help " << line.help << '\n';
-    for (const auto &[path, value] : line.overrides)
+    for (const auto &[path, value] : line.settings())
       std::cout << "  [" << path << "] <- [" << value << "]\n";
   }
   catch (const Error &error)
@@ -38,6 +38,14 @@ int main()
   show({"retroforge", "gradient", "a.prm", "--set", "Dies/upper die/offset=1 = 2", "--set=Time/steps=3"});
   show({"retroforge", "--resume", "check", "--output", "some dir", "a.prm"});
   show({"retroforge", "check", "a.prm", "--output=x"});
+  show({"retroforge",
+        "gradient",
+        "a.prm",
+        "--at",
+        "die upper/offset=-1e-2",
+        "--at=billet/radius=20",
+        "--at",
+        "billet/radius=21"});
   show({"retroforge", "--print-parameters"});
   show({"retroforge", "simulate", "a.prm", "--print-parameters"});
   show({"retroforge", "--version"});
@@ -56,6 +64,9 @@ int main()
   show({"retroforge", "simulate", "a.prm", "--set", "Time/steps"});
   show({"retroforge", "simulate", "a.prm", "--set", "=3"});
   show({"retroforge", "simulate", "a.prm", "--resume=yes"});
+  show({"retroforge", "simulate", "a.prm", "--at", "billet/radius"});
+  show({"retroforge", "simulate", "a.prm", "--at", "billet/radius=20mm"});
+  show({"retroforge", "simulate", "a.prm", "--at", "=20"});
 
   // one swap, one case change (free), one letter added and one replaced
   std::cout << "edits: " << edit_distance("check", "chekc") << edit_distance("Check", "check")
