@@ -140,7 +140,8 @@ namespace retroforge
 
     bool is_there(const ContactPoint &point, const unsigned int n_nodes)
     {
-      return point.nodes[0] < n_nodes && (point.is_node() || point.nodes[1] < n_nodes);
+      return point.nodes[0] < n_nodes &&
+             (point.is_node() || (point.nodes[0] < point.nodes[1] && point.nodes[1] < n_nodes));
     }
 
     bool is_there(const ContactPair &pair, const unsigned int n_nodes, const RecordShape &shape)
@@ -272,8 +273,12 @@ namespace retroforge
                               std::to_string(kind[i]) + " of a die of " +
                               std::to_string(shape.die_facets[pairs[i].die]) + " facets and " +
                               std::to_string(DieFeature::n_kinds) + " kinds, counted from 0");
-        throw hdf5::Failure(pair + "node " + std::to_string(pairs[i].point.nodes[0]) + ", node " +
-                            std::to_string(pairs[i].point.nodes[1]) + " and die " +
+        const auto &[first, second] = pairs[i].point.nodes;
+        throw hdf5::Failure(pair +
+                            (pairs[i].point.is_node() ? "node " + std::to_string(first)
+                                                      : "the edge of nodes " + std::to_string(first) +
+                                                          " and " + std::to_string(second)) +
+                            " and die " +
                             std::to_string(pairs[i].die) + " where there are " + std::to_string(n_nodes) +
                             " nodes and " + std::to_string(shape.die_facets.size()) +
                             " dies, counted from 0");

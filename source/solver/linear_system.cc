@@ -236,10 +236,11 @@ namespace retroforge
 
   unsigned int LinearSystem::position_of(const unsigned int local_row, const NodeIndex column) const
   {
-    const int begin = C_->row_begin[local_row];
+    const int begin = C_->row_begin[local_row], end = C_->row_begin[local_row + 1];
     int       entry = begin;
-    while (C_->node_of(entry) != column)
+    while (entry < end && C_->node_of(entry) != column)
       ++entry;
+    AssertThrow(entry < end, ExcMessage("A contact point lies between nodes that share no cell."));
     return entry - begin;
   }
 
