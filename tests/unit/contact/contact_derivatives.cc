@@ -11,8 +11,10 @@
 // - the same within a layer, whose approach speed is smooth through zero and slower than delta/tau outside;
 // - gaps, ramps, areas under two tilted dies: <A x, y> = <x, A^T y> for A the forward derivative, where the
 // smooth ramp,
-//   the sharp one and the dies' displacements count; the same with a triangulated, curved die, where the
-//   normals change too;
+//   the sharp one and the dies' displacements count; the same with a triangulated, curved die, as a smooth
+//   surface and as facets: there normals change, the die's vertices count, and middles of edges are contact
+//   points, with a penalty of their own, that let nodes touch in their place: by the formula a node's ramp is
+//   1 - (1 - w) product (1 - w_edge), an edge's area the stiffness times a third of its faces;
 // - the smooth ramp joins 1 and 0 with zero slope and curvature.
 
 #include <deal.II/base/mpi.h>
@@ -20,7 +22,10 @@
 #include <retroforge/contact/contact.h>
 #include <retroforge/mesh/billet.h>
 
+#include <algorithm>
+
 #include "../element/element_test_tools.h"
+#include "wavy_sheet.h"
 
 using namespace retroforge;
 
@@ -187,6 +192,14 @@ double check_nodes(const std::string &title,
   return errors.largest();
 }
 
+/// What the lower of the two dies is.
+enum class Lower
+{
+  plane,
+  smooth,
+  facets
+};
+
 /// The corner of a billet between two tilted dies, its nodes scattered.
 struct CornerScene
 {
@@ -197,6 +210,7 @@ struct CornerScene
   std::vector<DieState<double>> states;
   std::vector<ContactPair>      pairs;
   FrictionRamp                  ramp;
+  double                        edge_stiffness = 0.3;
 
   static TetMesh make_mesh()
   {
@@ -208,28 +222,7 @@ struct CornerScene
     return make_billet(parameters, MPI_COMM_SELF);
   }
 
-  /// A wavy sheet under the corner, its edges and vertices included; normals up.
-  static TriangleSurface wavy_sheet()
-  {
-    const unsigned int    n = 8;
-    NodalVectors<double>  x;
-    std::vector<Triangle> t;
-    for (unsigned int j = 0; j <= n; ++j)
-      for (unsigned int i = 0; i <= n; ++i)
-      {
-        const double a = -8. + 16. * i / n, b = -8. + 16. * j / n;
-        x.push_back(Vec3({a, b, 0.1 + 0.3 * std::sin(a + 0.4) * std::cos(0.8 * b)}));
-      }
-    for (unsigned int j = 0; j < n; ++j)
-      for (unsigned int i = 0; i < n; ++i)
-      {
-        const unsigned int k = j * (n + 1) + i;
-        t.insert(t.end(), {{{k, k + 1, k + n + 2}}, {{k, k + n + 2, k + n + 1}}});
-      }
-    return TriangleSurface("sheet", x, t);
-  }
-
-  CornerScene(const FrictionRamp &ramp, Random &random, const bool curved)
+  CornerScene(const FrictionRamp &ramp, Random &random, const Lower lower)
       : mesh(make_mesh()), topology(mesh), X(mesh.X), ramp(ramp)
   {
     for (Vec3 &x : X)
@@ -237,10 +230,32 @@ struct CornerScene
     const Vec3 up = Vec3({0.1, -0.15, 1.}), side = Vec3({-1., 0.1, 0.2});
     dies = {Die("lower", Vec3({0., 0., 0.1}), up / up.norm()),
             Die("side", Vec3({5., 0., 0.}), side / side.norm())};
-    if (curved)
-      dies[0] = Die("lower", wavy_sheet(), 2.);
+    if (lower != Lower::plane)
+      dies[0] = Die("lower", wavy_sheet(), 2., {lower == Lower::smooth, 60.});
     states = {{Vec3(), 0.1 * random.vector(), 0.3, {}}, {Vec3(), 0.1 * random.vector(), 0.2, {}}};
-    pairs  = find_contact_pairs(topology, dies, states, X, ramp, 1.5 * ramp.width);
+    pairs  = find_contact_pairs(topology, dies, states, X, ramp, 1.5 * ramp.width, true);
+  }
+
+  template <typename Number>
+  ContactSet<Number> contact(const std::vector<DieState<Number>> &states, const NodalVectors<Number> &X) const
+  {
+    return make_contact_set(mesh, topology, dies, states, pairs, ramp, Number(0.3), X, 0., edge_stiffness);
+  }
+};
+
+/// What moves along a direction.
+struct Moved
+{
+  bool nodes, dies, vertices;
+
+  std::string name() const
+  {
+    std::string name;
+    for (const auto &[moves, what] :
+         {std::make_pair(nodes, "nodes"), std::make_pair(dies, "dies"), std::make_pair(vertices, "vertices")})
+      if (moves)
+        name += (name.empty() ? "" : " and ") + std::string(what);
+    return name;
   }
 };
 
@@ -275,34 +290,40 @@ Vector3<Dual> with_direction(const Vec3 &x, const Vec3 &x_dot)
 }
 
 /// One random direction of nodes and dies, and the set and areas along it.
-void check_mesh(const CornerScene &scene,
-                Random            &random,
-                const bool         move_nodes,
-                const bool         move_dies,
-                Errors            &errors)
+void check_mesh(const CornerScene &scene, Random &random, const Moved &moved, Errors &errors)
 {
   NodalVectors<double> X_dot(scene.X.size());
   NodalVectors<Dual>   X;
   for (std::size_t k = 0; k < scene.X.size(); ++k)
   {
-    X_dot[k] = move_nodes ? random.vector() : Vec3();
+    X_dot[k] = moved.nodes ? random.vector() : Vec3();
     X.push_back(with_direction(scene.X[k], X_dot[k]));
   }
-  std::vector<Vec3>           displacement_dot;
-  std::vector<DieState<Dual>> states;
-  for (const auto &state : scene.states)
+  std::vector<Vec3>                 displacement_dot;
+  std::vector<NodalVectors<double>> vertices_dot;
+  std::vector<DieState<Dual>>       states;
+  for (unsigned int d = 0; d < scene.dies.size(); ++d)
   {
-    displacement_dot.push_back(move_dies ? random.vector() : Vec3());
+    const DieState<double> &state = scene.states[d];
+    displacement_dot.push_back(moved.dies ? random.vector() : Vec3());
     states.push_back({with_direction(state.velocity, Vec3()),
                       with_direction(state.displacement, displacement_dot.back()),
                       Dual(state.friction),
                       {}});
+    vertices_dot.emplace_back();
+    if (!scene.dies[d].surface())
+      continue;
+    auto vertices = std::make_shared<NodalVectors<Dual>>();
+    for (const Vec3 &x : scene.dies[d].surface()->vertices())
+    {
+      vertices_dot[d].push_back(moved.vertices ? random.vector() : Vec3());
+      vertices->push_back(with_direction(x, vertices_dot[d].back()));
+    }
+    states[d].vertices = vertices;
   }
-  const auto contact = make_contact_set(
-    scene.mesh, scene.topology, scene.dies, scene.states, scene.pairs, scene.ramp, 0.3, scene.X);
-  const auto moving =
-    make_contact_set(scene.mesh, scene.topology, scene.dies, states, scene.pairs, scene.ramp, Dual(0.3), X);
-  const auto areas = contact_areas(scene.mesh, scene.topology, moving, X);
+  const auto contact = scene.contact(scene.states, scene.X);
+  const auto moving  = scene.contact(states, X);
+  const auto areas   = contact_areas(scene.mesh, scene.topology, moving, X);
 
   const std::size_t    n = scene.pairs.size();
   ContactSetBar        bar(n);
@@ -329,11 +350,9 @@ void check_mesh(const CornerScene &scene,
   reverse_contact_set(scene.dies, scene.states, contact, scene.ramp, scene.X, bar, X_bar, sensitivity);
   double backward = dot(X_dot, X_bar);
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
-    backward += dot(displacement_dot[d], sensitivity.dies[d].displacement);
-  errors.compare(std::string(move_nodes ? "nodes" : "") + (move_nodes && move_dies ? " and " : "") +
-                   (move_dies ? "dies" : ""),
-                 backward,
-                 forward);
+    backward += dot(displacement_dot[d], sensitivity.dies[d].displacement) +
+                dot(vertices_dot[d], sensitivity.die_vertices[d]);
+  errors.compare(moved.name(), backward, forward);
   // All vertices moved alike are a displacement of the die.
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
     if (scene.dies[d].surface())
@@ -346,14 +365,72 @@ void check_mesh(const CornerScene &scene,
     }
 }
 
-double check_meshes(const FrictionRamp &ramp, const bool curved)
+/// Own ramps of points, not those that edges give to nodes.
+std::vector<double> own_ramps(const CornerScene &scene, const ContactSet<double> &contact)
 {
+  std::vector<double> ramps;
+  for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+    ramps.push_back(scene.ramp(contact.projections[p].delta, contact.pairs[p].touching));
+  return ramps;
+}
+
+/// Counts pairs of edges and nodes that only edges let touch; compares nodes' ramps and edges' areas with the
+/// formulas.
+void check_edges(const CornerScene &scene, const ContactSet<double> &contact, Errors &errors)
+{
+  const std::vector<double> own     = own_ramps(scene, contact);
+  unsigned int              n_edges = 0, n_touching = 0, n_by_edges = 0, n_by_one = 0;
+  for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+  {
+    const ContactPair &pair = contact.pairs[p];
+    n_edges += !pair.point.is_node();
+    n_touching += !pair.point.is_node() && own[p] > 0.;
+    if (!pair.point.is_node())
+      continue;
+    double       free = 1. - own[p];
+    unsigned int n    = 0;
+    for (unsigned int q = 0; q < contact.pairs.size(); ++q)
+    {
+      const ContactPair &other = contact.pairs[q];
+      if (other.point.is_node() || other.die != pair.die || own[q] == 0. ||
+          (other.point.nodes[0] != pair.point.nodes[0] && other.point.nodes[1] != pair.point.nodes[0]))
+        continue;
+      free *= 1. - own[q];
+      ++n;
+    }
+    errors.compare("ramps of nodes at edges", contact.ramps[p], 1. - free);
+    n_by_edges += own[p] == 0. && contact.ramps[p] > 0.;
+    n_by_one += n == 1;
+  }
+  const ContactAreas<double> areas = contact_areas(scene.mesh, scene.topology, contact, scene.X);
+  for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+    if (const auto &nodes = contact.pairs[p].point.nodes; !contact.pairs[p].point.is_node())
+    {
+      double thirds = 0.;
+      for (const BoundaryFace &face : scene.mesh.faces)
+        if (const auto &c = face.nodes;
+            scene.mesh.is_surface(face) &&
+            std::count(c.begin(), c.end(), nodes[0]) + std::count(c.begin(), c.end(), nodes[1]) == 2)
+          thirds += cross(scene.X[c[1]] - scene.X[c[0]], scene.X[c[2]] - scene.X[c[0]]).norm() / 6.;
+      errors.compare("areas of edges", areas.S[p], scene.edge_stiffness * thirds);
+    }
+  std::cout << "  middles of edges are points: " << (n_edges > 0 ? "yes, " : "none")
+            << (n_edges > 0 ? std::to_string(n_edges) : "") << "\n";
+  if (n_edges > 0)
+    std::cout << "  edges that touch: " << (n_touching > 3 ? "yes, " : "NO, ") << n_touching
+              << "\n  nodes that only edges let touch: " << (n_by_edges > 1 ? "yes, " : "NO, ") << n_by_edges
+              << "\n  nodes with one edge that touches: " << (n_by_one > 1 ? "yes, " : "NO, ") << n_by_one
+              << std::endl;
+}
+
+double check_meshes(const FrictionRamp &ramp, const Lower lower)
+{
+  const bool        curved = lower != Lower::plane;
   Random            random;
   Errors            errors;
-  const CornerScene scene(ramp, random, curved);
-  const auto        contact =
-    make_contact_set(scene.mesh, scene.topology, scene.dies, scene.states, scene.pairs, ramp, 0.3, scene.X);
-  unsigned int n_partial = 0, n_faces[2] = {0, 0};
+  const CornerScene scene(ramp, random, lower);
+  const auto        contact   = scene.contact(scene.states, scene.X);
+  unsigned int      n_partial = 0, n_faces[2] = {0, 0};
   for (const double w : contact.ramps)
     n_partial += w > 0. && w < 1.;
   for (const auto &face : contact.friction_faces)
@@ -362,17 +439,26 @@ double check_meshes(const FrictionRamp &ramp, const bool curved)
   for (const ContactPair &pair : scene.pairs)
     ++n_kind[pair.feature.kind];
   std::cout << (ramp.sharp ? "sharp" : "smooth") << " ramp under "
-            << (curved ? "a curved and a tilted die" : "two tilted dies") << std::endl
+            << (lower == Lower::plane    ? "two tilted dies"
+                : lower == Lower::smooth ? "a curved and a tilted die"
+                                         : "a die of facets and a tilted one")
+            << std::endl
             << "  friction faces on both dies: " << (n_faces[0] > 3 && n_faces[1] > 3 ? "yes" : "NO")
             << std::endl
-            << "  nodes on edges or vertices of a die: " << (n_kind[0] < scene.pairs.size() ? "some" : "none")
-            << std::endl
+            << "  points on edges or vertices of a die: "
+            << (n_kind[0] < scene.pairs.size() ? "some" : "none") << std::endl
             << "  nodes within the ramp: " << (n_partial > 3 ? "some" : "none") << std::endl;
+  check_edges(scene, contact, errors);
   for (unsigned int k = 0; k < 5; ++k)
   {
-    check_mesh(scene, random, true, true, errors);
-    check_mesh(scene, random, true, false, errors);
-    check_mesh(scene, random, false, true, errors);
+    check_mesh(scene, random, {true, true, false}, errors);
+    check_mesh(scene, random, {true, false, false}, errors);
+    check_mesh(scene, random, {false, true, false}, errors);
+    if (curved)
+    {
+      check_mesh(scene, random, {false, false, true}, errors);
+      check_mesh(scene, random, {true, true, true}, errors);
+    }
   }
   errors.print(1e-12);
   return errors.largest();
@@ -456,10 +542,9 @@ int main(int argc, char **argv)
   std::cout << "potential" << std::endl;
   potential.print(1e-9);
 
-  largest = std::max(largest, check_meshes({0.9, false}, false));
-  largest = std::max(largest, check_meshes({0.9, true}, false));
-  largest = std::max(largest, check_meshes({0.9, false}, true));
-  largest = std::max(largest, check_meshes({0.9, true}, true));
+  for (const Lower lower : {Lower::plane, Lower::smooth, Lower::facets})
+    for (const bool sharp : {false, true})
+      largest = std::max(largest, check_meshes({lower == Lower::plane ? 0.9 : 0.4, sharp}, lower));
   check_ramp();
   check_layer();
   std::cout << "FIGURE contact_derivative_error " << largest << std::endl;

@@ -6,7 +6,7 @@
 // value, put together as a backward sweep does it, against dual numbers in each group of inputs alone
 // (positions at the increment's start and at its stage, velocities, bubbles, laws, dies, approach time,
 // speed), and the Taylor order along all of them. Windows cut increments, so that an increment's part of the
-// window counts.
+// window counts. The same with a smooth, curved die, middles of edges among the points.
 
 #include <deal.II/base/mpi.h>
 
@@ -16,6 +16,7 @@
 #include <retroforge/objective/energy.h>
 #include <retroforge/objective/fold.h>
 
+#include "../contact/wavy_sheet.h"
 #include "objective_test_tools.h"
 
 using namespace retroforge;
@@ -101,7 +102,7 @@ struct PathProblem
   PathInputs<double>                                 at;
   std::array<std::vector<ContactPair>, n_increments> pairs;
   std::array<ActiveSet, n_increments>                active;
-  double                                             layer = 0.4;
+  double                                             layer = 0.4, edge_stiffness = 0.3;
 
   static TetMesh make_mesh()
   {
@@ -112,15 +113,16 @@ struct PathProblem
     return make_billet(parameters, MPI_COMM_WORLD);
   }
 
-  static std::vector<Die> make_dies()
+  static std::vector<Die> make_dies(const bool curved)
   {
     const Vec3 up = Vec3({0.1, -0.15, 1.}), side = Vec3({-1., 0.1, 0.2});
-    return {Die("lower", Vec3({0., 0., 0.1}), up / up.norm()),
+    return {curved ? Die("lower", wavy_sheet(), 2., {true, 60.})
+                   : Die("lower", Vec3({0., 0., 0.1}), up / up.norm()),
             Die("side", Vec3({5., 0., 0.}), side / side.norm())};
   }
 
-  explicit PathProblem(Random &random)
-      : scene(make_mesh(), make_dies(), MPI_COMM_WORLD), at(empty_inputs<double>(scene))
+  PathProblem(Random &random, const bool curved)
+      : scene(make_mesh(), make_dies(curved), MPI_COMM_WORLD), at(empty_inputs<double>(scene))
   {
     at.physics.law     = {1.3, 0.4, 0.2};
     at.physics.contact = {2., 0.3};
@@ -139,8 +141,8 @@ struct PathProblem
       }
       for (Vec3 &beta : state.W.beta)
         beta = 0.3 * random.vector();
-      pairs[i] =
-        find_contact_pairs(scene.topology, scene.dies, at.physics.dies, state.X, ramp, 1.5 * ramp.width);
+      pairs[i] = find_contact_pairs(
+        scene.topology, scene.dies, at.physics.dies, state.X, ramp, 1.5 * ramp.width, true);
       active[i] = Stage<double>(scene, at.physics, contact(at, i), state.Y).decide_active(state.W);
     }
   }
@@ -162,7 +164,18 @@ struct PathProblem
                             ramp,
                             Number(inputs.tau * dt(inputs, i)),
                             inputs.states[i].X,
-                            layer);
+                            layer,
+                            edge_stiffness);
+  }
+
+  /// Middles of edges that press on the die, in all increments.
+  unsigned int n_pressed_edges(const unsigned int die) const
+  {
+    unsigned int n = 0;
+    for (unsigned int i = 0; i < n_increments; ++i)
+      for (unsigned int p = 0; p < pairs[i].size(); ++p)
+        n += pairs[i][p].die == die && !pairs[i][p].point.is_node() && active[i][p];
+    return n;
   }
 
   template <typename Number>
@@ -273,17 +286,21 @@ int main(int argc, char **argv)
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
     std::cout.setstate(std::ios::failbit);
   Random            random;
-  const PathProblem problem(random);
+  const PathProblem flat(random, false);
   double            worst = 0.;
 
-  const auto check = [&](const std::string &name, const PathObjective &objective) {
-    const auto evaluate = [&](const auto &inputs) {
-      return objective.value(problem.rows(objective, inputs));
+  const auto check_of =
+    [&](const PathProblem &problem, const std::string &name, const PathObjective &objective) {
+      const auto evaluate = [&](const auto &inputs) {
+        return objective.value(problem.rows(objective, inputs));
+      };
+      const auto reverse = [&](const auto &inputs) { return problem.reverse(objective, inputs); };
+      worst              = std::max(worst,
+                       check_derivatives<PathInputs>(
+                         name, problem.at, evaluate, reverse, empty_inputs<Dual>(problem.scene), random));
     };
-    const auto reverse = [&](const auto &inputs) { return problem.reverse(objective, inputs); };
-    worst              = std::max(worst,
-                     check_derivatives<PathInputs>(
-                       name, problem.at, evaluate, reverse, empty_inputs<Dual>(problem.scene), random));
+  const auto check = [&](const std::string &name, const PathObjective &objective) {
+    check_of(flat, name, objective);
   };
   using Over = PathWindow::Over;
   const SmoothMaximum p_norm{SmoothMaximum::Kind::p_norm, 12.},
@@ -306,5 +323,14 @@ int main(int argc, char **argv)
   check("dimensionless fold, alpha = 3", DimensionlessFold(3.));
   check("contact pressure, q = 1", ContactPressure(0, 1., 5.));
   check("contact pressure, q = 12", ContactPressure(1, 12., 5.));
+
+  const PathProblem curved(random, true);
+  std::cout << "with a curved die, edges pressed: " << (curved.n_pressed_edges(0) > 10 ? "yes, " : "NO, ")
+            << curved.n_pressed_edges(0) << std::endl;
+  check_of(curved, "energy", EnergyObjective());
+  check_of(curved, "mean force over time", MeanEffort(by_force, part_of_time));
+  check_of(curved, "fold, alpha = 4", FoldObjective(4.));
+  check_of(curved, "contact pressure, q = 1", ContactPressure(0, 1., 5.));
+  check_of(curved, "contact pressure, q = 12", ContactPressure(0, 12., 5.));
   std::cout << "FIGURE path_objective_derivative_error " << worst << std::endl;
 }
