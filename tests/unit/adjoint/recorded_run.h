@@ -37,9 +37,9 @@ namespace retroforge
   {
     /// @param judged  the objectives; those of the parameters when it is empty
     RecordedRun(const Parameters &all, std::vector<Die> dies, Objectives judged = {})
-        : parameters(all)
-        , process(all.process(all.billet.size[2]))
-        , model{std::move(dies), all.step_model(), all.newton, all.linear_solver, MPI_COMM_WORLD}
+        : parameters(settled(all))
+        , process(parameters.process(all.billet.size[2]))
+        , model{std::move(dies), parameters.step_model(), all.newton, all.linear_solver, MPI_COMM_WORLD}
         , leg(std::make_shared<Leg>(make_billet(all.billet, MPI_COMM_WORLD), model, timings))
         , scene(leg->scene)
         , remesher(parameters.remeshing, parameters.edge_length(scene.mesh), model.dies, MPI_COMM_WORLD)
@@ -52,6 +52,12 @@ namespace retroforge
         records.push_back(event.record);
         trace.add(event);
       });
+    }
+
+    static Parameters settled(Parameters all)
+    {
+      all.settle(all.billet.size[2]);
+      return all;
     }
 
     explicit RecordedRun(const Parameters &all) : RecordedRun(all, {all.dies[0].die(), all.dies[1].die()}) {}

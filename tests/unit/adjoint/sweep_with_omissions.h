@@ -1,0 +1,421 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include "recorded_run.h"
+
+#include <retroforge/core/dual.h>
+
+#include <map>
+
+/// The backward sweep once more, built from the library's kernels, that can leave out any one term: tests of
+/// derivatives are worth what they see.
+namespace retroforge
+{
+  enum class Term
+  {
+    none,
+    gap,           // d delta / dX
+    area,          // d S / dX
+    friction_area, // d S^f / dX
+    ramp,          // w'(delta)
+    lambda_bubble, // bubble part of lambda in lambda·dR/dX
+    power_bubble,  // dPhi / dbeta
+    first_stage,   // the solve at X_i that the midpoint comes from
+    dt,            // of the increment, by the die's speed
+    tau,           // approach time, by the die's speed
+    curvature,     // dn / dX of a smooth die
+    coordinates,   // d delta / dX by way of the barycentric coordinates of the foot
+    normals,       // corner normals of a smooth die in its vertices
+    edge_ramp,     // what edges let nodes touch
+    edge_area      // d S / dX of edges
+  };
+
+  /// A facet of a smooth die and a point, as project_smoothly() has them: 21 numbers.
+  template <typename Number>
+  struct FacetScene
+  {
+    Vector3<Number>                x;
+    std::array<Vector3<Number>, 3> corners, normals;
+
+    std::array<Vector3<Number> *, 7> inputs()
+    {
+      return {{&x, &corners[0], &corners[1], &corners[2], &normals[0], &normals[1], &normals[2]}};
+    }
+  };
+
+  /// Barycentric coordinates of the foot and its distance along the interpolated normal.
+  template <typename Number>
+  using Foot = std::array<Number, 4>;
+
+  template <typename Number>
+  Vector3<Number> interpolated(const std::array<Vector3<Number>, 3> &of_corners, const Foot<Number> &foot)
+  {
+    return of_corners[0] * foot[0] + of_corners[1] * foot[1] + of_corners[2] * foot[2];
+  }
+
+  template <typename Number>
+  Vector3<Number> mismatch(const FacetScene<Number> &scene, const Foot<Number> &foot)
+  {
+    return interpolated(scene.corners, foot) + interpolated(scene.normals, foot) * foot[3] - scene.x;
+  }
+
+  /// Newton's step of the foot, with the matrix of `at`: from the solution, that is its derivative.
+  template <typename Number>
+  Foot<Number> improved(const FacetScene<Number> &scene,
+                        const Foot<Number>       &foot,
+                        const FacetScene<double> &at,
+                        const Foot<double>       &foot_at)
+  {
+    dealii::Tensor<2, 3> J;
+    const Vec3           N = interpolated(at.normals, foot_at);
+    for (unsigned int i = 0; i < 3; ++i)
+    {
+      for (unsigned int a = 1; a < 3; ++a)
+        J[i][a - 1] =
+          at.corners[a][i] - at.corners[0][i] + foot_at[3] * (at.normals[a][i] - at.normals[0][i]);
+      J[i][2] = N[i];
+    }
+    const dealii::Tensor<2, 3> inverse = dealii::invert(J);
+    const Vector3<Number>      r       = mismatch(scene, foot);
+    std::array<Number, 3>      step;
+    for (unsigned int i = 0; i < 3; ++i)
+      step[i] = -(inverse[i][0] * r[0] + inverse[i][1] * r[1] + inverse[i][2] * r[2]);
+    return {{foot[0] - step[0] - step[1], foot[1] + step[0], foot[2] + step[1], foot[3] + step[2]}};
+  }
+
+  inline Foot<double> find_foot(const FacetScene<double> &scene)
+  {
+    Foot<double> foot{{1. / 3., 1. / 3., 1. / 3., 0.}};
+    for (unsigned int i = 0; i < 20; ++i)
+      foot = improved(scene, foot, scene, foot);
+    return foot;
+  }
+
+  template <typename Number>
+  Projection<Number> project(const FacetScene<Number> &scene, const Foot<Number> &foot)
+  {
+    const Vector3<Number> p0 = interpolated(scene.corners, foot);
+    Vector3<Number>       p  = p0;
+    for (unsigned int a = 0; a < 3; ++a)
+      p += scene.normals[a] * Number(0.5 * foot[a] * Number((scene.corners[a] - p0) * scene.normals[a]));
+    Projection<Number> projection;
+    projection.n     = -unit(interpolated(scene.normals, foot));
+    projection.delta = (p - scene.x) * projection.n;
+    return projection;
+  }
+
+  /// Pull-back of a smooth die's gap and normal, by one dual number after another.
+  inline void reverse_smooth(const Die            &die,
+                             const CornerNormals  &normals,
+                             const DieFeature     &feature,
+                             const Vec3           &x,
+                             const double          delta_bar,
+                             const Vec3           &n_bar,
+                             const Term            omitted,
+                             Vec3                 &x_bar,
+                             NodalVectors<double> &vertices_bar)
+  {
+    const TriangleSurface &surface = *die.surface();
+    const Triangle        &corners = surface.triangles()[feature.facet];
+    FacetScene<double>     at;
+    at.x = x;
+    for (unsigned int a = 0; a < 3; ++a)
+    {
+      at.corners[a] = surface.vertices()[corners[a]];
+      at.normals[a] = normals[normals.of_corner(feature.facet, a)];
+    }
+    const Foot<double> foot_at = find_foot(at);
+    FacetScene<Dual>   scene;
+    Foot<Dual>         fixed;
+    for (unsigned int i = 0; i < 4; ++i)
+      fixed[i] = Dual(foot_at[i]);
+    for (unsigned int k = 0; k < 7; ++k)
+      for (unsigned int i = 0; i < 3; ++i)
+        (*scene.inputs()[k])[i] = Dual((*at.inputs()[k])[i]);
+    std::array<Vec3, 7> bar;
+    for (unsigned int k = 0; k < 7; ++k)
+      for (unsigned int i = 0; i < 3; ++i)
+      {
+        Dual &input           = (*scene.inputs()[k])[i];
+        input.fastAccessDx(0) = 1.;
+        const auto moving     = project(scene, improved(scene, fixed, at, foot_at));
+        const auto delta =
+          k == 0 && omitted == Term::coordinates ? project(scene, fixed).delta : moving.delta;
+        bar[k][i] = delta_bar * delta.dx(0);
+        if (k > 0 || omitted != Term::curvature)
+          for (unsigned int j = 0; j < 3; ++j)
+            bar[k][i] += n_bar[j] * moving.n[j].dx(0);
+        input.fastAccessDx(0) = 0.;
+      }
+    x_bar += bar[0];
+    for (unsigned int a = 0; a < 3; ++a)
+    {
+      vertices_bar[corners[a]] += bar[1 + a];
+      if (omitted != Term::normals)
+        normals.reverse_normal(surface, normals.of_corner(feature.facet, a), bar[4 + a], vertices_bar);
+    }
+  }
+
+  /// Derivatives in the points' own ramps from those in the ramps that count.
+  inline std::vector<double> reverse_ramps(const ContactSet<double> &contact,
+                                           const FrictionRamp       &ramp,
+                                           const ContactSetBar      &bar,
+                                           const Term                omitted)
+  {
+    const auto         &pairs   = contact.pairs;
+    std::vector<double> own_bar = bar.ramp, own;
+    if (omitted == Term::edge_ramp)
+      return own_bar;
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+      own.push_back(ramp(contact.projections[p].delta, pairs[p].touching));
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+    {
+      if (!pairs[p].point.is_node())
+        continue;
+      // 1 - product of what does not touch, over the node and its edges
+      std::vector<unsigned int> factors = {p};
+      for (unsigned int q = 0; q < pairs.size(); ++q)
+        if (const auto &nodes = pairs[q].point.nodes;
+            pairs[q].die == pairs[p].die && !pairs[q].point.is_node() &&
+            (nodes[0] == pairs[p].point.nodes[0] || nodes[1] == pairs[p].point.nodes[0]))
+          factors.push_back(q);
+      own_bar[p] -= bar.ramp[p];
+      for (const unsigned int f : factors)
+      {
+        double others = 1.;
+        for (const unsigned int q : factors)
+          others *= q == f ? 1. : 1. - own[q];
+        own_bar[f] += others * bar.ramp[p];
+      }
+    }
+    return own_bar;
+  }
+
+  /// The dies' surfaces are smooth, with this feature angle [degrees].
+  constexpr double feature_angle = 40.;
+
+  inline void reverse_set(const std::vector<Die>              &dies,
+                          const std::vector<DieState<double>> &states,
+                          const ContactSet<double>            &contact,
+                          const FrictionRamp                  &ramp,
+                          const NodalVectors<double>          &X,
+                          const ContactSetBar                 &bar,
+                          const Term                           omitted,
+                          NodalVectors<double>                &X_bar,
+                          ContactSensitivity                  &sensitivity)
+  {
+    const std::vector<double>             ramps_bar = reverse_ramps(contact, ramp, bar, omitted);
+    std::map<unsigned int, CornerNormals> normals;
+    for (unsigned int d = 0; d < dies.size(); ++d)
+      if (dies[d].surface())
+        normals.emplace(d, CornerNormals(*dies[d].surface(), feature_angle));
+    for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+    {
+      const ContactPair &pair   = contact.pairs[p];
+      const Die         &die    = dies[pair.die];
+      const double delta_bar    = bar.delta[p] + ramps_bar[p] * ramp.derivative(contact.projections[p].delta);
+      Vec3        &displacement = sensitivity.dies[pair.die].displacement;
+      Vec3         at_point;
+      if (die.surface() && pair.feature.kind == 0)
+      {
+        reverse_smooth(die,
+                       normals.at(pair.die),
+                       pair.feature,
+                       pair.point.mean(X) - states[pair.die].displacement,
+                       delta_bar,
+                       bar.n[p],
+                       omitted,
+                       at_point,
+                       sensitivity.die_vertices[pair.die]);
+        displacement -= at_point;
+      }
+      else
+        die.reverse_project(pair.point.mean(X),
+                            states[pair.die].displacement,
+                            pair.feature,
+                            delta_bar,
+                            bar.n[p],
+                            at_point,
+                            displacement,
+                            die.surface() ? &sensitivity.die_vertices[pair.die] : nullptr);
+      pair.point.add(at_point, X_bar);
+    }
+  }
+
+  /// The contact's part of a reverse sweep; `reverse_node` is that of one node.
+  template <typename NodeReverse>
+  void reverse_contact(const Stage<double>  &stage,
+                       const Term            omitted,
+                       const NodeReverse    &reverse_node,
+                       NodalVectors<double> &X_bar,
+                       ContactSetBar        &contact_bar,
+                       PhysicsBar           &bar)
+  {
+    const std::size_t    n = stage.contact.pairs.size();
+    ContactAreas<double> areas_bar{std::vector<double>(n, 0.), std::vector<double>(n, 0.)};
+    for (unsigned int p = 0; p < n; ++p)
+    {
+      const ContactNodeBar node    = reverse_node(p);
+      const bool           is_node = stage.contact.pairs[p].point.is_node();
+      areas_bar.S[p]  = omitted == Term::area || (omitted == Term::edge_area && !is_node) ? 0. : node.S;
+      areas_bar.Sf[p] = omitted == Term::friction_area ? 0. : node.Sf;
+      contact_bar.delta[p] += node.delta;
+      contact_bar.n[p] += node.n;
+      bar.contact.tau += node.tau;
+      bar.contact.dies[stage.contact.pairs[p].die].velocity -= node.u;
+    }
+    reverse_contact_areas(
+      stage.scene.mesh, stage.scene.topology, stage.contact, stage.X, areas_bar, X_bar, contact_bar);
+  }
+
+  /// Derivatives of dt * power; returns those in W.
+  inline Field<double> reverse_energy(const Stage<double>  &stage,
+                                      const Field<double>  &W,
+                                      const ActiveSet      &active,
+                                      const double          dt,
+                                      const Term            omitted,
+                                      NodalVectors<double> &X_bar,
+                                      ContactSetBar        &contact_bar,
+                                      PhysicsBar           &bar)
+  {
+    const TetMesh &mesh = stage.scene.mesh;
+    Field<double>  W_bar(mesh);
+    for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+    {
+      CellValues<double> w_bar = {};
+      const auto         s     = reverse_cell_dissipation(
+        cell_geometry(positions_of_cell(mesh, stage.X, c)), W.on_cell(mesh, c), stage.physics.law, dt, w_bar);
+      for (unsigned int a = 0; a < 4; ++a)
+      {
+        X_bar[mesh.cells[c][a]] += s.X[a];
+        W_bar.V[mesh.cells[c][a]] += w_bar.V[a];
+      }
+      if (omitted != Term::power_bubble)
+        W_bar.beta[c] += w_bar.beta;
+    }
+    const auto reverse_node = [&](const unsigned int p) {
+      const auto node = reverse_friction_power(
+        stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, dt);
+      stage.contact.pairs[p].point.add(node.u, W_bar.V);
+      return node;
+    };
+    reverse_contact(stage, omitted, reverse_node, X_bar, contact_bar, bar);
+    const auto [deformation, friction] = stage.power(W, active);
+    bar.dt += deformation + friction;
+    return W_bar;
+  }
+
+  /// Derivatives of lambda·R.
+  inline void reverse_equilibrium(const Stage<double>  &stage,
+                                  const Field<double>  &W,
+                                  const ActiveSet      &active,
+                                  Field<double>         lambda,
+                                  const Term            omitted,
+                                  NodalVectors<double> &X_bar,
+                                  ContactSetBar        &contact_bar,
+                                  PhysicsBar           &bar)
+  {
+    const TetMesh &mesh = stage.scene.mesh;
+    if (omitted == Term::lambda_bubble)
+      lambda.beta.assign(mesh.n_cells(), Vec3());
+    for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+    {
+      const auto s = reverse_cell_residual(cell_geometry(positions_of_cell(mesh, stage.X, c)),
+                                           W.on_cell(mesh, c),
+                                           lambda.on_cell(mesh, c),
+                                           stage.physics.law);
+      for (unsigned int a = 0; a < 4; ++a)
+        X_bar[mesh.cells[c][a]] += s.X[a];
+    }
+    const auto reverse_node = [&](const unsigned int p) {
+      return reverse_contact_force(stage.contact_node(p, W, active),
+                                   stage.physics.law,
+                                   stage.physics.contact,
+                                   stage.contact.pairs[p].point.mean(lambda.V));
+    };
+    reverse_contact(stage, omitted, reverse_node, X_bar, contact_bar, bar);
+  }
+
+  /// Reverse of one midpoint increment for the energy, as Increment::reverse has it, without the omitted
+  /// term.
+  inline void reverse_increment(RecordedRun                &problem,
+                                const NodalVectors<double> &X,
+                                const IncrementRecord      &record,
+                                const Term                  omitted,
+                                NodalVectors<double>       &G,
+                                ProcessBar                 &process_bar)
+  {
+    const Scene             &scene   = problem.scene;
+    const Physics<double>    physics = problem.process.at_stroke(record.stroke);
+    const double             dt      = record.step / problem.process.speed();
+    const ContactSet<double> contact = make_contact_set(scene.mesh,
+                                                        scene.topology,
+                                                        scene.dies,
+                                                        physics.dies,
+                                                        record.pairs,
+                                                        problem.model.step.ramp,
+                                                        problem.model.step.approach * dt,
+                                                        X,
+                                                        problem.model.step.layer,
+                                                        problem.model.step.edge_stiffness);
+    ContactSetBar            contact_bar(record.pairs.size());
+    PhysicsBar               bar(scene.dies);
+    NodalVectors<double>     next = G; // dPhi/d(where the stage's velocity leads): X_{i+1}, then Y
+    for (unsigned int s = 2; s-- > 0;)
+    {
+      const double               reach = s == 1 ? dt : 0.5 * dt;
+      const SolveRecord         &solve = record.solves[s];
+      const NodalVectors<double> position =
+        s == 0 ? X : problem.leg->increment.stage_positions(problem.process, X, record);
+      const Stage<double> stage(scene, physics, contact, position);
+      Field<double>       W(scene.mesh), rhs(scene.mesh), minus_rhs(scene.mesh), lambda;
+      W.V = solve.V;
+      W.P = solve.P;
+      recover_bubbles(stage, W);
+      NodalVectors<double> X_bar(X.size());
+      if (s == 1)
+        rhs = reverse_energy(stage, W, solve.active, dt, omitted, X_bar, contact_bar, bar);
+      for (std::size_t k = 0; k < X.size(); ++k)
+      {
+        bar.dt += reach / dt * (next[k] * W.V[k]);
+        rhs.V[k] += reach * next[k];
+      }
+      minus_rhs.add(-1., rhs);
+      problem.leg->system.assemble(stage, W, solve.active);
+      problem.leg->system.solve(minus_rhs, problem.model.step.adjoint_tolerance, lambda);
+      if (s == 0 && omitted == Term::first_stage)
+        lambda = Field<double>(scene.mesh);
+      reverse_equilibrium(stage, W, solve.active, lambda, omitted, X_bar, contact_bar, bar);
+      for (std::size_t k = 0; k < X.size(); ++k)
+        G[k] += X_bar[k];
+      next = X_bar;
+    }
+    if (omitted == Term::gap)
+      contact_bar.delta.assign(record.pairs.size(), 0.);
+    if (omitted == Term::ramp)
+      contact_bar.ramp.assign(record.pairs.size(), 0.);
+    if (omitted == Term::dt)
+      bar.dt = 0.;
+    if (omitted == Term::tau)
+      bar.contact.tau = 0.;
+    reverse_set(
+      scene.dies, physics.dies, contact, problem.model.step.ramp, X, contact_bar, omitted, G, bar.contact);
+    process_bar.add(bar, problem.process, {record.stroke, record.step}, problem.model.step.approach);
+  }
+
+  inline AdjointResult sweep(RecordedRun &problem, const Term omitted)
+  {
+    AdjointResult        result{NodalVectors<double>(problem.forged.X.size()),
+                         ProcessBar(problem.scene.dies.size())};
+    NodalVectors<double> X = problem.forged.X;
+    for (unsigned int i = problem.records.size(); i-- > 0;)
+    {
+      const IncrementRecord &record = problem.records[i];
+      for (std::size_t k = 0; k < X.size(); ++k)
+        X[k] -= record.step / problem.process.speed() * record.solves.back().V[k];
+      reverse_increment(problem, X, record, omitted, result.X_0, result.process);
+    }
+    return result;
+  }
+} // namespace retroforge
