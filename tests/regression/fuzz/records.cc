@@ -110,7 +110,11 @@ void require_sane(const IncrementRecord &record, unsigned int &n)
     require(solve.active.size() == record.pairs.size(), "a solve has other pairs");
   }
   for (const ContactPair &pair : record.pairs)
-    require(pair.node < n && pair.die < header.die_facets.size(), "a pair is of nothing");
+  {
+    const auto &[first, second] = pair.point.nodes;
+    require(first < n && pair.die < header.die_facets.size(), "a pair is of nothing");
+    require(pair.point.is_node() || (first < second && second < n), "a pair is of no edge");
+  }
 }
 
 void read_all()
@@ -312,8 +316,8 @@ void put_foreign_file(const std::string &file, const Files &files, fuzz::Random 
         H5Gcreate2(handle, how < 5 ? "header" : "increment_000001", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
         H5Gclose,
         file);
-      const unsigned int three = 3;
-      hdf5::write_attribute(group, "format", &three);
+      const unsigned int format = 4;
+      hdf5::write_attribute(group, "format", &format);
       for (const char *name : {"program", "commit", "parameters"})
         hdf5::write_string(group, name, "some text");
       for (const char *name : {"X", "X_0"})

@@ -132,22 +132,29 @@ void show_bad_increments()
   show("one pressure, two velocities", [](const hid_t g) {
     replace(g, "P", {1, 12}, std::vector<double>(12));
   });
+  constexpr unsigned int none = invalid_index;
   show("pair of a node that is not there", [](const hid_t g) {
-    replace(g, "pairs", {4, 2}, std::vector<unsigned int>{0, 1, 1, 1, 12, 1, 3, 1});
+    replace(g, "pairs", {4, 3}, std::vector<unsigned int>{0, none, 1, 1, none, 1, 12, none, 1, 3, none, 1});
+  });
+  show("pair of an edge whose second node is not there", [](const hid_t g) {
+    replace(g, "pairs", {4, 3}, std::vector<unsigned int>{0, none, 1, 1, none, 1, 2, 12, 1, 3, none, 1});
+  });
+  show("pair of an edge from a node to itself", [](const hid_t g) {
+    replace(g, "pairs", {4, 3}, std::vector<unsigned int>{0, none, 1, 1, none, 1, 2, 2, 1, 3, none, 1});
   });
   show("pair of a die that is not there", [](const hid_t g) {
-    replace(g, "pairs", {4, 2}, std::vector<unsigned int>{0, 1, 1, 1, 2, 2, 3, 1});
+    replace(g, "pairs", {4, 3}, std::vector<unsigned int>{0, none, 1, 1, none, 1, 2, none, 2, 3, none, 1});
   });
   show("facet that is not there", [](const hid_t g) {
     replace(g, "facet", {4}, std::vector<unsigned int>{0, 0, 96, 0});
   });
   show("kind of feature that is not there", [](const hid_t g) {
-    replace(g, "kind", {4}, std::vector<unsigned char>{0, 0, 7, 0});
+    replace(g, "kind", {4}, std::vector<unsigned char>{0, 0, DieFeature::n_kinds, 0});
   });
   show("fewer kinds than pairs",
        [](const hid_t g) { replace(g, "kind", {3}, std::vector<unsigned char>(3)); });
   show("more pairs than flags", [](const hid_t g) {
-    replace(g, "pairs", {5, 2}, std::vector<unsigned int>(10));
+    replace(g, "pairs", {5, 3}, std::vector<unsigned int>(15));
   });
   show("flag of 2", [](const hid_t g) {
     replace(g, "touching", {4}, std::vector<unsigned char>{0, 1, 2, 0});

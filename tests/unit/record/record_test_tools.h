@@ -94,11 +94,12 @@ namespace retroforge
       increment.forces.push_back(Vec3({number(), number(), number()}));
     for (NodeIndex k = 0; k < header.mesh.n_nodes(); k += 3)
     {
+      const ContactPoint point    = k % 2 == 0 ? ContactPoint::node(k) : ContactPoint::middle(k - 1, k);
       const unsigned int die      = random() % header.die_facets.size();
       const bool         touching = random() % 2 == 0;
       const unsigned int facet    = random() % header.die_facets[die];
       increment.pairs.push_back(
-        {k, die, touching, {facet, static_cast<unsigned char>(random() % DieFeature::n_kinds)}});
+        {point, die, touching, {facet, static_cast<unsigned char>(random() % DieFeature::n_kinds)}});
     }
     for (unsigned int s = 0; s < n_solves; ++s)
     {
@@ -170,7 +171,7 @@ namespace retroforge
                  (!a.remesh || same(*a.remesh, *b.remesh)) && a.pairs.size() == b.pairs.size() &&
                  a.solves.size() == b.solves.size();
     for (std::size_t p = 0; equal && p < a.pairs.size(); ++p)
-      equal = a.pairs[p].node == b.pairs[p].node && a.pairs[p].die == b.pairs[p].die &&
+      equal = a.pairs[p].point == b.pairs[p].point && a.pairs[p].die == b.pairs[p].die &&
               a.pairs[p].touching == b.pairs[p].touching && a.pairs[p].feature == b.pairs[p].feature;
     for (std::size_t s = 0; equal && s < a.solves.size(); ++s)
       equal = same_bits(a.solves[s].V, b.solves[s].V) && same_bits(a.solves[s].P, b.solves[s].P) &&
