@@ -5,7 +5,7 @@
 // and open surfaces, for points anywhere, on vertices and on edges, with and without a limit of distance;
 // where features tie, both take the one of lowest index. Signed distance against the closed form: of the cube
 // exactly, of a sphere to second order in the facets' size. A displaced die finds a feature where its
-// distance is within reach and depth, and nowhere else.
+// distance is within reach and depth, and nowhere else; a smooth one where that of its facets is not farther.
 
 #include <retroforge/geometry/die.h>
 
@@ -59,9 +59,11 @@ void compare(const std::string &name, const TriangleSurface &surface)
             << n_behind << ", not within 0.2: " << n_far << "\n";
 }
 
-void check_die()
+void check_die(const bool smooth)
 {
-  const Die    die("bumpy", bumpy_sphere(3), 0.15);
+  const double depth = 0.15;
+  const Die    die("bumpy", bumpy_sphere(3), depth, {smooth, 40.}),
+    facets("bumpy", bumpy_sphere(3), depth, {false, 0.});
   const Vec3   u({0.3, -0.2, 0.1});
   Random       random;
   unsigned int n_wrong = 0, n_found = 0;
@@ -70,12 +72,14 @@ void check_die()
     const Vec3       X        = 2. * random.vector();
     const double     distance = die.signed_distance(X, u), reach = 0.1 + 0.1 * (i % 3);
     const DieFeature feature = die.closest(X, u, reach);
+    // What facets are looked at is decided by their own distance, also where they stand for a smooth surface.
+    const bool is_seen = std::abs(facets.signed_distance(X, u)) <= std::max(reach, depth);
     n_found += feature.found();
-    n_wrong += feature.found() != (distance >= -0.15 && distance <= reach);
+    n_wrong += feature.found() != (is_seen && distance >= -depth && distance <= reach);
     n_wrong += feature.found() && die.project(X, u, feature).delta != distance;
   }
-  std::cout << "die, within reach and depth: some " << yes(n_found > 500 && n_found < 4500) << ", wrong "
-            << n_wrong << "\n";
+  std::cout << (smooth ? "smooth die" : "die of facets") << ", within reach and depth: some "
+            << yes(n_found > 500 && n_found < 4500) << ", wrong " << n_wrong << "\n";
 }
 
 void check_cube()
@@ -161,7 +165,8 @@ int main()
   compare("flat sheet", sheet(8, [](double, double) { return 0.; }));
   compare("wavy sheet",
           sheet(8, [](double x, double y) { return 0.2 * std::sin(5. * x) * std::cos(4. * y); }));
-  check_die();
+  check_die(false);
+  check_die(true);
   check_cube();
   check_sphere();
   check_rim();
