@@ -63,7 +63,8 @@ namespace
                                                       physics.dies,
                                                       scene.mesh.X,
                                                       model.ramp,
-                                                      model.reach),
+                                                      model.reach,
+                                                      model.edges_touch),
                                    model.ramp,
                                    parameters.press.stroke / parameters.press.increments / process.speed(),
                                    scene.mesh.X))
@@ -143,7 +144,7 @@ namespace
             cell(cell_geometry(positions_of_cell(mesh, mesh.X, c)), e.W.on_cell(mesh, c), a, i);
     for (unsigned int p = 0; p < e.contact.pairs.size(); ++p)
       for (unsigned int i = 0; i < 3; ++i)
-        slope[e.contact.pairs[p].node][i] += node(e.stage.contact_node(p, e.W, e.active), i);
+        slope[e.contact.pairs[p].point.nodes[0]][i] += node(e.stage.contact_node(p, e.W, e.active), i);
     return slope;
   }
 
