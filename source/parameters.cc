@@ -31,6 +31,12 @@ namespace retroforge
       "into, which nodes alone let into it. Units: none.",
       Selection("nodes|nodes and edges"));
     prm.add_parameter(
+      "largest depth",
+      largest_depth,
+      "The run says so at its end when a point of the surface was deeper in a die than this part of the "
+      "element size. Units: none.",
+      Double(0.));
+    prm.add_parameter(
       "edge sinking",
       edge_sinking,
       "Part of the leading die's speed at which an edge sinks into a die under the mean pressure: the "
@@ -420,6 +426,7 @@ namespace retroforge
     model.ramp.width   = contact.ramp_width * contact.approach * step;
     const double layer = model.ramp.sharp ? 0. : contact.layer;
     model.layer        = layer * contact.approach * step;
+    model.step         = step;
     // Where a node at rest meets the approach speed.
     const double arrival = layer == 0. ? 1. : layer * std::sinh(1. / layer);
     model.reach          = std::max({3., 3. * contact.ramp_width, 1.5 * arrival}) * contact.approach * step;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/penetration.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/version.h>
 #include <retroforge/geometry/stl_file.h>
@@ -202,7 +203,7 @@ namespace retroforge
       objective_history_ = std::make_unique<ObjectiveHistory>(command_.output_directory + "/objectives.csv");
       pvd_               = std::make_unique<PvdWriter>(command_.output_directory + "/fields.pvd");
       std::cout
-        << "  inc   stroke      force        energy        volume   quality newton krylov   time left\n";
+        << "  inc   stroke      force        energy        volume   quality   depth newton krylov   time left\n";
     }
     if (command_.resume)
       resume(state);
@@ -262,6 +263,14 @@ namespace retroforge
       return;
     const double quality = minimum_quality(mesh.cells, state.X);
     const double size    = volume(mesh.cells, state.X);
+    const Penetration deepest =
+      deepest_point(mesh, state.leg->scene.topology, model_.dies, process_.at_stroke(state.stroke).dies, state.X);
+    if (!(deepest.depth <= summary_.deepest.depth))
+      summary_.deepest = {deepest.depth,
+                          deepest.depth / parameters_.edge_length(billet_),
+                          state.stroke,
+                          {{deepest.place[0], deepest.place[1], deepest.place[2]}},
+                          deepest.die == invalid_index ? "" : model_.dies[deepest.die].name};
     const auto  &leading = nominal_.dies[nominal_.leading_die];
     const double force =
       event.record.forces[nominal_.leading_die] * leading.velocity / leading.velocity.norm();
@@ -273,18 +282,20 @@ namespace retroforge
                    energy,
                    size,
                    quality,
+                   deepest.depth,
                    event.record.newton,
                    event.record.krylov});
     if (event.record.remesh)
       std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());
     const double left = timings_.seconds("total") * (parameters_.press.stroke - state.stroke) / state.stroke;
-    std::printf("%5u %8.4f %12.5g %13.7g %13.7g %8.4f %6u %6u %8.0f s\n",
+    std::printf("%5u %8.4f %12.5g %13.7g %13.7g %8.4f %7.3f %6u %6u %8.0f s\n",
                 state.increments,
                 state.stroke,
                 force,
                 energy,
                 size,
                 quality,
+                deepest.depth,
                 event.record.newton,
                 event.record.krylov,
                 left);
@@ -648,6 +659,17 @@ namespace retroforge
         std::printf("%s%s %.6g", name == objective.parts.begin()->first ? " (" : ", ", name.c_str(), value);
       std::printf("%s\n", objective.parts.empty() ? "" : ")");
     }
+    if (summary_.deepest.relative > parameters_.contact.largest_depth)
+      std::printf("  warning: the surface was up to %.3g mm (%.1f %% of the element size) inside die %s, at (%.4g, %.4g, "
+                  "%.4g) and stroke %.5g: what is inside does no work. More increments, a smaller Contact/edge sinking "
+                  "or Remeshing/chord error hold it out.\n",
+                  summary_.deepest.depth,
+                  100. * summary_.deepest.relative,
+                  summary_.deepest.die.c_str(),
+                  summary_.deepest.place[0],
+                  summary_.deepest.place[1],
+                  summary_.deepest.place[2],
+                  summary_.deepest.stroke);
     std::printf("  volume change %.3g, %.1f s\n  results in %s\n",
                 summary_.volume_final / summary_.volume_initial - 1.,
                 timings_.seconds("total"),

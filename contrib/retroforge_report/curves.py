@@ -37,7 +37,8 @@ def forging(history, energy_unit):
 
 def health(history, volume_initial):
     """What the forger did not ask for but must know: volume lost, element quality, iterations."""
-    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(11, 3.4), layout="constrained")
+    figure, panels = plt.subplots(1, 4 if "depth" in history else 3, figsize=(13, 3.2), layout="constrained")
+    left, middle, right = panels[:3]
     change = history["volume"] / (volume_initial or history["volume"][0]) - 1
     _over_stroke(left, history, change, "relative change of volume", GREEN)
     left.ticklabel_format(axis="y", style="sci", scilimits=(-2, 3), useMathText=True)
@@ -47,6 +48,9 @@ def health(history, volume_initial):
     right.plot(history["increment"], history["krylov"], ".-", color=ORANGE, label="Krylov steps")
     right.set(xlabel="increment", ylabel="per increment", yscale="log")
     right.legend()
+    if "depth" in history:
+        _over_stroke(panels[3], history, history["depth"], "deepest point in a die [mm]", ORANGE)
+        panels[3].set_ylim(bottom=0)
     return figure
 
 

@@ -20,7 +20,8 @@ namespace retroforge
     double      penalty       = 0.;
     double      slip_fraction = 1e-2;
     std::string points        = "nodes and edges";
-    double      edge_sinking  = 0.02;
+    double      edge_sinking  = 0.01;
+    double      largest_depth = 0.05;
 
     void add_parameters(dealii::ParameterHandler &prm);
   };

@@ -60,9 +60,8 @@ namespace retroforge
       const double un = node.u * node.n, dv_n = dv_bar * node.n;
       bar.u += dv_bar - dv_n * node.n + h_bar * node.n;
       bar.n += -un * dv_bar - dv_n * node.u + h_bar * node.u;
-      const double s = node.layer == 0. ? 0. : node.delta / node.layer;
-      bar.delta += -h_bar / (node.tau * std::sqrt(1. + s * s));
-      bar.tau += h_bar * approach_speed(node.delta, node.tau, node.layer) / node.tau;
+      bar.delta -= h_bar * approach_slope(node.delta, node.tau, node.approach);
+      bar.tau += h_bar * approach_speed(node.delta, node.tau, node.approach) / node.tau;
     }
   } // namespace
 
@@ -210,14 +209,14 @@ namespace retroforge
                                       const FrictionRamp                  &ramp,
                                       const Number                        &tau,
                                       const NodalVectors<Number>          &X,
-                                      const double                         layer,
+                                      const ApproachLaw                   &approach,
                                       const double                         edge_stiffness)
   {
     ContactSet<Number> contact;
     contact.edge_stiffness = edge_stiffness;
     contact.pairs = pairs;
     contact.tau   = tau;
-    contact.layer = layer;
+    contact.approach = approach;
     std::map<std::pair<unsigned int, NodeIndex>, unsigned int> index; // (die, node) -> pair
     for (const ContactPair &pair : pairs)
     {
@@ -464,7 +463,7 @@ namespace retroforge
                                                  const FrictionRamp &,                            \
                                                  const Number &,                                  \
                                                  const NodalVectors<Number> &,                    \
-                                                 double,                                          \
+                                                 const ApproachLaw &,                             \
                                                  double);                                         \
   template ContactAreas<Number> contact_areas(                                                    \
     const TetMesh &, const Topology &, const ContactSet<Number> &, const NodalVectors<Number> &); \

@@ -69,6 +69,15 @@ namespace retroforge
                            : std::numeric_limits<double>::infinity();
   }
 
+  double Die::depth_of(const Vec3 &X, const Vec3 &displacement, const double within) const
+  {
+    const DieFeature feature = surface_ ? closest_on_surface(X - displacement, within) : DieFeature();
+    if (!feature.found())
+      return 0.;
+    const double depth = -project(X, displacement, feature).delta;
+    return depth > 0. && depth <= within ? depth : 0.;
+  }
+
   void Die::reverse_project(const Vec3           &X,
                             const Vec3           &displacement,
                             const DieFeature     &feature,

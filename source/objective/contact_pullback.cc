@@ -31,12 +31,11 @@ namespace retroforge
 
   void ContactPullback::add_excess(const unsigned int p, const ContactNode<double> &node, const double h_bar)
   {
-    const double   s = node.layer == 0. ? 0. : node.delta / node.layer;
     ContactNodeBar node_bar;
     node_bar.u     = h_bar * node.n;
     node_bar.n     = h_bar * node.u;
-    node_bar.delta = -h_bar / (node.tau * std::sqrt(1. + s * s));
-    node_bar.tau   = h_bar * approach_speed(node.delta, node.tau, node.layer) / node.tau;
+    node_bar.delta = -h_bar * approach_slope(node.delta, node.tau, node.approach);
+    node_bar.tau   = h_bar * approach_speed(node.delta, node.tau, node.approach) / node.tau;
     add(p, node_bar);
   }
 

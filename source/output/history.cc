@@ -15,15 +15,15 @@ namespace retroforge
 {
   namespace
   {
-    const std::string header    = "increment,time,stroke,force,energy,volume,min_quality,newton,krylov\n";
-    constexpr int     n_columns = 9;
+    const std::string header    = "increment,time,stroke,force,energy,volume,min_quality,depth,newton,krylov\n";
+    constexpr int     n_columns = 10;
 
     std::string to_csv(const HistoryRow &row)
     {
       std::ostringstream line;
       line.precision(17);
       line << row.increment << ',' << row.time << ',' << row.stroke << ',' << row.force << ',' << row.energy
-           << ',' << row.volume << ',' << row.min_quality << ',' << row.newton << ',' << row.krylov << '\n';
+           << ',' << row.volume << ',' << row.min_quality << ',' << row.depth << ',' << row.newton << ',' << row.krylov << '\n';
       return line.str();
     }
 
@@ -53,7 +53,7 @@ namespace retroforge
           throw_not_a_history(file, line_number);
         return static_cast<unsigned int>(number);
       };
-      return {count(x[0]), x[1], x[2], x[3], x[4], x[5], x[6], count(x[7]), count(x[8])};
+      return {count(x[0]), x[1], x[2], x[3], x[4], x[5], x[6], x[7], count(x[8]), count(x[9])};
     }
   } // namespace
 

@@ -22,7 +22,7 @@ namespace retroforge
     node.n      = contact.projections[p].n;
     node.delta  = contact.projections[p].delta;
     node.tau    = contact.tau;
-    node.layer  = contact.layer;
+    node.approach = contact.approach;
     node.S      = areas.S[p];
     node.Sf     = areas.Sf[p];
     node.alpha  = die.friction;

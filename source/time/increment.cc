@@ -116,7 +116,7 @@ namespace retroforge
                                   model.ramp,
                                   model.approach * dt_,
                                   X_before,
-                                  model.layer,
+                                  model.approach_law(record.step),
                                   model.edge_stiffness))
       , X_(record.solves.size() == 1 ? X_before : advanced(X_before, 0.5 * dt_, record.solves[0].V))
       , stage(scene, physics_, contact_, X_)
@@ -146,7 +146,7 @@ namespace retroforge
                             model_.ramp,
                             model_.approach * dt,
                             X,
-                            model_.layer,
+                            model_.approach_law(record.step),
                             model_.edge_stiffness);
   }
 
@@ -163,12 +163,12 @@ namespace retroforge
         {
           const auto  &die     = stage.physics.dies[d];
           const Vec3   u       = W.V[k] - die.velocity;
-          const double reach   = approach_distance(u.norm(), stage.contact.tau, stage.contact.layer);
+          const double reach   = approach_distance(u.norm(), stage.contact.tau, stage.contact.approach);
           const auto   feature = scene_.dies[d].closest(stage.X[k], die.displacement, reach);
           if (!feature.found())
             continue;
           const auto projection = scene_.dies[d].project(stage.X[k], die, feature);
-          if (u * projection.n > approach_speed(projection.delta, stage.contact.tau, stage.contact.layer))
+          if (u * projection.n > approach_speed(projection.delta, stage.contact.tau, stage.contact.approach))
             return true;
         }
     return false;
@@ -401,7 +401,7 @@ namespace retroforge
                                                       model_.ramp,
                                                       Dual(model_.approach * dt),
                                                       X,
-                                                      model_.layer,
+                                                      model_.approach_law(record.step),
                             model_.edge_stiffness);
     const Physics<double>    physics_value = values_of(physics);
     const ContactSet<double> contact_value = contact_set(physics_value, values_of(X), record, dt.val());

@@ -22,7 +22,7 @@
 /// Nodes alone do not keep an edge out of a die whose convex part it spans: its ends touch, and its middle is in the die.
 /// So the middles of such edges are points, too. Their penalty is soft: nodes and edges together are more constraints
 /// than the surface has motions, and stiff ones would fight. Since gaps are found anew in each increment, what an edge
-/// gives way does not add up: a penalty at which it sinks with 2 % of the press speed leaves it 2 % of an increment's
+/// gives way does not add up: a penalty at which it sinks with 1 % of the press speed leaves it 1 % of an increment's
 /// stroke in the die, times the pressure there over the mean one.
 ///
 /// What belongs to the increment (delta, n, w, tau) is found once at X_i and kept for all its stages:
@@ -51,6 +51,15 @@ namespace retroforge
     double derivative(double delta) const;
   };
 
+  /// How fast a gap closes, beyond its time tau.
+  struct ApproachLaw
+  {
+    double layer = 0.; ///< of the approach speed [mm]; 0: none
+    double part  = 1.; ///< of a whole increment, where it was cut
+
+    ApproachLaw(const double layer = 0., const double part = 1.) : layer(layer), part(part) {}
+  };
+
   /// A point in reach of a die: a recorded decision.
   struct ContactPair
   {
@@ -77,7 +86,7 @@ namespace retroforge
     std::vector<Number>             ramps;
     std::vector<Face>               friction_faces;
     Number                          tau   = 1.; ///< approach time [s]
-    double                          layer = 0.; ///< of the approach speed [mm]; 0: none
+    ApproachLaw                     approach;
     double                          edge_stiffness = 1.; ///< of edges' penalty over the nodes'
   };
 
@@ -128,7 +137,7 @@ namespace retroforge
                                       const FrictionRamp                  &ramp,
                                       const Number                        &tau,
                                       const NodalVectors<Number>          &X,
-                                      double                               layer          = 0.,
+                                      const ApproachLaw                   &approach       = {},
                                       double                               edge_stiffness = 1.);
 
   /// Pull-back of make_contact_set: adds to X_bar and to the dies' displacements and vertices.
@@ -165,36 +174,53 @@ namespace retroforge
     Number          delta, tau, S, Sf;
     Number          alpha;
     bool            active;     ///< counts as h > 0
-    double          layer = 0.; ///< [mm], of the approach speed
+    ApproachLaw     approach;
   };
 
   /// Speed at which a gap may close: delta/tau, so that what is in reach arrives within tau; with a layer l
-  ///   l/tau asinh(delta/l),
+  ///   l/tau A,  A = asinh(delta/l),
   /// the same near the die, but flatter where a free node meets it. The force then sets in gradually, and the
   /// energy is smoother in the design, at less delay than a longer tau costs.
+  ///
+  /// What is inside a die comes out of it at no more than 2 l in a whole increment, and that part of it in one that was
+  /// cut:  A -> A (1 + (A / (2 part))^2)^(-1/2)  for delta < 0. Without that bound a shorter increment would throw it
+  /// out so much faster, and however short it is, elements would be turned over.
   template <typename Number>
-  Number approach_speed(const Number &delta, const Number &tau, const double layer)
+  Number approach_speed(const Number &delta, const Number &tau, const ApproachLaw &law)
   {
     using std::log;
     using std::sqrt;
-    if (layer == 0.)
+    if (law.layer == 0.)
       return delta / tau;
-    const Number s = delta / layer;
-    if (value_of(s) < 0.)
-      return -layer / tau * log(Number(sqrt(Number(1. + s * s)) - s));
-    return layer / tau * log(Number(sqrt(Number(1. + s * s)) + s));
+    const Number s = delta / law.layer;
+    if (value_of(s) >= 0.)
+      return law.layer / tau * log(Number(sqrt(Number(1. + s * s)) + s));
+    const Number A = log(Number(sqrt(Number(1. + s * s)) - s)), a = A * (1. / (2. * law.part));
+    return -law.layer / tau * A / sqrt(Number(1. + a * a));
   }
 
-  /// The gap whose approach speed is `speed`: the reverse function.
-  inline double approach_distance(const double speed, const double tau, const double layer)
+  /// Its derivative in delta.
+  inline double approach_slope(const double delta, const double tau, const ApproachLaw &law)
   {
-    return layer == 0. ? speed * tau : layer * std::sinh(speed * tau / layer);
+    if (law.layer == 0.)
+      return 1. / tau;
+    const double s = delta / law.layer, slope = 1. / (tau * std::sqrt(1. + s * s));
+    if (s >= 0.)
+      return slope;
+    const double a = std::asinh(-s) / (2. * law.part);
+    return slope / std::pow(1. + a * a, 1.5);
+  }
+
+  /// The gap whose approach speed is `speed`, which is positive: the reverse function.
+  inline double approach_distance(const double speed, const double tau, const ApproachLaw &law)
+  {
+    return law.layer == 0. ? speed * tau : law.layer * std::sinh(speed * tau / law.layer);
   }
 
   template <typename Number>
   Number approach_excess(const ContactNode<Number> &node)
   {
-    return node.u * node.n - approach_speed(node.delta, node.tau, node.layer);
+    return node.u * node.n - approach_speed(node.delta, node.tau, node.approach);
   }
 
   template <typename Number>

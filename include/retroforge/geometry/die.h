@@ -55,6 +55,9 @@ namespace retroforge
     /// Signed distance however far or deep [mm]; infinite behind the rim of an open surface.
     double signed_distance(const Vec3 &X, const Vec3 &displacement) const;
 
+    /// How deep X is inside [mm]; 0 outside, and where it is deeper than `within`.
+    double depth_of(const Vec3 &X, const Vec3 &displacement, double within) const;
+
     /// Signed distance and normal of a feature seen from X. Of a plane:  delta = n·(point + displacement -
     /// X).
     template <typename Number>

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -71,6 +72,17 @@ namespace retroforge
 
     double volume_initial = unknown;
     double volume_final   = unknown;
+
+    /// The deepest the surface has been in a die, over the run.
+    struct Depth
+    {
+      double               depth    = unknown; ///< mm
+      double               relative = unknown; ///< over the element size
+      double               stroke   = unknown; ///< at the end of the increment, mm
+      std::array<double, 3> place    = {{unknown, unknown, unknown}};
+      std::string          die;
+    };
+    Depth deepest;
 
     std::map<std::string, double> wall_seconds;
     Count                         record_bytes;

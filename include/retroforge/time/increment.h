@@ -21,12 +21,19 @@ namespace retroforge
     Scheme           scheme   = Scheme::midpoint;
     double           approach = 1.; ///< approach time in increments: tau = approach * dt
     double           layer    = 0.; ///< of the approach speed [mm]
+    double           step     = 0.; ///< stroke of a whole increment [mm]
     FrictionRamp     ramp;
     double           edge_stiffness    = 1.;    ///< of edges' penalty over the nodes'
     bool             edges_touch       = true;  ///< middles of edges are contact points of curved dies
     double           reach             = 0.;    ///< nodes nearer than this to a die are watched [mm]
     double           adjoint_tolerance = 1e-10; ///< of the adjoint and tangent linear systems
     ShapeDerivatives shape_derivatives;         ///< of the backward sweep
+
+    /// Of an increment of a given stroke.
+    ApproachLaw approach_law(const double stroke) const
+    {
+      return {layer, step > 0. ? std::min(1., stroke / step) : 1.};
+    }
   };
 
   /// Energy spent, deformation and friction [mJ].

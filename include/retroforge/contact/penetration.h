@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/geometry/die.h>
+#include <retroforge/mesh/topology.h>
+
+namespace retroforge
+{
+  /// The deepest point of the workpiece's surface in a die.
+  struct Penetration
+  {
+    double       depth = 0.; ///< [mm]; 0 when none is in a die
+    Vec3         place;
+    unsigned int die = invalid_index;
+  };
+
+  /// Looks at the nodes, the middles of the edges and the centres of the faces of the surface. A point farther inside
+  /// than the edges there are long is not found: it is behind the die rather than in it.
+  Penetration deepest_point(const TetMesh                       &mesh,
+                            const Topology                      &topology,
+                            const std::vector<Die>              &dies,
+                            const std::vector<DieState<double>> &states,
+                            const NodalVectors<double>          &X);
+} // namespace retroforge
