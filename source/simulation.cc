@@ -53,6 +53,13 @@ namespace retroforge
       return n;
     }
 
+    std::string as_text(const double x)
+    {
+      std::ostringstream text;
+      text << x;
+      return text.str();
+    }
+
     /// For names of fields.
     std::string as_identifier(std::string name)
     {
@@ -136,6 +143,13 @@ namespace retroforge
     double       nearest = std::numeric_limits<double>::max();
     for (unsigned int d = 0; d < model_.dies.size(); ++d)
     {
+      const double least_depth = 0.1 * parameters_.edge_length(billet_);
+      if (model_.dies[d].surface() && parameters_.dies[d].depth > 0. && parameters_.dies[d].depth < least_depth)
+        throw Error("Die " + parameters_.dies[d].name + "/depth of contact",
+                    "is " + as_text(parameters_.dies[d].depth) + " mm",
+                    "nodes deeper are lost to the die, so it must be a tenth of the element size at least, " +
+                      as_text(least_depth) + " mm",
+                    "leave it out, which takes a tenth of the die's extent");
       double deepest = 0.;
       for (NodeIndex k = 0; k < billet_.n_nodes(); ++k)
         if (first_leg_->scene.topology.is_on_surface(k))

@@ -3,6 +3,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/element/strain_history.h>
 #include <retroforge/mesh/cell_transfer.h>
+#include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/rebuild.h>
 #include <retroforge/time/forging.h>
 
@@ -50,8 +51,16 @@ namespace retroforge
       max_cuts,
       "Times an increment may be halved, counted from the whole one, before the run stops. Units: none.",
       Integer(0, 30));
+    prm.add_parameter(
+      "largest volume change",
+      largest_loss,
+      "The run stops when the workpiece has lost or won more than this part of its volume. Units: none.",
+      Double(0.));
     prm.leave_subsection();
   }
+
+  /// Times Press/increments that cuts may make of them.
+  constexpr unsigned int most_increments = 10;
 
   /// Increments between looks at whether the surface crosses itself.
   constexpr unsigned int fold_interval = 5;
@@ -68,6 +77,7 @@ namespace retroforge
   {
     ForgingState state;
     state.X      = X_0;
+    state.volume = volume(leg->scene.mesh.cells, X_0);
     state.W      = Field<double>(leg->scene.mesh);
     state.strain = std::vector<double>(leg->scene.mesh.n_cells(), 0.);
     state.leg    = std::move(leg);
@@ -217,6 +227,32 @@ namespace retroforge
                   : "the mesh may be too distorted to go on: set Remeshing/when = quality");
   }
 
+  void Forging::check_progress(const ForgingState &state) const
+  {
+    const double change = volume(state.leg->scene.mesh.cells, state.X) / state.volume - 1.;
+    std::ostringstream what;
+    what.precision(4);
+    if (!(std::abs(change) <= press_.largest_loss))
+    {
+      what << "at stroke " << state.stroke << " mm the workpiece has " << (change < 0. ? "lost " : "won ")
+           << 100. * std::abs(change) << " % of its volume";
+      throw Error("Press/stroke",
+                  what.str(),
+                  "at most Press/largest volume change may be lost",
+                  "if the dies nearly close there, shorten the stroke; else use more increments or a finer mesh");
+    }
+    if (state.increments > most_increments * press_.increments)
+    {
+      what << "was cut so often that " << state.increments << " increments brought it to " << state.stroke
+           << " mm";
+      throw Error("Press/stroke",
+                  what.str(),
+                  "a run may take " + std::to_string(most_increments) + " times Press/increments",
+                  "if the dies nearly close or the cavity is full there, shorten the stroke; else raise "
+                  "Press/increments");
+    }
+  }
+
   void Forging::run(const Process<double> &process, ForgingState &state, const Watch &watch) const
   {
     const double      whole = press_.stroke / press_.increments;
@@ -257,13 +293,18 @@ namespace retroforge
         record.step *= 0.5;
         ++record.cuts;
         if (record.step < whole * std::ldexp(1., -static_cast<int>(press_.max_cuts)) * (1. - 1e-9))
+        {
+          // A fold that is closing is the true reason.
+          check_boundary_does_not_cross(state.leg->scene.mesh, state.X, "Workpiece");
           throw_stuck(record, whole, reason);
+        }
       }
       const NodalVectors<double> X_before = state.X;
       state.W                             = std::move(solution);
       finish_increment(process, record, std::move(X_next), state);
       if (watch)
         watch({record, X_before, state, state.stroke / process.speed()});
+      check_progress(state);
       // Metal that folds onto itself is not in the model: such a run must not go on as if nothing were.
       if (state.increments % fold_interval == 0 || state.stroke >= press_.stroke - 1e-9 * whole)
         check_boundary_does_not_cross(state.leg->scene.mesh, state.X, "Workpiece");

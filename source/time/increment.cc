@@ -187,13 +187,18 @@ namespace retroforge
     std::vector<SolveRecord> solves(two ? 2 : 1);
     // A run that is resumed must not differ from one that was not.
     system_.reset();
+    std::size_t n_watched = 0;
     for (double reach = model_.reach;; reach *= 2.)
     {
+      // A wider search that finds nothing more has found all there is.
+      bool all_found = false;
       if (!replay)
       {
         const auto timing = timings_.scope("contact");
         record.pairs = find_contact_pairs(
           scene_.topology, scene_.dies, physics.dies, X, model_.ramp, reach, model_.edges_touch);
+        all_found = reach > model_.reach && record.pairs.size() == n_watched;
+        n_watched = record.pairs.size();
       }
       const ContactSet<double> contact       = contact_set(physics, X, record, dt);
       Field<double>            trial         = W;
@@ -209,7 +214,7 @@ namespace retroforge
         record.newton += statistics.iterations;
         record.krylov += statistics.krylov;
         const ActiveSet active = replay ? frozen(s) : stage.decide_active(trial);
-        repeat                 = !replay && escaped(stage, trial);
+        repeat                 = !replay && !all_found && escaped(stage, trial);
         solves[s]              = {trial.V, trial.P, active};
         if (s + 1 == solves.size() && !repeat)
         {

@@ -17,6 +17,7 @@ namespace retroforge
     double       largest_move    = 0.5;
     double       largest_slip    = 1.;
     unsigned int max_cuts        = 8;
+    double       largest_loss    = 0.02;
 
     void add_parameters(dealii::ParameterHandler &prm);
   };
@@ -29,6 +30,7 @@ namespace retroforge
     std::vector<double>  strain; ///< accumulated equivalent strain of each cell
     Field<double>        W;      ///< the last increment's solution, where the next one starts
     double               stroke = 0.;
+    double               volume = 0.; ///< at the start of the run [mm^3]
     unsigned int         depth  = 0; ///< an increment is the whole one / 2^depth
 
     Energy<double>                   energy;
@@ -99,6 +101,8 @@ namespace retroforge
                               const NodalVectors<double> &X_next) const;
     [[noreturn]] void
          throw_stuck(const IncrementRecord &record, double whole, const std::string &reason) const;
+    /// Throws Error where a run can only go on to no good: it takes too many increments, or loses its volume.
+    void check_progress(const ForgingState &state) const;
     void remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
     void finish_increment(const Process<double> &process,
                           const IncrementRecord &record,
