@@ -57,6 +57,21 @@ namespace retroforge
       }
       return area;
     }
+    // Of the diagonal: no file is made with chords farther from its surface.
+    constexpr double largest_sagitta = 3e-3;
+
+    /// How far a smooth surface that turns by the angle over the narrower one of two facets is from it.
+    double sagitta(const TriangleSurface   &surface,
+                   const std::vector<Vec3> &vectors,
+                   const unsigned int       f,
+                   const unsigned int       e,
+                   const unsigned int       other,
+                   const double             angle)
+    {
+      const Triangle &t     = surface.triangles()[f];
+      const double    along = (surface.vertices()[t[(e + 1) % 3]] - surface.vertices()[t[e]]).norm();
+      return std::min(vectors[f].norm(), vectors[other].norm()) / along * angle / 8.;
+    }
   } // namespace
 
   CornerNormals::CornerNormals(const TriangleSurface &surface, const double feature_angle)
@@ -69,8 +84,9 @@ namespace retroforge
       for (unsigned int e = 0; e < 3; ++e)
       {
         const unsigned int other = surface.neighbour(f, e).facet;
-        sharp_[f][e] =
-          other == invalid_index || angle_between(vectors[f], vectors[other]) > feature_angle * M_PI / 180.;
+        const double angle = other == invalid_index ? M_PI : angle_between(vectors[f], vectors[other]);
+        sharp_[f][e]       = angle > feature_angle * M_PI / 180. ||
+                       sagitta(surface, vectors, f, e, other, angle) > largest_sagitta * surface.diagonal();
         if (sharp_[f][e])
           for (const unsigned int end : {e, (e + 1) % 3})
             on_sharp_edge_[surface.triangles()[f][end]] = true;

@@ -23,7 +23,8 @@ namespace retroforge
     std::optional<CornerNormals> normals;
     if (law.smooth)
       normals.emplace(surface, law.feature_angle);
-    surface_ = std::make_shared<const Surface>(std::move(surface), depth, std::move(normals));
+    surface_ = 
+      std::make_shared<const Surface>(std::move(surface), depth, law.feature_angle, std::move(normals));
   }
 
   Die Die::moved(NodalVectors<double> vertices) const
@@ -34,7 +35,8 @@ namespace retroforge
     shape.move_vertices(std::move(vertices));
     if (normals)
       normals->update(shape);
-    die.surface_ = std::make_shared<const Surface>(std::move(shape), surface_->depth, std::move(normals));
+    die.surface_ = std::make_shared<const Surface>(
+      std::move(shape), surface_->depth, surface_->feature_angle, std::move(normals));
     return die;
   }
 

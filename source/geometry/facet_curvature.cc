@@ -26,21 +26,44 @@ namespace retroforge
       const Vec3  v = facet_vector(x[t[0]], x[t[1]], x[t[2]]), along = x[t[(edge + 1) % 3]] - x[t[edge]];
       return v.norm() / along.norm() / 3.;
     }
+
+    double turn(const TriangleSurface &surface, const unsigned int facet, const unsigned int other)
+    {
+      const Vec3 n = normal(surface, facet), m = normal(surface, other);
+      return std::atan2(cross_product_3d(n, m).norm(), n * m);
+    }
   } // namespace
 
-  std::vector<double> facet_curvature(const TriangleSurface &surface)
+  std::vector<double> facet_curvature(const TriangleSurface &surface, const double feature_angle)
   {
     std::vector<double> curvature(surface.n_facets(), 0.);
     for (unsigned int f = 0; f < surface.n_facets(); ++f)
       for (unsigned int e = 0; e < 3; ++e)
         if (const auto other = surface.neighbour(f, e); other.facet != invalid_index)
         {
-          const Vec3   n = normal(surface, f), m = normal(surface, other.facet);
-          const double angle = std::atan2(cross_product_3d(n, m).norm(), n * m);
+          const double angle = turn(surface, f, other.facet);
           const double distance =
             centroid_distance(surface, f, e) + centroid_distance(surface, other.facet, other.edge);
-          curvature[f] = std::max(curvature[f], angle / distance);
+          if (angle <= feature_angle * M_PI / 180.)
+            curvature[f] = std::max(curvature[f], angle / distance);
         }
     return curvature;
+  }
+
+  std::vector<TriangleSurface::Edge> sharp_ridges(const TriangleSurface &surface, const double feature_angle)
+  {
+    std::vector<TriangleSurface::Edge> ridges;
+    for (unsigned int f = 0; f < surface.n_facets(); ++f)
+      for (unsigned int e = 0; e < 3; ++e)
+        if (const auto other = surface.neighbour(f, e);
+            other.facet != invalid_index && f < other.facet &&
+            turn(surface, f, other.facet) > feature_angle * M_PI / 180.)
+        {
+          const Vec3 &a       = surface.vertices()[surface.triangles()[f][e]],
+                     &b       = surface.vertices()[surface.triangles()[other.facet][(other.edge + 2) % 3]];
+          if ((b - a) * normal(surface, f) < 0.) // the other facet falls away
+            ridges.push_back({f, e});
+        }
+    return ridges;
   }
 } // namespace retroforge

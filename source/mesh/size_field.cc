@@ -39,7 +39,9 @@ namespace retroforge
   GradedSize::GradedSize(const TriangleSurface     &surface,
                          const std::vector<double> &size_of_facet,
                          const double               largest,
-                         const double               growth)
+                         const double               growth,
+                         const std::vector<TriangleSurface::Edge> &ridges,
+                         const double                              size_of_ridges)
       : largest_(largest), growth_(growth)
   {
     check(surface, size_of_facet, largest, growth);
@@ -54,6 +56,20 @@ namespace retroforge
         size_.push_back(size_of_facet[f]);
         boxes.push_back(all[f]);
       }
+    // An edge is a facet with hardly any height.
+    for (const auto &edge : ridges)
+    {
+      const Triangle &corner = surface.triangles()[edge.facet];
+      const auto     &x      = surface.vertices();
+      const Vec3     &a = x[corner[edge.edge]], &b = x[corner[(edge.edge + 1) % 3]],
+                 &c = x[corner[(edge.edge + 2) % 3]];
+      facets_.push_back({{a, b, 0.5 * (a + b) + 1e-3 * (c - 0.5 * (a + b))}});
+      size_.push_back(size_of_ridges);
+      BoundingBox box(a);
+      box.include(b);
+      box.include(facets_.back()[2]);
+      boxes.push_back(box);
+    }
     tree_  = BoxTree(boxes);
     least_ = tree_.minima(size_);
   }

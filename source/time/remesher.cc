@@ -109,11 +109,16 @@ namespace retroforge
       if (dies[d].surface())
       {
         std::vector<double> size;
-        for (const double curvature : facet_curvature(*dies[d].surface()))
+        for (const double curvature : facet_curvature(*dies[d].surface(), dies[d].feature_angle()))
           size.push_back(std::clamp(std::sqrt(8. * chord_error / std::max(curvature, 1e-300)),
                                     parameters_.smallest_size * element_size,
                                     element_size));
-        near_die_[d].emplace(*dies[d].surface(), size, element_size, parameters_.growth);
+        near_die_[d].emplace(*dies[d].surface(),
+                             size,
+                             element_size,
+                             parameters_.growth,
+                             sharp_ridges(*dies[d].surface(), dies[d].feature_angle()),
+                             parameters_.smallest_size * element_size);
       }
   }
 

@@ -24,7 +24,7 @@ namespace retroforge
   struct DieSurfaceLaw
   {
     bool   smooth        = true; ///< they stand for a smooth surface; else they are the surface
-    double feature_angle = 40.;  ///< edges where a smooth surface turns by more are sharp [degrees]
+    double feature_angle = 25.;  ///< edges where a smooth surface turns by more are sharp [degrees]
   };
 
   /// A rigid die: a plane in closed form, or a triangulated surface whose normals point to the workpiece.
@@ -100,6 +100,9 @@ namespace retroforge
                          Vec3                 &displacement_bar,
                          NodalVectors<double> *vertices_bar = nullptr) const;
 
+    /// Edges where its surface turns by more are sharp [degrees].
+    double feature_angle() const { return surface_ ? surface_->feature_angle : 0.; }
+
     /// Null for a plane.
     const TriangleSurface *surface() const { return surface_ ? &surface_->shape : nullptr; }
 
@@ -113,11 +116,18 @@ namespace retroforge
     {
       TriangleSurface              shape;
       ClosestFeature               closest;
-      double                       depth;
+      double                       depth, feature_angle;
       std::optional<CornerNormals> normals; ///< of a smooth surface
 
-      Surface(TriangleSurface made, const double depth, std::optional<CornerNormals> normals)
-          : shape(std::move(made)), closest(shape), depth(depth), normals(std::move(normals))
+      Surface(TriangleSurface              made,
+              const double                 depth,
+              const double                 feature_angle,
+              std::optional<CornerNormals> normals)
+          : shape(std::move(made))
+          , closest(shape)
+          , depth(depth)
+          , feature_angle(feature_angle)
+          , normals(std::move(normals))
       {
       }
     };

@@ -30,7 +30,7 @@ namespace retroforge
     double      depth    = 0.; ///< 0: a tenth of the surface's diagonal [mm]
 
     std::string surface_law   = "smooth";
-    double      feature_angle = 40.; ///< [degrees]
+    double      feature_angle = 25.; ///< [degrees]
 
     std::string file;
     double      scale = 1.;

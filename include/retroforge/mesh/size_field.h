@@ -24,11 +24,14 @@ namespace retroforge
     /// @param size_of_facet  s_f [mm]
     /// @param largest        h_0 [mm]
     /// @param growth         g, dimensionless
+    /// @param ridges         edges that want a length of their own
     /// Throws Error unless all of them are positive and there is one size per facet.
     GradedSize(const TriangleSurface     &surface,
                const std::vector<double> &size_of_facet,
                double                     largest,
-               double                     growth);
+               double                     growth,
+               const std::vector<TriangleSurface::Edge> &ridges = {},
+               double                                    size_of_ridges = 0.);
 
     double operator()(const Vec3 &x) const;
 

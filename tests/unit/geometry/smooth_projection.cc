@@ -68,8 +68,8 @@ namespace
   void converge()
   {
     std::cout << "sphere\n";
-    Errors before = sphere_errors(2, true);
-    for (unsigned int n = 3; n < 6; ++n)
+    Errors before = sphere_errors(3, true);
+    for (unsigned int n = 4; n < 6; ++n)
     {
       const Errors now = sphere_errors(n, true);
       std::printf("  distance of order %.0f, normal %s, its slope %s\n",
@@ -281,7 +281,7 @@ namespace
 int main()
 {
   converge();
-  const Die smooth("sphere", sphere(4), far), bumpy("bumpy", bumpy_sphere(2), far, {true, 180.});
+  const Die smooth("sphere", sphere(4), far), bumpy("bumpy", bumpy_sphere(4), far, {true, 180.});
   std::cout << "continuous across facets: " << yes(largest_jump(smooth, 0.2) < 1e-10) << "\n";
   differentiate("sphere", smooth, 0.02);
   differentiate("bumpy sphere", bumpy, 0.02);
