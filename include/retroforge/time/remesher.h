@@ -16,7 +16,7 @@ namespace retroforge
 {
   struct RemesherParameters
   {
-    std::string         when          = "never"; ///< never, quality, increments
+    std::string         when          = "quality"; ///< never, quality, increments
     std::string         method        = "local";
     unsigned int        every         = 5;
     double              element_size  = 0.;

@@ -56,6 +56,7 @@ namespace retroforge
 
     static Parameters settled(Parameters all)
     {
+      all.remeshing.when = "never"; // one mesh for all of a run
       all.settle(all.billet.size[2]);
       return all;
     }
