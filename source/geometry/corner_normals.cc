@@ -57,9 +57,6 @@ namespace retroforge
       }
       return area;
     }
-    // Of the diagonal: no file is made with chords farther from its surface.
-    constexpr double largest_sagitta = 3e-3;
-
     /// How far a smooth surface that turns by the angle over the narrower one of two facets is from it.
     double sagitta(const TriangleSurface   &surface,
                    const std::vector<Vec3> &vectors,
@@ -74,7 +71,9 @@ namespace retroforge
     }
   } // namespace
 
-  CornerNormals::CornerNormals(const TriangleSurface &surface, const double feature_angle)
+  CornerNormals::CornerNormals(const TriangleSurface &surface,
+                               const double           feature_angle,
+                               const double           largest_sagitta)
       : normal_of_corner_(surface.n_facets(), {{invalid_index, invalid_index, invalid_index}})
       , sharp_(surface.n_facets())
       , on_sharp_edge_(surface.vertices().size(), false)

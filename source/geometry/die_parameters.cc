@@ -102,6 +102,12 @@ namespace retroforge
                       "Edges where the facets of a smooth surface turn by more stay sharp. Units: degrees.",
                       Double(0., 180.));
     prm.add_parameter(
+      "largest sagitta",
+      largest_sagitta,
+      "Edges stay sharp, too, where a smooth surface would be farther from its facets than this part of the "
+      "die's extent: folds between large faces. Raise it for coarse facets. Units: none.",
+      Double(0.));
+    prm.add_parameter(
       "file", file, "STL file, ASCII or binary, from the folder the program is started in. Units: none.");
     prm.add_parameter("scale", scale, "Factor to mm of the file's lengths. Units: none.", Double(1e-300));
     prm.add_parameter("rotation axis", axis, "Of an STL surface, through its origin. Units: none.");
@@ -280,6 +286,6 @@ namespace retroforge
     TriangleSurface made     = surface();
     const double    diagonal = made.diagonal();
     return Die(
-      name, std::move(made), depth > 0. ? depth : 0.1 * diagonal, {surface_law == "smooth", feature_angle});
+      name, std::move(made), depth > 0. ? depth : 0.1 * diagonal, {surface_law == "smooth", feature_angle, largest_sagitta});
   }
 } // namespace retroforge

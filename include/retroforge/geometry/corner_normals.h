@@ -24,8 +24,9 @@ namespace retroforge
   class CornerNormals
   {
   public:
-    /// @param feature_angle  [degrees]
-    CornerNormals(const TriangleSurface &surface, double feature_angle);
+    /// @param feature_angle    [degrees]
+    /// @param largest_sagitta  of the surface's diagonal
+    CornerNormals(const TriangleSurface &surface, double feature_angle, double largest_sagitta = 3e-3);
 
     /// Which normal a corner of a facet has. Corners of one fan share theirs.
     unsigned int of_corner(const unsigned int facet, const unsigned int corner) const

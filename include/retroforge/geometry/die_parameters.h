@@ -31,6 +31,7 @@ namespace retroforge
 
     std::string surface_law   = "smooth";
     double      feature_angle = 25.; ///< [degrees]
+    double      largest_sagitta = 3e-3; ///< of the surface's diagonal
 
     std::string file;
     double      scale = 1.;

@@ -47,7 +47,7 @@ namespace
         const unsigned int k = j * (n + 1) + i;
         t.insert(t.end(), {{{k, k + n + 2, k + 1}}, {{k, k + n + 1, k + n + 2}}});
       }
-    return Die("upper", TriangleSurface("hill", x, t), 10., {true, feature_angle});
+    return Die("upper", TriangleSurface("hill", x, t), 10., {true, feature_angle, 1.});
   }
 
   std::vector<Direction> directions(const RecordedRun &run)

@@ -67,7 +67,7 @@ NodeCase<Dual> vary(NodeCase<double> c, const unsigned int i)
   NodeCase<Dual> d;
   d.law.e0        = Dual(c.law.e0);
   d.node.active   = c.node.active;
-  d.node.layer    = c.node.layer;
+  d.node.approach = c.node.approach;
   const auto from = c.inputs();
   const auto to   = d.inputs();
   for (unsigned int k = 0; k < n_inputs; ++k)
@@ -169,7 +169,7 @@ double check_nodes(const std::string &title,
                    const double       v0,
                    const bool         sliding,
                    const double       Sf,
-                   const double       layer = 0.)
+                   const ApproachLaw &law = {})
 {
   Random       random;
   Errors       errors;
@@ -180,7 +180,7 @@ double check_nodes(const std::string &title,
     if (!sliding)
       c.node.u = random.scalar() * c.node.n;
     c.node.Sf     = Sf;
-    c.node.layer  = layer;
+    c.node.approach = law;
     c.node.active = approach_excess(c.node) > 0.;
     n_active += c.node.active;
     check_tangent(c, errors);
@@ -231,7 +231,7 @@ struct CornerScene
     dies = {Die("lower", Vec3({0., 0., 0.1}), up / up.norm()),
             Die("side", Vec3({5., 0., 0.}), side / side.norm())};
     if (lower != Lower::plane)
-      dies[0] = Die("lower", wavy_sheet(), 2., {lower == Lower::smooth, 60.});
+      dies[0] = Die("lower", wavy_sheet(), 2., {lower == Lower::smooth, 60., 1.});
     states = {{Vec3(), 0.1 * random.vector(), 0.3, {}}, {Vec3(), 0.1 * random.vector(), 0.2, {}}};
     pairs  = find_contact_pairs(topology, dies, states, X, ramp, 1.5 * ramp.width, true);
   }
@@ -500,8 +500,15 @@ void check_layer()
     return approach_speed(Dual(1, 0, delta), Dual(tau), layer).dx(0) * tau;
   };
   errors.compare("slope 1/tau at the die", slope(0.), 1.);
-  errors.compare("smooth through zero", slope(-step), slope(step));
-  errors.compare("odd", approach_speed(-0.7, tau, layer), -approach_speed(0.7, tau, layer));
+  errors.compare("smooth through zero", slope(-1e-4 * step), slope(1e-4 * step));
+  const ApproachLaw cut(layer, 0.1);
+  const double      A = std::asinh(0.7 / layer);
+  errors.compare("inside", approach_speed(-0.7, tau, cut), -layer / tau * A / std::sqrt(1. + 25. * A * A));
+  errors.compare("bound inside", std::max(1., approach_speed(-1e250, tau, cut) / (-0.2 * layer / tau)), 1.);
+  for (const double delta : {-2., -0.3, 0.4})
+    errors.compare("slope",
+                   approach_slope(delta, tau, cut),
+                   approach_speed(Dual(1, 0, delta), Dual(tau), cut).dx(0));
   errors.compare("asinh", approach_speed(0.7, tau, layer), layer / tau * std::asinh(0.7 / layer));
   std::cout << "layer" << std::endl;
   errors.print(1e-12);
@@ -520,6 +527,7 @@ int main(int argc, char **argv)
   largest = std::max(largest, check_nodes("without friction area", 0.139, 0.1, true, 0.));
 
   largest = std::max(largest, check_nodes("within a layer", 0.139, 0.1, true, 1.2, 0.4));
+  largest = std::max(largest, check_nodes("within a layer, cut", 0.139, 0.1, true, 1.2, {0.4, 0.1}));
 
   // Exactly at rest against the die: zero to the power zero.
   Errors           at_rest;

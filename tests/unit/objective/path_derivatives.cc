@@ -116,7 +116,7 @@ struct PathProblem
   static std::vector<Die> make_dies(const bool curved)
   {
     const Vec3 up = Vec3({0.1, -0.15, 1.}), side = Vec3({-1., 0.1, 0.2});
-    return {curved ? Die("lower", wavy_sheet(), 2., {true, 60.})
+    return {curved ? Die("lower", wavy_sheet(), 2., {true, 60., 1.})
                    : Die("lower", Vec3({0., 0., 0.1}), up / up.norm()),
             Die("side", Vec3({5., 0., 0.}), side / side.norm())};
   }
