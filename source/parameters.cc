@@ -393,7 +393,7 @@ namespace retroforge
     const double speed = process.speed();
     process.contact.rho =
       contact.penalty > 0. ? contact.penalty : mean_pressure(size) / (contact.penetration * speed);
-    process.contact.v0    = contact.slip_fraction * speed;
+    process.contact.v0 = contact.slip_fraction * speed;
     return process;
   }
 
@@ -417,16 +417,16 @@ namespace retroforge
   StepModel Parameters::step_model() const
   {
     StepModel    model;
-    const double step  = press.stroke / press.increments;
-    model.scheme       = press.scheme == "euler" ? Scheme::euler : Scheme::midpoint;
-    model.approach     = contact.approach;
-    model.ramp.sharp   = contact.law == "sharp";
-    model.edges_touch  = contact.points == "nodes and edges";
+    const double step    = press.stroke / press.increments;
+    model.scheme         = press.scheme == "euler" ? Scheme::euler : Scheme::midpoint;
+    model.approach       = contact.approach;
+    model.ramp.sharp     = contact.law == "sharp";
+    model.edges_touch    = contact.points == "nodes and edges";
     model.edge_stiffness = edge_stiffness_;
-    model.ramp.width   = contact.ramp_width * contact.approach * step;
-    const double layer = model.ramp.sharp ? 0. : contact.layer;
-    model.layer        = layer * contact.approach * step;
-    model.step         = step;
+    model.ramp.width     = contact.ramp_width * contact.approach * step;
+    const double layer   = model.ramp.sharp ? 0. : contact.layer;
+    model.layer          = layer * contact.approach * step;
+    model.step           = step;
     // Where a node at rest meets the approach speed.
     const double arrival = layer == 0. ? 1. : layer * std::sinh(1. / layer);
     model.reach          = std::max({3., 3. * contact.ramp_width, 1.5 * arrival}) * contact.approach * step;

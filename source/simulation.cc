@@ -144,7 +144,8 @@ namespace retroforge
     for (unsigned int d = 0; d < model_.dies.size(); ++d)
     {
       const double least_depth = 0.1 * parameters_.edge_length(billet_);
-      if (model_.dies[d].surface() && parameters_.dies[d].depth > 0. && parameters_.dies[d].depth < least_depth)
+      if (model_.dies[d].surface() && parameters_.dies[d].depth > 0. &&
+          parameters_.dies[d].depth < least_depth)
         throw Error("Die " + parameters_.dies[d].name + "/depth of contact",
                     "is " + as_text(parameters_.dies[d].depth) + " mm",
                     "nodes deeper are lost to the die, so it must be a tenth of the element size at least, " +
@@ -216,8 +217,8 @@ namespace retroforge
       history_           = std::make_unique<History>(command_.output_directory + "/history.csv");
       objective_history_ = std::make_unique<ObjectiveHistory>(command_.output_directory + "/objectives.csv");
       pvd_               = std::make_unique<PvdWriter>(command_.output_directory + "/fields.pvd");
-      std::cout
-        << "  inc   stroke      force        energy        volume   quality   depth newton krylov   time left\n";
+      std::cout << "  inc   stroke      force        energy        volume   quality   depth newton krylov   "
+                   "time left\n";
     }
     if (command_.resume)
       resume(state);
@@ -275,10 +276,10 @@ namespace retroforge
     const TetMesh      &mesh   = state.leg->scene.mesh;
     if (!root_)
       return;
-    const double quality = minimum_quality(mesh.cells, state.X);
-    const double size    = volume(mesh.cells, state.X);
-    const Penetration deepest =
-      deepest_point(mesh, state.leg->scene.topology, model_.dies, process_.at_stroke(state.stroke).dies, state.X);
+    const double      quality = minimum_quality(mesh.cells, state.X);
+    const double      size    = volume(mesh.cells, state.X);
+    const Penetration deepest = deepest_point(
+      mesh, state.leg->scene.topology, model_.dies, process_.at_stroke(state.stroke).dies, state.X);
     if (!(deepest.depth <= summary_.deepest.depth))
       summary_.deepest = {deepest.depth,
                           deepest.depth / parameters_.edge_length(billet_),
@@ -355,7 +356,7 @@ namespace retroforge
     std::vector<double>  force(mesh.n_nodes(), 0.);
     for (unsigned int p = 0; p < event.record.pairs.size(); ++p)
     {
-      const auto      node = stage.contact_node(p, W, event.record.solves.back().active);
+      const auto          node  = stage.contact_node(p, W, event.record.solves.back().active);
       const ContactPoint &point = event.record.pairs[p].point;
       if (node.active)
         for (unsigned int i = 0; i < point.n_nodes(); ++i)
@@ -674,16 +675,18 @@ namespace retroforge
       std::printf("%s\n", objective.parts.empty() ? "" : ")");
     }
     if (summary_.deepest.relative > parameters_.contact.largest_depth)
-      std::printf("  warning: the surface was up to %.3g mm (%.1f %% of the element size) inside die %s, at (%.4g, %.4g, "
-                  "%.4g) and stroke %.5g: what is inside does no work. More increments, a smaller Contact/edge sinking "
-                  "or Remeshing/chord error hold it out.\n",
-                  summary_.deepest.depth,
-                  100. * summary_.deepest.relative,
-                  summary_.deepest.die.c_str(),
-                  summary_.deepest.place[0],
-                  summary_.deepest.place[1],
-                  summary_.deepest.place[2],
-                  summary_.deepest.stroke);
+      std::printf(
+        "  warning: the surface was up to %.3g mm (%.1f %% of the element size) inside die %s, at (%.4g, "
+        "%.4g, "
+        "%.4g) and stroke %.5g: what is inside does no work. More increments, a smaller Contact/edge sinking "
+        "or Remeshing/chord error hold it out.\n",
+        summary_.deepest.depth,
+        100. * summary_.deepest.relative,
+        summary_.deepest.die.c_str(),
+        summary_.deepest.place[0],
+        summary_.deepest.place[1],
+        summary_.deepest.place[2],
+        summary_.deepest.stroke);
     std::printf("  volume change %.3g, %.1f s\n  results in %s\n",
                 summary_.volume_final / summary_.volume_initial - 1.,
                 timings_.seconds("total"),

@@ -114,7 +114,7 @@ namespace retroforge
   private:
     double edge_stiffness_ = 1.; ///< of edges' penalty over the nodes', once settled
 
-    double       height(double size) const;
+    double height(double size) const;
     /// Of a frictionless upsetting [MPa].
     double       mean_pressure(double size) const;
     void         check_all();

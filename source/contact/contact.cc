@@ -159,8 +159,7 @@ namespace retroforge
   namespace
   {
     /// (pair of a node, pair of an edge at it), in a fixed order.
-    std::vector<std::pair<unsigned int, unsigned int>>
-    touched_by_edges(const std::vector<ContactPair> &pairs)
+    std::vector<std::pair<unsigned int, unsigned int>> touched_by_edges(const std::vector<ContactPair> &pairs)
     {
       std::map<std::pair<unsigned int, NodeIndex>, unsigned int> of_node;
       for (unsigned int p = 0; p < pairs.size(); ++p)
@@ -175,7 +174,8 @@ namespace retroforge
       return touched;
     }
 
-    /// Adds to the ramps' derivatives those of the points' own ramps: the reverse of how edges let nodes touch.
+    /// Adds to the ramps' derivatives those of the points' own ramps: the reverse of how edges let nodes
+    /// touch.
     std::vector<double> reverse_touched_by_edges(const ContactSet<double>  &contact,
                                                  const FrictionRamp        &ramp,
                                                  const std::vector<double> &ramps_bar)
@@ -214,9 +214,9 @@ namespace retroforge
   {
     ContactSet<Number> contact;
     contact.edge_stiffness = edge_stiffness;
-    contact.pairs = pairs;
-    contact.tau   = tau;
-    contact.approach = approach;
+    contact.pairs          = pairs;
+    contact.tau            = tau;
+    contact.approach       = approach;
     std::map<std::pair<unsigned int, NodeIndex>, unsigned int> index; // (die, node) -> pair
     for (const ContactPair &pair : pairs)
     {

@@ -83,8 +83,8 @@ namespace retroforge
       for (unsigned int e = 0; e < 3; ++e)
       {
         const unsigned int other = surface.neighbour(f, e).facet;
-        const double angle = other == invalid_index ? M_PI : angle_between(vectors[f], vectors[other]);
-        sharp_[f][e]       = angle > feature_angle * M_PI / 180. ||
+        const double       angle = other == invalid_index ? M_PI : angle_between(vectors[f], vectors[other]);
+        sharp_[f][e]             = angle > feature_angle * M_PI / 180. ||
                        sagitta(surface, vectors, f, e, other, angle) > largest_sagitta * surface.diagonal();
         if (sharp_[f][e])
           for (const unsigned int end : {e, (e + 1) % 3})

@@ -23,7 +23,7 @@ namespace retroforge
     std::optional<CornerNormals> normals;
     if (law.smooth)
       normals.emplace(surface, law.feature_angle, law.largest_sagitta);
-    surface_ = 
+    surface_ =
       std::make_shared<const Surface>(std::move(surface), depth, law.feature_angle, std::move(normals));
   }
 

@@ -285,7 +285,9 @@ namespace retroforge
       return Die(name, point, facing);
     TriangleSurface made     = surface();
     const double    diagonal = made.diagonal();
-    return Die(
-      name, std::move(made), depth > 0. ? depth : 0.1 * diagonal, {surface_law == "smooth", feature_angle, largest_sagitta});
+    return Die(name,
+               std::move(made),
+               depth > 0. ? depth : 0.1 * diagonal,
+               {surface_law == "smooth", feature_angle, largest_sagitta});
   }
 } // namespace retroforge

@@ -59,8 +59,8 @@ namespace retroforge
             other.facet != invalid_index && f < other.facet &&
             turn(surface, f, other.facet) > feature_angle * M_PI / 180.)
         {
-          const Vec3 &a       = surface.vertices()[surface.triangles()[f][e]],
-                     &b       = surface.vertices()[surface.triangles()[other.facet][(other.edge + 2) % 3]];
+          const Vec3 &a = surface.vertices()[surface.triangles()[f][e]],
+                     &b = surface.vertices()[surface.triangles()[other.facet][(other.edge + 2) % 3]];
           if ((b - a) * normal(surface, f) < 0.) // the other facet falls away
             ridges.push_back({f, e});
         }

@@ -36,10 +36,10 @@ namespace retroforge
     }
   } // namespace
 
-  GradedSize::GradedSize(const TriangleSurface     &surface,
-                         const std::vector<double> &size_of_facet,
-                         const double               largest,
-                         const double               growth,
+  GradedSize::GradedSize(const TriangleSurface                    &surface,
+                         const std::vector<double>                &size_of_facet,
+                         const double                              largest,
+                         const double                              growth,
                          const std::vector<TriangleSurface::Edge> &ridges,
                          const double                              size_of_ridges)
       : largest_(largest), growth_(growth)

@@ -37,7 +37,8 @@ namespace retroforge
       const Stage<Number> &stage = view.stage;
       Number               power(0.);
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-        if (stage.contact.pairs[p].die == die && stage.scene.partition.owns(stage.contact.pairs[p].point.nodes[0]))
+        if (stage.contact.pairs[p].die == die &&
+            stage.scene.partition.owns(stage.contact.pairs[p].point.nodes[0]))
           power -= contact_force(
                      stage.contact_node(p, view.W, view.active), stage.physics.law, stage.physics.contact) *
                    stage.physics.dies[die].velocity;
@@ -53,7 +54,8 @@ namespace retroforge
       const Vec3          &v     = stage.physics.dies[die].velocity;
       ContactPullback      pullback(view, bar);
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-        if (stage.contact.pairs[p].die == die && stage.scene.partition.owns(stage.contact.pairs[p].point.nodes[0]))
+        if (stage.contact.pairs[p].die == die &&
+            stage.scene.partition.owns(stage.contact.pairs[p].point.nodes[0]))
         {
           const ContactNode<double> node = stage.contact_node(p, view.W, view.active);
           pullback.add(p, reverse_contact_force(node, stage.physics.law, stage.physics.contact, -weight * v));

@@ -15,7 +15,7 @@ namespace retroforge
 {
   namespace
   {
-    const std::string header    = "increment,time,stroke,force,energy,volume,min_quality,depth,newton,krylov\n";
+    const std::string header = "increment,time,stroke,force,energy,volume,min_quality,depth,newton,krylov\n";
     constexpr int     n_columns = 10;
 
     std::string to_csv(const HistoryRow &row)
@@ -23,7 +23,8 @@ namespace retroforge
       std::ostringstream line;
       line.precision(17);
       line << row.increment << ',' << row.time << ',' << row.stroke << ',' << row.force << ',' << row.energy
-           << ',' << row.volume << ',' << row.min_quality << ',' << row.depth << ',' << row.newton << ',' << row.krylov << '\n';
+           << ',' << row.volume << ',' << row.min_quality << ',' << row.depth << ',' << row.newton << ','
+           << row.krylov << '\n';
       return line.str();
     }
 

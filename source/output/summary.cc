@@ -112,12 +112,12 @@ namespace retroforge
     json["volume_initial"]        = number(volume_initial);
     json["volume_final"]          = number(volume_final);
     if (!deepest.die.empty())
-      json["deepest"] = {{"depth", number(deepest.depth)},
-                         {"over_element_size", number(deepest.relative)},
-                         {"die", deepest.die},
-                         {"stroke", number(deepest.stroke)},
-                         {"place",
-                          {number(deepest.place[0]), number(deepest.place[1]), number(deepest.place[2])}}};
+      json["deepest"] = {
+        {"depth", number(deepest.depth)},
+        {"over_element_size", number(deepest.relative)},
+        {"die", deepest.die},
+        {"stroke", number(deepest.stroke)},
+        {"place", {number(deepest.place[0]), number(deepest.place[1]), number(deepest.place[2])}}};
     add_unless_empty(json, "wall_seconds", number_map(wall_seconds));
     json["record_bytes"] = number(record_bytes);
     add_unless_empty(json, "check", list(check));

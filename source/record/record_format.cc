@@ -266,22 +266,21 @@ namespace retroforge
                          {facet[i], kind[i]}});
         if (is_there(pairs[i], n_nodes, shape))
           continue;
-        const bool        feature = is_there(pairs[i].point, n_nodes) && pairs[i].die < shape.die_facets.size();
-        const std::string pair    = "contact pair " + std::to_string(i) + " is of ";
+        const bool feature     = is_there(pairs[i].point, n_nodes) && pairs[i].die < shape.die_facets.size();
+        const std::string pair = "contact pair " + std::to_string(i) + " is of ";
         if (feature)
           throw hdf5::Failure(pair + "facet " + std::to_string(facet[i]) + ", kind " +
                               std::to_string(kind[i]) + " of a die of " +
                               std::to_string(shape.die_facets[pairs[i].die]) + " facets and " +
                               std::to_string(DieFeature::n_kinds) + " kinds, counted from 0");
         const auto &[first, second] = pairs[i].point.nodes;
-        throw hdf5::Failure(pair +
-                            (pairs[i].point.is_node() ? "node " + std::to_string(first)
-                                                      : "the edge of nodes " + std::to_string(first) +
-                                                          " and " + std::to_string(second)) +
-                            " and die " +
-                            std::to_string(pairs[i].die) + " where there are " + std::to_string(n_nodes) +
-                            " nodes and " + std::to_string(shape.die_facets.size()) +
-                            " dies, counted from 0");
+        throw hdf5::Failure(
+          pair +
+          (pairs[i].point.is_node()
+             ? "node " + std::to_string(first)
+             : "the edge of nodes " + std::to_string(first) + " and " + std::to_string(second)) +
+          " and die " + std::to_string(pairs[i].die) + " where there are " + std::to_string(n_nodes) +
+          " nodes and " + std::to_string(shape.die_facets.size()) + " dies, counted from 0");
       }
       return pairs;
     }

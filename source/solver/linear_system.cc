@@ -381,10 +381,9 @@ namespace retroforge
       if (!partition.sees(point.nodes))
         continue;
       edges_press_ |= !point.is_node();
-      const Tensor<2, 3> of_point = point.weight() * point.weight() *
-                                    contact_tangent(stage.contact_node(p, W, active),
-                                                    stage.physics.law,
-                                                    stage.physics.contact);
+      const Tensor<2, 3> of_point =
+        point.weight() * point.weight() *
+        contact_tangent(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact);
       for (unsigned int a = 0; a < point.n_nodes(); ++a)
       {
         const NodeIndex k = point.nodes[a];
@@ -393,8 +392,7 @@ namespace retroforge
         const unsigned int local = k - partition.node_begin;
         for (unsigned int b = 0; b < point.n_nodes(); ++b)
         {
-          const Tensor<2, 3> tangent =
-            frames_[k].axes * of_point * transpose(frames_[point.nodes[b]].axes);
+          const Tensor<2, 3> tangent  = frames_[k].axes * of_point * transpose(frames_[point.nodes[b]].axes);
           const unsigned int position = a == b ? diagonal_[local] : position_of(local, point.nodes[b]);
           for (unsigned int i = 0; i < 3; ++i)
           {
@@ -626,8 +624,8 @@ namespace retroforge
     const Partition                   &partition = scene_.partition;
     TrilinosWrappers::MPI::BlockVector r(x_);
     matrix_.residual(r, x_, rhs_);
-    const double *residual = r.block(0).trilinos_vector()[0];
-    double       *velocity = x_.block(0).trilinos_vector()[0];
+    const double             *residual = r.block(0).trilinos_vector()[0];
+    double                   *velocity = x_.block(0).trilinos_vector()[0];
     std::vector<unsigned int> rows;
     for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
       for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
@@ -649,9 +647,9 @@ namespace retroforge
                                 const double                    *r,
                                 std::vector<double>             &d) const
   {
-    const std::size_t                                 n = rows.size();
-    std::vector<unsigned int>                         number(A_->column_map->NumMyElements(), invalid_index);
-    std::vector<double>                               diagonal(n), residual(n), z(n), direction(n), image(n);
+    const std::size_t         n = rows.size();
+    std::vector<unsigned int> number(A_->column_map->NumMyElements(), invalid_index);
+    std::vector<double>       diagonal(n), residual(n), z(n), direction(n), image(n);
     std::vector<std::vector<std::pair<unsigned int, double>>> entries(n);
     for (std::size_t i = 0; i < n; ++i)
       number[rows[i]] = i; // owned columns come first, in the order of the rows

@@ -18,15 +18,15 @@ namespace retroforge
     const ContactPair      &pair = contact.pairs[p];
     const DieState<Number> &die  = physics.dies[pair.die];
     ContactNode<Number>     node;
-    node.u      = pair.point.mean(W.V) - die.velocity;
-    node.n      = contact.projections[p].n;
-    node.delta  = contact.projections[p].delta;
-    node.tau    = contact.tau;
+    node.u        = pair.point.mean(W.V) - die.velocity;
+    node.n        = contact.projections[p].n;
+    node.delta    = contact.projections[p].delta;
+    node.tau      = contact.tau;
     node.approach = contact.approach;
-    node.S      = areas.S[p];
-    node.Sf     = areas.Sf[p];
-    node.alpha  = die.friction;
-    node.active = active.empty() ? value_of(approach_excess(node)) > 0. : active[p] != 0;
+    node.S        = areas.S[p];
+    node.Sf       = areas.Sf[p];
+    node.alpha    = die.friction;
+    node.active   = active.empty() ? value_of(approach_excess(node)) > 0. : active[p] != 0;
     return node;
   }
 
@@ -57,8 +57,8 @@ namespace retroforge
     }
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (partition.sees(contact.pairs[p].point.nodes))
-        contact.pairs[p].point.add(
-          contact_force(contact_node(p, W, active), physics.law, physics.contact), r.V);
+        contact.pairs[p].point.add(contact_force(contact_node(p, W, active), physics.law, physics.contact),
+                                   r.V);
     return r;
   }
 
@@ -193,15 +193,14 @@ namespace retroforge
     ContactAreas<double> areas_bar = no_areas(stage);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (const ContactPoint &point = stage.contact.pairs[p].point; partition.owns(point.nodes[0]))
-        scatter(stage,
-                p,
-                reverse_contact_force(stage.contact_node(p, W, active),
-                                      stage.physics.law,
-                                      stage.physics.contact,
-                                      point.mean(lambda.V)),
-                areas_bar,
-                contact_bar,
-                physics_bar);
+        scatter(
+          stage,
+          p,
+          reverse_contact_force(
+            stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, point.mean(lambda.V)),
+          areas_bar,
+          contact_bar,
+          physics_bar);
     reverse_contact_areas(mesh, stage.scene.topology, stage.contact, stage.X, areas_bar, X_bar, contact_bar);
   }
 

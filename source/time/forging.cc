@@ -95,9 +95,8 @@ namespace retroforge
     }
   } // namespace
 
-  std::string Forging::too_much(const Leg                  &leg,
-                                const NodalVectors<double> &X,
-                                const NodalVectors<double> &X_next) const
+  std::string
+  Forging::too_much(const Leg &leg, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const
   {
     const TetMesh &mesh = leg.scene.mesh;
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
@@ -211,7 +210,8 @@ namespace retroforge
       --state.depth;
   }
 
-  void Forging::throw_stuck(const IncrementRecord &record, const double whole, const std::string &reason) const
+  void
+  Forging::throw_stuck(const IncrementRecord &record, const double whole, const std::string &reason) const
   {
     std::ostringstream what;
     what.precision(5);
@@ -229,17 +229,18 @@ namespace retroforge
 
   void Forging::check_progress(const ForgingState &state) const
   {
-    const double change = volume(state.leg->scene.mesh.cells, state.X) / state.volume - 1.;
+    const double       change = volume(state.leg->scene.mesh.cells, state.X) / state.volume - 1.;
     std::ostringstream what;
     what.precision(4);
     if (!(std::abs(change) <= press_.largest_loss))
     {
       what << "at stroke " << state.stroke << " mm the workpiece has " << (change < 0. ? "lost " : "won ")
            << 100. * std::abs(change) << " % of its volume";
-      throw Error("Press/stroke",
-                  what.str(),
-                  "at most Press/largest volume change may be lost",
-                  "if the dies nearly close there, shorten the stroke; else use more increments or a finer mesh");
+      throw Error(
+        "Press/stroke",
+        what.str(),
+        "at most Press/largest volume change may be lost",
+        "if the dies nearly close there, shorten the stroke; else use more increments or a finer mesh");
     }
     if (state.increments > most_increments * press_.increments)
     {
@@ -271,10 +272,12 @@ namespace retroforge
         remesh(process, state, record);
         frozen = remesher_.frozen(state.leg->scene.mesh);
       };
-      if (remesher_.enabled() &&
-          remesher_.due(
-            state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies, frozen, since_remeshing(),
-            state.increments == 0))
+      if (remesher_.enabled() && remesher_.due(state.leg->scene.mesh,
+                                               state.X,
+                                               process.at_stroke(state.stroke).dies,
+                                               frozen,
+                                               since_remeshing(),
+                                               state.increments == 0))
         renew();
       record.stroke = state.stroke;
       record.step   = std::min(whole / (1 << state.depth), press_.stroke - state.stroke);

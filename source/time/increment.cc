@@ -195,7 +195,7 @@ namespace retroforge
       if (!replay)
       {
         const auto timing = timings_.scope("contact");
-        record.pairs = find_contact_pairs(
+        record.pairs      = find_contact_pairs(
           scene_.topology, scene_.dies, physics.dies, X, model_.ramp, reach, model_.edges_touch);
         all_found = reach > model_.reach && record.pairs.size() == n_watched;
         n_watched = record.pairs.size();
@@ -407,7 +407,7 @@ namespace retroforge
                                                       Dual(model_.approach * dt),
                                                       X,
                                                       model_.approach_law(record.step),
-                            model_.edge_stiffness);
+                                                      model_.edge_stiffness);
     const Physics<double>    physics_value = values_of(physics);
     const ContactSet<double> contact_value = contact_set(physics_value, values_of(X), record, dt.val());
     NodalVectors<Dual>       position      = X;

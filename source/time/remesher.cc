@@ -140,9 +140,7 @@ namespace retroforge
            (too_coarse(mesh, X, states) || misfit(mesh, X, states) > parameters_.fit * element_size_);
   }
 
-  bool Remesher::too_coarse(const TetMesh              &mesh,
-                            const NodalVectors<double> &X,
-                            const DieStates            &states) const
+  bool Remesher::too_coarse(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const
   {
     const SizeField size     = size_field(states);
     const double    smallest = parameters_.smallest_size * element_size_;
@@ -157,8 +155,7 @@ namespace retroforge
             continue;
           for (unsigned int d = 0; d < dies_.size(); ++d)
             if (near_die_[d])
-              if (const DieFeature feature =
-                    dies_[d].closest(middle, states[d].displacement, 0.5 * length);
+              if (const DieFeature feature = dies_[d].closest(middle, states[d].displacement, 0.5 * length);
                   feature.found())
                 return true;
         }

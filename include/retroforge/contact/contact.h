@@ -2,28 +2,29 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/contact/contact_point.h>
 #include <retroforge/geometry/die.h>
 #include <retroforge/material/norton_hoff.h>
-#include <retroforge/contact/contact_point.h>
 
 #include <cmath>
 #include <cstdint>
 
 /// Unilateral contact at points of the surface, and Norton friction lumped at its nodes.
 ///
-/// For a point against a die, its position and velocity means of its nodes' (ContactPoint):  u = V_k - v_die,  h = u·n - a(delta),  a = delta/tau or, with a layer l, l/tau
-/// asinh(delta/l),  dv = u - (u·n) n,  and the force on the residual is
+/// For a point against a die, its position and velocity means of its nodes' (ContactPoint):  u = V_k - v_die,
+/// h = u·n - a(delta),  a = delta/tau or, with a layer l, l/tau asinh(delta/l),  dv = u - (u·n) n,  and the
+/// force on the residual is
 ///   rho S [h]^+ n  +  S^f alpha K (|dv|^2 + v0^2)^((m-1)/2) dv.       @cite Laroussi2003, Eq. (21),
 ///   (40)-(49)
-/// S is a third of the areas of the surface faces at the point; S^f, of nodes only, a third of those whose three nodes
-/// touch the die, each face weighted by the product of its nodes' ramps w(delta). A node held off the die by an edge that
-/// touches counts as touching.
+/// S is a third of the areas of the surface faces at the point; S^f, of nodes only, a third of those whose
+/// three nodes touch the die, each face weighted by the product of its nodes' ramps w(delta). A node held off
+/// the die by an edge that touches counts as touching.
 ///
-/// Nodes alone do not keep an edge out of a die whose convex part it spans: its ends touch, and its middle is in the die.
-/// So the middles of such edges are points, too. Their penalty is soft: nodes and edges together are more constraints
-/// than the surface has motions, and stiff ones would fight. Since gaps are found anew in each increment, what an edge
-/// gives way does not add up: a penalty at which it sinks with 1 % of the press speed leaves it 1 % of an increment's
-/// stroke in the die, times the pressure there over the mean one.
+/// Nodes alone do not keep an edge out of a die whose convex part it spans: its ends touch, and its middle is
+/// in the die. So the middles of such edges are points, too. Their penalty is soft: nodes and edges together
+/// are more constraints than the surface has motions, and stiff ones would fight. Since gaps are found anew
+/// in each increment, what an edge gives way does not add up: a penalty at which it sinks with 1 % of the
+/// press speed leaves it 1 % of an increment's stroke in the die, times the pressure there over the mean one.
 ///
 /// What belongs to the increment (delta, n, w, tau) is found once at X_i and kept for all its stages:
 /// ContactSet. What belongs to a stage (S, S^f) is computed from the stage's positions: ContactAreas.
@@ -82,12 +83,13 @@ namespace retroforge
 
     std::vector<ContactPair>        pairs;
     std::vector<Projection<Number>> projections; ///< of each pair, at X_i
-    /// w(delta) of each pair; of a node, where edges at it may touch in its place, 1 - (1 - w) product (1 - w_edge).
-    std::vector<Number>             ramps;
-    std::vector<Face>               friction_faces;
-    Number                          tau   = 1.; ///< approach time [s]
-    ApproachLaw                     approach;
-    double                          edge_stiffness = 1.; ///< of edges' penalty over the nodes'
+    /// w(delta) of each pair; of a node, where edges at it may touch in its place, 1 - (1 - w) product (1 -
+    /// w_edge).
+    std::vector<Number> ramps;
+    std::vector<Face>   friction_faces;
+    Number              tau = 1.; ///< approach time [s]
+    ApproachLaw         approach;
+    double              edge_stiffness = 1.; ///< of edges' penalty over the nodes'
   };
 
   /// S, of edges times their stiffness, and S^f [mm^2] of each pair.
@@ -116,8 +118,9 @@ namespace retroforge
     explicit ContactSetBar(const std::size_t n_pairs) : delta(n_pairs, 0.), ramp(n_pairs, 0.), n(n_pairs) {}
   };
 
-  /// The nodes within `reach` of a die, at positions X; then, where the die bulges into edges of the surface, their
-  /// middles, and their ends if farther away. Deterministic order: by die, then nodes, edges, ends, each ascending.
+  /// The nodes within `reach` of a die, at positions X; then, where the die bulges into edges of the surface,
+  /// their middles, and their ends if farther away. Deterministic order: by die, then nodes, edges, ends,
+  /// each ascending.
   /// @param with_edges  whether middles of edges count
   std::vector<ContactPair> find_contact_pairs(const Topology                      &topology,
                                               const std::vector<Die>              &dies,
@@ -173,7 +176,7 @@ namespace retroforge
     Vector3<Number> n;
     Number          delta, tau, S, Sf;
     Number          alpha;
-    bool            active;     ///< counts as h > 0
+    bool            active; ///< counts as h > 0
     ApproachLaw     approach;
   };
 
@@ -182,9 +185,9 @@ namespace retroforge
   /// the same near the die, but flatter where a free node meets it. The force then sets in gradually, and the
   /// energy is smoother in the design, at less delay than a longer tau costs.
   ///
-  /// What is inside a die comes out of it at no more than 2 l in a whole increment, and that part of it in one that was
-  /// cut:  A -> A (1 + (A / (2 part))^2)^(-1/2)  for delta < 0. Without that bound a shorter increment would throw it
-  /// out so much faster, and however short it is, elements would be turned over.
+  /// What is inside a die comes out of it at no more than 2 l in a whole increment, and that part of it in
+  /// one that was cut:  A -> A (1 + (A / (2 part))^2)^(-1/2)  for delta < 0. Without that bound a shorter
+  /// increment would throw it out so much faster, and however short it is, elements would be turned over.
   template <typename Number>
   Number approach_speed(const Number &delta, const Number &tau, const ApproachLaw &law)
   {

@@ -6,8 +6,8 @@
 
 namespace retroforge
 {
-  /// A place of the workpiece's surface where contact is looked for: a node, or the middle of an edge. Its position and
-  /// velocity are the mean of its nodes', and what acts on it acts on them in equal parts.
+  /// A place of the workpiece's surface where contact is looked for: a node, or the middle of an edge. Its
+  /// position and velocity are the mean of its nodes', and what acts on it acts on them in equal parts.
   struct ContactPoint
   {
     std::array<NodeIndex, 2> nodes; ///< the second one is invalid_index for a node

@@ -15,8 +15,8 @@ namespace retroforge
     unsigned int die = invalid_index;
   };
 
-  /// Looks at the nodes, the middles of the edges and the centres of the faces of the surface. A point farther inside
-  /// than the edges there are long is not found: it is behind the die rather than in it.
+  /// Looks at the nodes, the middles of the edges and the centres of the faces of the surface. A point
+  /// farther inside than the edges there are long is not found: it is behind the die rather than in it.
   Penetration deepest_point(const TetMesh                       &mesh,
                             const Topology                      &topology,
                             const std::vector<Die>              &dies,

@@ -9,11 +9,10 @@ namespace retroforge
 {
   /// Normals at the corners of the facets of a surface that stands for a smooth one.
   ///
-  /// An edge is sharp where the facets turn by more than the feature angle, or where a smooth surface through it would be
-  /// farther from its facets than their makers would have left it: a fold between two large faces is an edge although it
-  /// turns by little. Around a vertex the facets fall
-  /// into fans between sharp edges, and each fan has one normal. With u and v from the vertex a along the
-  /// edges of a facet,
+  /// An edge is sharp where the facets turn by more than the feature angle, or where a smooth surface through
+  /// it would be farther from its facets than their makers would have left it: a fold between two large faces
+  /// is an edge although it turns by little. Around a vertex the facets fall into fans between sharp edges,
+  /// and each fan has one normal. With u and v from the vertex a along the edges of a facet,
   ///   n = unit( sum_f u x v / (|u|^2 |v|^2) )
   /// which is exact for vertices on a sphere, and for quadrangles halved along either diagonal the same (Max,
   /// Weights for computing vertex normals from facet normals, 1999). Facets of a flat region much smaller

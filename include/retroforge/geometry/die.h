@@ -25,7 +25,8 @@ namespace retroforge
   {
     bool   smooth        = true; ///< they stand for a smooth surface; else they are the surface
     double feature_angle = 25.;  ///< edges where a smooth surface turns by more are sharp [degrees]
-    /// Or where it would be farther from its facets than this part of their extent: a fold between large faces.
+    /// Or where it would be farther from its facets than this part of their extent: a fold between large
+    /// faces.
     double largest_sagitta = 3e-3;
   };
 

@@ -29,8 +29,8 @@ namespace retroforge
     double      friction = 0.;
     double      depth    = 0.; ///< 0: a tenth of the surface's diagonal [mm]
 
-    std::string surface_law   = "smooth";
-    double      feature_angle = 25.; ///< [degrees]
+    std::string surface_law     = "smooth";
+    double      feature_angle   = 25.;  ///< [degrees]
     double      largest_sagitta = 3e-3; ///< of the surface's diagonal
 
     std::string file;

@@ -8,8 +8,8 @@ namespace retroforge
 {
   /// Curvature at each facet [1/mm]: over its three edges the largest of the angle between the normals on
   /// both sides over the distance of the two centroids, measured across the edge. It is 1/R on a finely
-  /// triangulated cylinder of radius R. Sharp edges, where the surface turns by more than the feature angle, do not
-  /// count.
+  /// triangulated cylinder of radius R. Sharp edges, where the surface turns by more than the feature angle,
+  /// do not count.
   /// @param feature_angle  [degrees]
   std::vector<double> facet_curvature(const TriangleSurface &surface, double feature_angle);
 

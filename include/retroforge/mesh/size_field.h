@@ -26,11 +26,11 @@ namespace retroforge
     /// @param growth         g, dimensionless
     /// @param ridges         edges that want a length of their own
     /// Throws Error unless all of them are positive and there is one size per facet.
-    GradedSize(const TriangleSurface     &surface,
-               const std::vector<double> &size_of_facet,
-               double                     largest,
-               double                     growth,
-               const std::vector<TriangleSurface::Edge> &ridges = {},
+    GradedSize(const TriangleSurface                    &surface,
+               const std::vector<double>                &size_of_facet,
+               double                                    largest,
+               double                                    growth,
+               const std::vector<TriangleSurface::Edge> &ridges         = {},
                double                                    size_of_ridges = 0.);
 
     double operator()(const Vec3 &x) const;

@@ -76,11 +76,11 @@ namespace retroforge
     /// The deepest the surface has been in a die, over the run.
     struct Depth
     {
-      double               depth    = unknown; ///< mm
-      double               relative = unknown; ///< over the element size
-      double               stroke   = unknown; ///< at the end of the increment, mm
+      double                depth    = unknown; ///< mm
+      double                relative = unknown; ///< over the element size
+      double                stroke   = unknown; ///< at the end of the increment, mm
       std::array<double, 3> place    = {{unknown, unknown, unknown}};
-      std::string          die;
+      std::string           die;
     };
     Depth deepest;
 

@@ -25,9 +25,9 @@
 ///       pairs                 [n_pairs][3]            uint32  node, second node of an edge or 2^32 - 1, die
 ///       touching              [n_pairs]               uint8
 ///       facet                 [n_pairs]               uint32  of the die
-///       kind                  [n_pairs]               uint8   0 face, 1-3 edge, 4-6 corner of the facet, 7 its plane
-///       active                [n_solves][n_pairs]     uint8
-///       remesh                only of an increment that begins on a new mesh: that mesh as in the header
+///       kind                  [n_pairs]               uint8   0 face, 1-3 edge, 4-6 corner of the facet, 7
+///       its plane active                [n_solves][n_pairs]     uint8 remesh                only of an
+///       increment that begins on a new mesh: that mesh as in the header
 ///         X_before            [n_old][3]              double [mm]   positions on the mesh before
 ///         begin               [n_nodes + 1]           uint32        rows of J,
 ///         node weight         [n_entries]             uint32, double

@@ -83,12 +83,12 @@ namespace retroforge
     void add_cell(CellIndex c, unsigned int visited, const TangentPack &tangent, unsigned int lane);
     /// Where a node stands in the row of an owned node, given by its local number.
     unsigned int position_of(unsigned int local_row, NodeIndex column) const;
-    void add_contact(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
-    void scale_and_fix();
-    void make_preconditioner();
-    void load(const Field<double> &rhs, dealii::TrilinosWrappers::MPI::BlockVector &b) const;
-    void unload(const dealii::TrilinosWrappers::MPI::BlockVector &x, Field<double> &solution) const;
-    void load_guess(const Field<double> &guess, dealii::TrilinosWrappers::MPI::BlockVector &x) const;
+    void         add_contact(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
+    void         scale_and_fix();
+    void         make_preconditioner();
+    void         load(const Field<double> &rhs, dealii::TrilinosWrappers::MPI::BlockVector &b) const;
+    void         unload(const dealii::TrilinosWrappers::MPI::BlockVector &x, Field<double> &solution) const;
+    void         load_guess(const Field<double> &guess, dealii::TrilinosWrappers::MPI::BlockVector &x) const;
     /// Sets x_ to the combination of the guesses with the least residual, and returns its norm.
     double       start_from(const std::vector<Field<double>> &guesses);
     unsigned int solve_iteratively(double tolerance, const std::vector<Field<double>> &guesses);
@@ -110,8 +110,8 @@ namespace retroforge
     double                                 pressure_scale_ = 1.;
     std::vector<double>                    viscous_diagonal_;
     bool                                   edges_press_ = false; ///< penalties couple nodes
-    std::vector<BubbleElimination<double>> eliminations_;  ///< of the visited cells
-    std::vector<CellIndex>                 visited_index_; ///< cell -> position in visited_cells
+    std::vector<BubbleElimination<double>> eliminations_;        ///< of the visited cells
+    std::vector<CellIndex>                 visited_index_;       ///< cell -> position in visited_cells
 
     std::vector<unsigned int> diagonal_; ///< where an owned node stands in its own row
     /// Of each visited cell: where node b stands in the row of node a (invalid_index when a is not owned).

@@ -31,7 +31,7 @@ namespace retroforge
     Field<double>        W;      ///< the last increment's solution, where the next one starts
     double               stroke = 0.;
     double               volume = 0.; ///< at the start of the run [mm^3]
-    unsigned int         depth  = 0; ///< an increment is the whole one / 2^depth
+    unsigned int         depth  = 0;  ///< an increment is the whole one / 2^depth
 
     Energy<double>                   energy;
     unsigned int                     increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;
@@ -92,15 +92,14 @@ namespace retroforge
                         IncrementRecord       &record,
                         NodalVectors<double>  &X_next,
                         Field<double>         &solution) const;
-    std::string too_much(const Leg                  &leg,
-                         const NodalVectors<double> &X,
-                         const NodalVectors<double> &X_next) const;
+    std::string
+    too_much(const Leg &leg, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const;
     std::string slips_too_far(const Process<double>      &process,
                               const IncrementRecord      &record,
                               const NodalVectors<double> &X,
                               const NodalVectors<double> &X_next) const;
     [[noreturn]] void
-         throw_stuck(const IncrementRecord &record, double whole, const std::string &reason) const;
+    throw_stuck(const IncrementRecord &record, double whole, const std::string &reason) const;
     /// Throws Error where a run can only go on to no good: it takes too many increments, or loses its volume.
     void check_progress(const ForgingState &state) const;
     void remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;

@@ -50,7 +50,8 @@ namespace retroforge
 
     /// @param frozen      cells that the last remeshing could not make better, see frozen_cells()
     /// @param increments  since the last remeshing
-    /// @param first       whether no increment has been made yet: then the mesh may be too coarse for its dies
+    /// @param first       whether no increment has been made yet: then the mesh may be too coarse for its
+    /// dies
     bool due(const TetMesh              &mesh,
              const NodalVectors<double> &X,
              const DieStates            &states,

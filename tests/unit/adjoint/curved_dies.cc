@@ -57,25 +57,25 @@ namespace
     p.billet.element_size = 5.;
     for (DieParameters &die : p.dies)
     {
-      die.shape       = "tripod";
-      die.chord_error = 0.3;
+      die.shape           = "tripod";
+      die.chord_error     = 0.3;
       die.feature_angle   = 40.; // for facets as coarse as these
       die.largest_sagitta = 1.;
-      die.tripod      = {10., 10., 46., 4., 60., {5., 20., 2., 2.}};
+      die.tripod          = {10., 10., 46., 4., 60., {5., 20., 2., 2.}};
     }
     return p;
   }
 
   Parameters bell_scene()
   {
-    Parameters p          = cylinder_scene();
-    p.dies[1].shape       = "bell";
-    p.dies[1].chord_error = 0.3;
+    Parameters p              = cylinder_scene();
+    p.dies[1].shape           = "bell";
+    p.dies[1].chord_error     = 0.3;
     p.dies[1].feature_angle   = 40.;
     p.dies[1].largest_sagitta = 1.;
-    p.dies[1].bell        = {30., 50., {6., 60., 2., 14.}};
-    p.dies[1].point       = Vec3({0., 0., 18.9});
-    p.press.stroke        = 2.4;
+    p.dies[1].bell            = {30., 50., {6., 60., 2., 14.}};
+    p.dies[1].point           = Vec3({0., 0., 18.9});
+    p.press.stroke            = 2.4;
     return p;
   }
 

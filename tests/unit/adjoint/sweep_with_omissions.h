@@ -209,7 +209,7 @@ namespace retroforge
     std::map<unsigned int, CornerNormals> normals;
     for (unsigned int d = 0; d < dies.size(); ++d)
       if (dies[d].surface())
-        normals.emplace(d, CornerNormals(*dies[d].surface(), feature_angle));
+        normals.emplace(d, CornerNormals(*dies[d].surface(), feature_angle, 1.));
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
     {
       const ContactPair &pair   = contact.pairs[p];
@@ -357,7 +357,7 @@ namespace retroforge
                                                         problem.model.step.ramp,
                                                         problem.model.step.approach * dt,
                                                         X,
-                                                        problem.model.step.layer,
+                                                        problem.model.step.approach_law(record.step),
                                                         problem.model.step.edge_stiffness);
     ContactSetBar            contact_bar(record.pairs.size());
     PhysicsBar               bar(scene.dies);

@@ -179,9 +179,9 @@ double check_nodes(const std::string &title,
     NodeCase<double> c = random_case(random, m, v0);
     if (!sliding)
       c.node.u = random.scalar() * c.node.n;
-    c.node.Sf     = Sf;
+    c.node.Sf       = Sf;
     c.node.approach = law;
-    c.node.active = approach_excess(c.node) > 0.;
+    c.node.active   = approach_excess(c.node) > 0.;
     n_active += c.node.active;
     check_tangent(c, errors);
     check_reverse(c, random.vector(), errors);
@@ -506,9 +506,8 @@ void check_layer()
   errors.compare("inside", approach_speed(-0.7, tau, cut), -layer / tau * A / std::sqrt(1. + 25. * A * A));
   errors.compare("bound inside", std::max(1., approach_speed(-1e250, tau, cut) / (-0.2 * layer / tau)), 1.);
   for (const double delta : {-2., -0.3, 0.4})
-    errors.compare("slope",
-                   approach_slope(delta, tau, cut),
-                   approach_speed(Dual(1, 0, delta), Dual(tau), cut).dx(0));
+    errors.compare(
+      "slope", approach_slope(delta, tau, cut), approach_speed(Dual(1, 0, delta), Dual(tau), cut).dx(0));
   errors.compare("asinh", approach_speed(0.7, tau, layer), layer / tau * std::asinh(0.7 / layer));
   std::cout << "layer" << std::endl;
   errors.print(1e-12);

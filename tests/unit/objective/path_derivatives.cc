@@ -102,7 +102,7 @@ struct PathProblem
   PathInputs<double>                                 at;
   std::array<std::vector<ContactPair>, n_increments> pairs;
   std::array<ActiveSet, n_increments>                active;
-  double                                             layer = 0.4, edge_stiffness = 0.3;
+  double                                             layer = 0.43, edge_stiffness = 0.3;
 
   static TetMesh make_mesh()
   {

@@ -15,8 +15,8 @@ using namespace retroforge;
 bool equal(const HistoryRow &a, const HistoryRow &b)
 {
   return a.increment == b.increment && a.time == b.time && a.stroke == b.stroke && a.force == b.force &&
-         a.energy == b.energy && a.volume == b.volume && a.min_quality == b.min_quality && a.depth == b.depth &&
-         a.newton == b.newton && a.krylov == b.krylov;
+         a.energy == b.energy && a.volume == b.volume && a.min_quality == b.min_quality &&
+         a.depth == b.depth && a.newton == b.newton && a.krylov == b.krylov;
 }
 
 int main()

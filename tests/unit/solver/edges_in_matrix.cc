@@ -37,7 +37,8 @@ namespace
   std::vector<Die> make_dies()
   {
     const Vec3 side = Vec3({-1., 0.1, 0.2});
-    return {Die("lower", wavy_sheet(), 2., {true, 40., 1.}), Die("side", Vec3({5., 0., 0.}), side / side.norm())};
+    return {Die("lower", wavy_sheet(), 2., {true, 40., 1.}),
+            Die("side", Vec3({5., 0., 0.}), side / side.norm())};
   }
 
   /// A stage at any velocity, and its matrix by several methods.
