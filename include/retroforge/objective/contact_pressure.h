@@ -6,8 +6,9 @@
 
 namespace retroforge
 {
-  /// Smooth maximum over nodes and time of the contact pressure p_k = rho h_k on a die [MPa],
+  /// Smooth maximum over nodes and time of the contact pressure on a die [MPa],
   ///   ( sum_i dt_i sum_k S_k p_k^q / sum_i dt_i sum_k S_k w_k )^(1/q),
+  /// p_k the pushing force on a node, that of its own and half of that of each edge at it, over S_k;
   /// k the nodes pressed by the die, S_k a third of the surface at k, w_k the friction ramp: the mean over
   /// the surface in contact, never above the largest pressure. The set of pressed nodes is frozen, as
   /// everywhere. Zero before any contact.
