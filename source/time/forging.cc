@@ -93,6 +93,20 @@ namespace retroforge
       text << " at (" << x[0] << ", " << x[1] << ", " << x[2] << ")";
       return text.str();
     }
+
+    /// A corner of the cell of the least quality.
+    Vec3 flattest_cell(const TetMesh &mesh, const NodalVectors<double> &X)
+    {
+      CellIndex flattest = 0;
+      double    least    = std::numeric_limits<double>::infinity();
+      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+        if (const double quality = tet_quality(corners(mesh.cells[c], X)); quality < least)
+        {
+          least    = quality;
+          flattest = c;
+        }
+      return X[mesh.cells[flattest][0]];
+    }
   } // namespace
 
   std::string
@@ -153,7 +167,8 @@ namespace retroforge
     }
     catch (const dealii::ExceptionBase &)
     {
-      return "the linear systems of an increment have no solution";
+      return "the linear systems of an increment have no solution; the flattest element is" +
+             at(flattest_cell(state.leg->scene.mesh, state.X));
     }
     std::string reason = too_much(*state.leg, state.X, X_next);
     if (reason.empty())
