@@ -157,7 +157,7 @@ NodeCase<double> random_case(Random &random, const double m, const double v0)
 {
   NodeCase<double> c;
   const Vec3       n = random.vector();
-  c.node             = {random.vector(), n / n.norm(), random.scalar(), 0.3, 1.7, 1.2, 0.4, true};
+  c.node             = {random.vector(), n / n.norm(), random.scalar(), 0.3, 1.7, 1.2, 0.4, true, {}};
   c.law              = {1.693, m, 0.05};
   c.contact          = {23., v0};
   c.node.active      = approach_excess(c.node) > 0.;
