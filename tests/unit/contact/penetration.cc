@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// The deepest point of a surface in a die. Proved, with a block of edges 10 and elements of 5: a plane 0.3
+// above its base is reported 0.3 deep; a roof whose ridge passes between the nodes, 0.2 above the base, is
+// found at the middle of an edge, deeper than any node, 0.2 / sqrt(1.01); a die away from the block is not
+// reported.
+
+#include <deal.II/base/mpi.h>
+
+#include <retroforge/contact/penetration.h>
+#include <retroforge/mesh/billet.h>
+
+#include <cstdio>
+
+using namespace retroforge;
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  BilletParameters                         parameters;
+  parameters.base_centre  = Vec3();
+  parameters.size         = Vec3({10., 10., 10.});
+  parameters.element_size = 5.;
+  const TetMesh  mesh     = make_billet(parameters, MPI_COMM_SELF);
+  const Topology topology(mesh);
+  const auto     report = [&](const char *name, const Die &die, const double lift) {
+    const std::vector<DieState<double>> states  = {{Vec3(), Vec3({0., 0., lift}), 0., {}}};
+    const Penetration                   deepest = deepest_point(mesh, topology, {die}, states, mesh.X);
+    std::printf("%s: %.4f deep, found %s\n", name, deepest.depth, deepest.die == 0 ? "yes" : "no");
+    return deepest;
+  };
+  const Die plane("plane", Vec3(), Vec3({0., 0., 1.}));
+  report("plane", plane, 0.3);
+  report("plane below", plane, -0.3);
+  // Two slopes that meet at x = 2.5, between nodes: they fall by 1 over 10.
+  const NodalVectors<double>  x = {Vec3({-7.5, -20., -1.}),
+                                   Vec3({2.5, -20., 0.}),
+                                   Vec3({12.5, -20., -1.}),
+                                   Vec3({-7.5, 20., -1.}),
+                                   Vec3({2.5, 20., 0.}),
+                                   Vec3({12.5, 20., -1.})};
+  const std::vector<Triangle> t = {{{0, 1, 4}}, {{0, 4, 3}}, {{1, 2, 5}}, {{1, 5, 4}}};
+  const Die                   roof("roof", TriangleSurface("roof", x, t), 3., {false, 40.});
+  const Penetration           deepest = report("roof", roof, 0.2);
+  double                      nodes   = 0.;
+  for (const Vec3 &node : mesh.X)
+    nodes = std::max(nodes, roof.depth_of(node, Vec3({0., 0., 0.2}), 5.));
+  std::printf("  at x = %.1f, deepest node %.4f\n", deepest.place[0], nodes);
+}
