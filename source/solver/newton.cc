@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/solver/contact_steps.h>
 #include <retroforge/solver/newton.h>
 
 #include <sstream>
@@ -105,7 +106,7 @@ namespace retroforge
   double Newton::line_search(const Stage<double> &stage,
                              Field<double>       &W,
                              const Field<double> &step,
-                             const ActiveSet     &frozen)
+                             const ActiveSet     &active)
   {
     // The pressure takes its full step: it is the multiplier of the functional's constraint.
     for (NodeIndex k = 0; k < W.P.size(); ++k)
@@ -115,7 +116,7 @@ namespace retroforge
     const auto slope_at = [&](const double a) {
       Field<double> trial = W;
       trial.add(a, velocity_step);
-      return slope(stage.residual(trial, frozen), step);
+      return slope(stage.residual(trial, active), step);
     };
     const double start = slope_at(0.);
     double       a     = 1.;
@@ -184,6 +185,9 @@ namespace retroforge
       W = Field<double>(scene_.mesh);
   }
 
+  /// Steps within which contacts are to be found at once.
+  constexpr unsigned int contacts_settle = 20;
+
   NewtonStatistics Newton::solve(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen)
   {
     NewtonStatistics statistics;
@@ -191,6 +195,10 @@ namespace retroforge
       std::all_of(W.V.begin(), W.V.end(), [](const Vec3 &v) { return v.norm_square() == 0.; });
     if (from_rest && stage.physics.law.m != 1.)
       initial_guess(stage, W, frozen, statistics);
+    // A recorded active set comes with its solution.
+    const bool decides = frozen.empty() && stage.physics.law.m != 1.;
+    if (decides && !from_rest)
+      hold_on_dies(stage, W);
     Field<double> r, step;
     double        last = 1., largest_forcing = parameters_.forcing;
     for (unsigned int iteration = 0; iteration < parameters_.max_iterations; ++iteration)
@@ -209,20 +217,30 @@ namespace retroforge
         system_.assemble(stage, W, start);
       const bool   linear = stage.physics.law.m == 1.;
       const double goal = 0.1 * parameters_.tolerance / std::max(statistics.residual, parameters_.tolerance);
-      double       forcing =
-        linear ? goal : std::max(goal, std::min(largest_forcing, std::pow(statistics.residual / last, 2)));
-      forcing = std::min(0.5, std::max(1e-12, forcing));
+      // As good as the quadratic convergence that the residual's fall, or its size, promises.
+      const double promise = std::max(0.1 * statistics.residual, std::pow(statistics.residual / last, 2));
+      double       forcing = linear ? goal : std::max(goal, std::min(largest_forcing, promise));
+      forcing              = std::min(0.5, std::max(1e-12, forcing));
       Field<double> rhs(scene_.mesh);
       rhs.add(-1., r);
       statistics.krylov += system_.solve(rhs, forcing, step);
       ++statistics.iterations;
       if (start == frozen && statistics.residual > 1e-6)
       {
-        // A step that had to be cut was a poor direction: where dies are stiff, the next one is solved for
-        // better.
-        const bool whole = line_search(stage, W, step, frozen) == 1.;
-        largest_forcing  = whole ? std::min(parameters_.forcing, 10. * largest_forcing)
-                                 : std::max(1e-6, 0.1 * largest_forcing);
+        if (decides && iteration < contacts_settle)
+        {
+          const ActiveSet active = stage.decide_active(W);
+          line_search(stage, W, step, active);
+          stop_at_dies(stage, active, W);
+        }
+        else
+        {
+          // A step that had to be cut was a poor direction: where dies are stiff, the next one is solved for
+          // better.
+          const bool whole = line_search(stage, W, step, frozen) == 1.;
+          largest_forcing  = whole ? std::min(parameters_.forcing, 10. * largest_forcing)
+                                   : std::max(1e-6, 0.1 * largest_forcing);
+        }
       }
       else
         W.add(1., step);

@@ -10,7 +10,7 @@ namespace retroforge
   struct NewtonParameters
   {
     double       tolerance      = 1e-8;
-    double       forcing        = 1e-3;
+    double       forcing        = 1e-2;
     unsigned int max_iterations = 60;
 
     void add_parameters(dealii::ParameterHandler &prm);
@@ -31,6 +31,8 @@ namespace retroforge
 
   /// Solves the equilibrium of a stage for W by Newton's method, with a line search on the power functional:
   /// the step length is a root of its slope along the step, monotone because the functional is convex in V.
+  /// At first the slope is that of the functional with the contacts of the step, and nodes that arrive do so
+  /// at once (contact_steps.h); where that does not converge, of the functional itself, which always does.
   class Newton
   {
   public:
@@ -52,10 +54,11 @@ namespace retroforge
                              const ActiveSet     &frozen,
                              Field<double>       &r);
     /// Advances W and returns the part of the velocity step that was taken.
+    /// @param active  empty, or the contacts that count throughout
     double line_search(const Stage<double> &stage,
                        Field<double>       &W,
                        const Field<double> &step,
-                       const ActiveSet     &frozen);
+                       const ActiveSet     &active);
     double slope(const Field<double> &r, const Field<double> &step) const;
 
     const Scene            &scene_;
