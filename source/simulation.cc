@@ -633,6 +633,7 @@ namespace retroforge
     summary_.cuts                  = forged_.cuts;
     summary_.volume_initial        = volume(billet_.cells, X_0_);
     summary_.volume_final          = volume(forged_.leg->scene.mesh.cells, forged_.X);
+    summary_.volume_repaired       = forged_.repaired;
     summary_.wall_seconds          = timings_.all();
     const auto parts               = trace_.parts(forged_);
     for (std::size_t o = 0; o < objectives_.size(); ++o)
@@ -687,6 +688,10 @@ namespace retroforge
         summary_.deepest.place[1],
         summary_.deepest.place[2],
         summary_.deepest.stroke);
+    if (summary_.volume_repaired > 0.)
+      std::printf("  the surface crossed itself in places thinner than an element: %.3g mm^3 were taken away "
+                  "there, and put back elsewhere\n",
+                  summary_.volume_repaired);
     std::printf("  volume change %.3g, %.1f s\n  results in %s\n",
                 summary_.volume_final / summary_.volume_initial - 1.,
                 timings_.seconds("total"),

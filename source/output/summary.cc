@@ -111,6 +111,7 @@ namespace retroforge
     json["linear_solves_adjoint"] = number(linear_solves_adjoint);
     json["volume_initial"]        = number(volume_initial);
     json["volume_final"]          = number(volume_final);
+    json["volume_repaired"]       = number(volume_repaired);
     if (!deepest.die.empty())
       json["deepest"] = {
         {"depth", number(deepest.depth)},

@@ -15,7 +15,7 @@ namespace retroforge
 {
   namespace
   {
-    constexpr unsigned int format = 4;
+    constexpr unsigned int format = 5;
 
     static_assert(sizeof(Vec3) == 3 * sizeof(double),
                   "nodal vectors are read and written as arrays of numbers");
@@ -178,6 +178,7 @@ namespace retroforge
       hdf5::write_array(group, "begin", {J.begin.size()}, J.begin.data());
       hdf5::write_array(group, "node", {J.node.size()}, J.node.data());
       hdf5::write_array(group, "weight", {J.weight.size()}, J.weight.data());
+      hdf5::write_attribute(group, "repaired", &remesh.repaired);
     }
 
     std::shared_ptr<const RemeshRecord> read_remesh(const hid_t parent, const std::string &where)
@@ -187,6 +188,7 @@ namespace retroforge
       TransferOperator  &J      = remesh->transfer;
       remesh->mesh              = read_mesh(group);
       remesh->X_before          = read_vectors(group, "X_before", hdf5::any);
+      remesh->repaired          = read_number(group, "repaired");
       J.n_old                   = remesh->X_before.size();
       J.begin                   = hdf5::read_array<unsigned int>(group, "begin", {remesh->mesh.X.size() + 1});
       J.node                    = hdf5::read_array<unsigned int>(group, "node", {hdf5::any});

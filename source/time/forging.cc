@@ -4,7 +4,7 @@
 #include <retroforge/element/strain_history.h>
 #include <retroforge/mesh/cell_transfer.h>
 #include <retroforge/mesh/mesh_quality.h>
-#include <retroforge/mesh/rebuild.h>
+#include <retroforge/mesh/self_crossing.h>
 #include <retroforge/time/forging.h>
 
 #include <sstream>
@@ -62,7 +62,7 @@ namespace retroforge
   /// Times Press/increments that cuts may make of them.
   constexpr unsigned int most_increments = 10;
 
-  /// Increments between looks at whether the surface crosses itself.
+  /// Increments between looks at whether the surface of a mesh that is not remade crosses itself.
   constexpr unsigned int fold_interval = 5;
 
   Forging::Forging(const ForgingModel    &model,
@@ -176,8 +176,23 @@ namespace retroforge
     return reason;
   }
 
+  namespace
+  {
+    bool crosses(const ForgingState &state)
+    {
+      return !self_crossings(state.leg->scene.mesh, state.X).empty();
+    }
+
+    /// Throws where metal meets metal: that is not in the model.
+    void check_fold(const ForgingState &state)
+    {
+      check_boundary_does_not_cross(state.leg->scene.mesh, state.X, "Workpiece");
+    }
+  } // namespace
+
   void Forging::change_mesh(const RemeshRecord &remesh, ForgingState &state) const
   {
+    state.repaired += remesh.repaired;
     const TransferOperator &J = remesh.transfer;
     Field<double>           W(remesh.mesh);
     W.V         = J.apply(state.W.V);
@@ -279,7 +294,8 @@ namespace retroforge
       return state.increments - (state.remeshed.empty() ? 0 : state.remeshed.back());
     };
     // Also where a run is resumed that stopped for that.
-    check_boundary_does_not_cross(state.leg->scene.mesh, state.X, "Workpiece");
+    if (!remesher_.enabled())
+      check_fold(state);
     while (state.stroke < press_.stroke - 1e-9 * whole)
     {
       IncrementRecord record;
@@ -287,13 +303,18 @@ namespace retroforge
         remesh(process, state, record);
         frozen = remesher_.frozen(state.leg->scene.mesh);
       };
-      if (remesher_.enabled() && remesher_.due(state.leg->scene.mesh,
-                                               state.X,
-                                               process.at_stroke(state.stroke).dies,
-                                               frozen,
-                                               since_remeshing(),
-                                               state.increments == 0))
+      const bool crossed = remesher_.enabled() && crosses(state);
+      if (crossed && state.repaired >= remesher_.largest_repair() * state.volume)
+        check_fold(state);
+      if (crossed || (remesher_.enabled() && remesher_.due(state.leg->scene.mesh,
+                                                           state.X,
+                                                           process.at_stroke(state.stroke).dies,
+                                                           frozen,
+                                                           since_remeshing(),
+                                                           state.increments == 0)))
         renew();
+      if (crossed)
+        check_fold(state);
       record.stroke = state.stroke;
       record.step   = std::min(whole / (1 << state.depth), press_.stroke - state.stroke);
       NodalVectors<double> X_next;
@@ -313,7 +334,7 @@ namespace retroforge
         if (record.step < whole * std::ldexp(1., -static_cast<int>(press_.max_cuts)) * (1. - 1e-9))
         {
           // A fold that is closing is the true reason.
-          check_boundary_does_not_cross(state.leg->scene.mesh, state.X, "Workpiece");
+          check_fold(state);
           throw_stuck(record, whole, reason);
         }
       }
@@ -323,9 +344,12 @@ namespace retroforge
       if (watch)
         watch({record, X_before, state, state.stroke / process.speed()});
       check_progress(state);
-      // Metal that folds onto itself is not in the model: such a run must not go on as if nothing were.
-      if (state.increments % fold_interval == 0 || state.stroke >= press_.stroke - 1e-9 * whole)
-        check_boundary_does_not_cross(state.leg->scene.mesh, state.X, "Workpiece");
+      // With remeshing, the next increment begins with a repair.
+      const bool last = state.stroke >= press_.stroke - 1e-9 * whole;
+      if (remesher_.enabled()
+            ? last && !remesher_.repairs(state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies)
+            : last || state.increments % fold_interval == 0)
+        check_fold(state);
     }
   }
 

@@ -10,6 +10,8 @@
 #include <retroforge/mesh/rebuild.h>
 #include <retroforge/mesh/remeshing/trigger.h>
 #include <retroforge/mesh/renumber.h>
+#include <retroforge/mesh/self_crossing.h>
+#include <retroforge/mesh/uncross.h>
 #include <retroforge/time/remesher.h>
 
 namespace retroforge
@@ -64,6 +66,12 @@ namespace retroforge
       "Remesh when a surface edge with both ends on a curved die is deeper inside it than this "
       "part of the element size. Units: none.",
       Double(1e-6));
+    prm.add_parameter(
+      "largest repair",
+      largest_repair,
+      "Metal thinner than an element may be taken away where the surface crosses itself, in all this part of "
+      "the workpiece's volume; what crosses beyond that is a fold, and the run stops. Units: none.",
+      Double(0., 1.));
     prm.add_parameter(
       "first mesh", first_mesh, "Improve the billet's mesh by one pass before the run begins. Units: none.");
     prm.leave_subsection();
@@ -233,23 +241,53 @@ namespace retroforge
     };
   }
 
+  namespace
+  {
+    /// From numbers in a mesh between to those in the first.
+    void compose(const std::vector<NodeIndex> &first, std::vector<NodeIndex> &old_node)
+    {
+      for (NodeIndex &k : old_node)
+        if (k != invalid_index)
+          k = first[k];
+    }
+  } // namespace
+
   RemeshedMesh Remesher::make(const TetMesh              &mesh,
                               const NodalVectors<double> &X,
                               const SizeField            &size,
-                              const DieStates            &states) const
+                              const DieStates            &states,
+                              double                     &repaired) const
   {
     const PushOut    push_out = this->push_out(states);
     const TouchesDie touches  = this->touches(states);
-    const bool       inverted = minimum_quality(mesh.cells, X) <= 0.;
-    if (parameters_.method == "local" && !inverted)
-      return remesh_locally(mesh, X, size, parameters_.local, push_out, touches);
-    const RebuiltMesh rebuilt = rebuild_inside(mesh, X, size, "Remeshing");
-    RemeshedMesh      local =
-      remesh_locally(rebuilt.mesh, rebuilt.mesh.X, size, parameters_.local, push_out, touches);
-    for (NodeIndex &k : local.old_node)
-      if (k != invalid_index)
-        k = rebuilt.old_node[k];
-    return local;
+    const double     before   = volume(mesh.cells, X);
+    RebuiltMesh      start{mesh, {}};
+    start.mesh.X = X;
+    start.old_node.resize(mesh.n_nodes());
+    std::iota(start.old_node.begin(), start.old_node.end(), 0);
+    // What remeshing moves can cross again beside what was taken away.
+    constexpr unsigned int n_tries = 3;
+    for (unsigned int i = 1;; ++i)
+    {
+      if (auto uncrossed = uncross(start.mesh, start.mesh.X, size))
+      {
+        compose(start.old_node, uncrossed->mesh.old_node);
+        start = std::move(uncrossed->mesh);
+        repaired += uncrossed->removed;
+      }
+      if (parameters_.method != "local" || minimum_quality(start.mesh.cells, start.mesh.X) <= 0.)
+      {
+        RebuiltMesh rebuilt = rebuild_inside(start.mesh, start.mesh.X, size, "Remeshing");
+        compose(start.old_node, rebuilt.old_node);
+        start = std::move(rebuilt);
+      }
+      RemeshedMesh local =
+        remesh_locally(start.mesh, start.mesh.X, size, parameters_.local, push_out, touches, before);
+      compose(start.old_node, local.old_node);
+      if (i == n_tries || self_crossings(local.mesh, local.mesh.X).empty())
+        return local;
+      start = {std::move(local.mesh), std::move(local.old_node)};
+    }
   }
 
   std::shared_ptr<const RemeshRecord> Remesher::remesh(const TetMesh              &mesh,
@@ -261,7 +299,7 @@ namespace retroforge
     std::vector<NodeIndex> old_node;
     const auto             make_numbered = [&]() {
       const NodalVectors<double> rounded = on_grid(X);
-      RemeshedMesh               made    = make(mesh, rounded, size_field(states), states);
+      RemeshedMesh               made = make(mesh, rounded, size_field(states), states, record->repaired);
       for (NodeIndex k = 0; k < made.mesh.n_nodes(); ++k)
         if (const NodeIndex old = made.old_node[k]; old != invalid_index)
           made.mesh.X[k] += X[old] - rounded[old];
@@ -272,7 +310,8 @@ namespace retroforge
         old_node[number[k]] = made.old_node[k];
       return std::move(made.mesh);
     };
-    record->mesh      = make_on_root(make_numbered, comm_, &old_node);
+    record->mesh = make_on_root(make_numbered, comm_, &old_node);
+    MPI_Bcast(&record->repaired, 1, MPI_DOUBLE, 0, comm_);
     record->X_before  = X;
     const auto timing = timings.scope("transfer");
     record->transfer  = make_transfer(mesh, X, record->mesh, old_node);

@@ -32,9 +32,4 @@ namespace retroforge
                              const NodalVectors<double>                &X,
                              const std::function<double(const Vec3 &)> &size,
                              const std::string                         &where);
-
-  /// Throws Error at `where`, with the place, when an edge of the boundary passes through a face of it that
-  /// it shares no node with.
-  void
-  check_boundary_does_not_cross(const TetMesh &mesh, const NodalVectors<double> &X, const std::string &where);
 } // namespace retroforge

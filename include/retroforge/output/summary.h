@@ -70,8 +70,9 @@ namespace retroforge
     Count increments, cuts, remeshings, newton_iterations, krylov_iterations, linear_solves_forward,
       linear_solves_adjoint;
 
-    double volume_initial = unknown;
-    double volume_final   = unknown;
+    double volume_initial  = unknown;
+    double volume_final    = unknown;
+    double volume_repaired = 0.; ///< taken away where the surface crossed itself, mm^3
 
     /// The deepest the surface has been in a die, over the run.
     struct Depth

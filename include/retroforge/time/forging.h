@@ -29,9 +29,10 @@ namespace retroforge
     NodalVectors<double> X;
     std::vector<double>  strain; ///< accumulated equivalent strain of each cell
     Field<double>        W;      ///< the last increment's solution, where the next one starts
-    double               stroke = 0.;
-    double               volume = 0.; ///< at the start of the run [mm^3]
-    unsigned int         depth  = 0;  ///< an increment is the whole one / 2^depth
+    double               stroke   = 0.;
+    double               volume   = 0.; ///< at the start of the run [mm^3]
+    double               repaired = 0.; ///< taken away where the surface crossed itself [mm^3]
+    unsigned int         depth    = 0;  ///< an increment is the whole one / 2^depth
 
     Energy<double>                   energy;
     unsigned int                     increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;

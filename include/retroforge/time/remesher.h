@@ -5,6 +5,7 @@
 #include <retroforge/core/timer.h>
 #include <retroforge/mesh/remeshing/local_remesher.h>
 #include <retroforge/mesh/size_field.h>
+#include <retroforge/mesh/uncross.h>
 #include <retroforge/record/increment_record.h>
 
 #include <optional>
@@ -16,16 +17,17 @@ namespace retroforge
 {
   struct RemesherParameters
   {
-    std::string         when          = "quality"; ///< never, quality, increments
-    std::string         method        = "local";
-    unsigned int        every         = 5;
-    double              element_size  = 0.;
-    std::string         sizes         = "dies"; ///< uniform, dies
-    double              chord_error   = 0.;
-    double              smallest_size = 0.2;
-    double              growth        = 0.3;
-    double              fit           = 0.1;
-    bool                first_mesh    = false;
+    std::string         when           = "quality"; ///< never, quality, increments
+    std::string         method         = "local";
+    unsigned int        every          = 5;
+    double              element_size   = 0.;
+    std::string         sizes          = "dies"; ///< uniform, dies
+    double              chord_error    = 0.;
+    double              smallest_size  = 0.2;
+    double              growth         = 0.3;
+    double              fit            = 0.1;
+    double              largest_repair = 5e-4; ///< of the workpiece's volume, over the run
+    bool                first_mesh     = false;
     RemeshingParameters local;
 
     void add_parameters(dealii::ParameterHandler &prm);
@@ -45,6 +47,8 @@ namespace retroforge
              double                    element_size,
              const std::vector<Die>   &dies,
              MPI_Comm                  comm);
+
+    double largest_repair() const { return parameters_.largest_repair; }
 
     bool enabled() const { return parameters_.when != "never"; }
 
@@ -70,6 +74,13 @@ namespace retroforge
                                                const DieStates            &states,
                                                Timings                    &timings) const;
 
+    /// Whether a surface that crosses itself can be repaired, because what crosses is thinner than an
+    /// element.
+    bool repairs(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const
+    {
+      return uncross(mesh, X, size_field(states)).has_value();
+    }
+
     /// Wanted length of edges: near a curved die as its curvature asks for. Refers to this object.
     SizeField size_field(const DieStates &states) const;
 
@@ -84,7 +95,8 @@ namespace retroforge
     RemeshedMesh make(const TetMesh              &mesh,
                       const NodalVectors<double> &X,
                       const SizeField            &size,
-                      const DieStates            &states) const;
+                      const DieStates            &states,
+                      double                     &repaired) const;
     PushOut      push_out(const DieStates &states) const;
     TouchesDie   touches(const DieStates &states) const;
 

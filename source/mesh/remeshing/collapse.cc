@@ -28,6 +28,23 @@ namespace retroforge
       return both;
     }
 
+    // Whether two ridges run from neighbour to neighbour of a, one over a, one over b, with nothing but two
+    // faces between: the side of the workpiece that rolls onto a die leaves such a slit, and cells over it
+    // that become ever flatter. It closes when a goes to b.
+    bool closes_slit(const EditableMesh &mesh, const NodeIndex a, const NodeIndex b)
+    {
+      const auto between = mesh.faces_at_edge(a, b);
+      const auto ridges  = mesh.ridges_at(a);
+      return ridges.size() == 2 && between.size() == 2 &&
+             std::all_of(ridges.begin(), ridges.end(), [&](const Ridge &ridge) {
+               const NodeIndex c = ridge.nodes[0] == a ? ridge.nodes[1] : ridge.nodes[0];
+               return mesh.curve_of_edge(b, c) != invalid_index &&
+                      std::any_of(between.begin(), between.end(), [&](const unsigned int f) {
+                        return contains(mesh.face(f).nodes, c);
+                      });
+             });
+    }
+
     bool edge_carries_features(const EditableMesh &mesh, const NodeIndex a, const NodeIndex b)
     {
       switch (mesh.kind(a))
@@ -37,7 +54,8 @@ namespace retroforge
         case NodeKind::surface:
           return mesh.faces_at_edge(a, b).size() == 2 && mesh.curve_of_edge(a, b) == invalid_index;
         case NodeKind::ridge:
-          return mesh.ridges_at(a).size() == 2 && mesh.curve_of_edge(a, b) != invalid_index;
+          return mesh.curve_of_edge(a, b) != invalid_index ? mesh.ridges_at(a).size() == 2
+                                                           : closes_slit(mesh, a, b);
         default:
           return false;
       }
@@ -101,6 +119,8 @@ namespace retroforge
     bool plan_ridges(const EditableMesh &mesh, const NodeIndex a, const NodeIndex b, CavityChange &change)
     {
       change.removed_ridges = mesh.ridges_at(a);
+      if (mesh.curve_of_edge(a, b) == invalid_index)
+        return true; // b's own ridge takes the place of a slit's other one
       for (const Ridge &ridge : change.removed_ridges)
         if (!contains(ridge.nodes, b))
         {

@@ -107,11 +107,14 @@ namespace retroforge
                               const SizeField            &size,
                               const RemeshingParameters  &parameters,
                               const PushOut              &push_out,
-                              const TouchesDie           &touches)
+                              const TouchesDie           &touches,
+                              const double                wanted_volume)
   {
     check_volumes(mesh, X);
     RemeshedMesh result;
     report_before(mesh, X, result.report);
+    if (wanted_volume > 0.)
+      result.report.volume_before = wanted_volume;
 
     const SurfaceFeatures features(mesh, X, parameters.ridge_angle, parameters.corner_angle, push_out);
     const OldSurface      old_surface(mesh, X, features, push_out);

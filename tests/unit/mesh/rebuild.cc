@@ -13,6 +13,7 @@
 #include "mesh_test_tools.h"
 #include <retroforge/mesh/boundary_location.h>
 #include <retroforge/mesh/rebuild.h>
+#include <retroforge/mesh/self_crossing.h>
 #include <retroforge/mesh/transfer.h>
 
 #include <chrono>

@@ -33,11 +33,13 @@ namespace retroforge
   /// @param size  wanted edge length, may vary in space
   /// @param push_out  keeps new surface nodes out of the dies; may be empty
   /// @param touches   nodes the volume correction leaves where they are; may be empty
+  /// @param wanted_volume  what the correction restores; 0: the volume of the mesh
   /// Throws Error when a cell has no positive volume: then the mesh must be rebuilt from its surface.
   RemeshedMesh remesh_locally(const TetMesh              &mesh,
                               const NodalVectors<double> &X,
                               const SizeField            &size,
                               const RemeshingParameters  &parameters,
-                              const PushOut              &push_out = {},
-                              const TouchesDie           &touches  = {});
+                              const PushOut              &push_out      = {},
+                              const TouchesDie           &touches       = {},
+                              double                      wanted_volume = 0.);
 } // namespace retroforge
