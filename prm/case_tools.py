@@ -9,14 +9,12 @@ import sys
 
 def run(build, command, case, settings=None, output="run", ranks=1, may_fail=False):
     """Run `retroforge COMMAND CASE` with overrides {"Section/name": value} and return (summary, what it printed)."""
-    arguments = [os.path.join(build, "retroforge"), command, case, "--output", output]
+    arguments = [os.path.join(build, "retroforge"), command, case, "--output", output, "--overwrite"]
     for name, value in (settings or {}).items():
         arguments += ["--set", f"{name}={value}"]
     if ranks > 1:
         arguments = ["mpirun", "-np", str(ranks)] + arguments
     summary_file = os.path.join(output, "summary.json")
-    if os.path.exists(summary_file):
-        os.remove(summary_file)
     done = subprocess.run(arguments, capture_output=True, text=True)
     if done.returncode != 0 and not may_fail:
         sys.stderr.write(done.stdout[-4000:] + done.stderr)

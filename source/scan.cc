@@ -3,6 +3,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/version.h>
 #include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/resume.h>
 #include <retroforge/scan.h>
@@ -136,7 +137,7 @@ namespace retroforge
       words.insert(words.end(), {"--set", name + "=" + value});
     for (const auto &[name, value] : command.at)
       words.insert(words.end(), {"--at", name + "=" + value});
-    words.insert(words.end(), {"--output", command.output_directory});
+    words.insert(words.end(), {"--output", command.output_directory, "--overwrite"});
     return words;
   }
 
@@ -170,9 +171,22 @@ namespace retroforge
     return wanted > 0 ? wanted : std::max(1u, std::thread::hardware_concurrency());
   }
 
+  void Scan::prepare_folder() const
+  {
+    const std::string &folder = command_.output_directory;
+    if (!command_.resume)
+      make_results_folder(folder, command_.overwrite);
+    else if (std::filesystem::exists(folder + "/history.csv"))
+      throw Error(folder,
+                  "holds the results of a run",
+                  "a scan goes on with a scan",
+                  "choose another folder with --output DIR");
+    make_directory(folder);
+  }
+
   int Scan::run()
   {
-    make_directory(command_.output_directory);
+    prepare_folder();
     write_file(command_.output_directory + "/parameters.prm", echo_);
     const std::vector<ScanPoint *> points = to_do();
     const std::size_t              all    = lines_.size() * parameters_.scan.points;
@@ -201,9 +215,7 @@ namespace retroforge
     std::vector<ChildProcess> runs;
     for (const ScanPoint *point : points)
     {
-      make_directory(point->directory);
-      std::error_code ignored; // what is there of an earlier run is not this one's
-      std::filesystem::remove(point->directory + "/summary.json", ignored);
+      make_results_folder(point->directory, true); // what is there of an earlier run is not this one's
       runs.push_back({words_of(command_of(*point)), point->directory + "/log.txt"});
       std::string line;
       for (const std::string &word : runs.back().command)

@@ -2,11 +2,13 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/contact/penetration.h>
 #include <retroforge/core/error.h>
+#include <retroforge/core/text.h>
 #include <retroforge/core/version.h>
 #include <retroforge/geometry/stl_file.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/objective/surface_areas.h>
 #include <retroforge/output/blas.h>
+#include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/output/vtu_writer.h>
 #include <retroforge/record/record_file.h>
@@ -51,13 +53,6 @@ namespace retroforge
       for (const Die &die : dies)
         n.push_back(die.n_facets());
       return n;
-    }
-
-    std::string as_text(const double x)
-    {
-      std::ostringstream text;
-      text << x;
-      return text.str();
     }
 
     /// For names of fields.
@@ -162,14 +157,14 @@ namespace retroforge
       if (deepest > allowed)
         throw Error(
           "Die " + parameters_.dies[d].name,
-          "the billet stands " + std::to_string(deepest) + " mm inside it",
+          "the billet stands " + as_text(deepest) + " mm inside it",
           "a billet starts outside of all dies",
           "move the die's point, or the billet (Billet/translation), or turn the die's facing round");
     }
     if (nearest > parameters_.press.stroke + billet_size())
       throw Error("Dies",
-                  "none comes near the billet: the nearest is " + std::to_string(nearest) + " mm away",
-                  "a die must be within the stroke of " + std::to_string(parameters_.press.stroke) + " mm",
+                  "none comes near the billet: the nearest is " + as_text(nearest) + " mm away",
+                  "a die must be within the stroke of " + as_text(parameters_.press.stroke) + " mm",
                   "move the dies' points or the billet");
     if (const unsigned int n = n_free_rigid_modes(first_leg_->scene, process_.at_stroke(0.), X_0_); n > 0)
       throw Error("Dies",
@@ -181,9 +176,9 @@ namespace retroforge
   int Simulation::run()
   {
     const auto total = timings_.scope("total");
+    prepare_folder();
     if (root_)
     {
-      make_directory(command_.output_directory);
       write_file(command_.output_directory + "/parameters.prm", echo_);
       std::cout << "Retroforge " << version << ' ' << commit << ", " << billet_.n_nodes() << " nodes, "
                 << billet_.n_cells() << " tetrahedra, " << dealii::Utilities::MPI::n_mpi_processes(comm_)
@@ -198,6 +193,17 @@ namespace retroforge
       passed = check();
     summarise();
     return passed ? 0 : 1;
+  }
+
+  void Simulation::prepare_folder() const
+  {
+    const std::string &folder = command_.output_directory;
+    if (command_.resume)
+      check_resumable(RecordReader(folder).header(), echo_, billet_, X_0_, model_.dies, folder);
+    if (root_ && command_.resume)
+      remove_all_but_record(folder);
+    else if (root_)
+      make_results_folder(folder, command_.overwrite);
   }
 
   void Simulation::write_dies() const
@@ -246,7 +252,6 @@ namespace retroforge
   void Simulation::resume(ForgingState &state)
   {
     const RecordReader record(command_.output_directory);
-    check_resumable(record.header(), echo_, billet_, X_0_, model_.dies, command_.output_directory);
     const unsigned int n = record.n_increments();
     IncrementRecord    increment;
     forging_.restore(

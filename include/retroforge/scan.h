@@ -24,6 +24,7 @@ namespace retroforge
 
   private:
     void                     make_lines(MPI_Comm comm);
+    void                     prepare_folder() const;
     CommandLine              command_of(const ScanPoint &point) const;
     std::vector<std::string> words_of(const CommandLine &command) const;
     bool                     is_finished(ScanPoint &point) const;

@@ -27,6 +27,8 @@ namespace retroforge
     int run();
 
   private:
+    /// Makes sure that nothing of another run is lost or mixed with this one.  @throws Error
+    void prepare_folder() const;
     /// Surfaces of the dies that are no planes, at the start of the run: die_NAME.stl.
     void write_dies() const;
     void forge();

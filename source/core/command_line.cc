@@ -16,7 +16,7 @@ namespace retroforge
   namespace
   {
     const std::vector<std::string> known_options =
-      {"--set", "--at", "--output", "--resume", "--print-parameters", "--version", "--help"};
+      {"--set", "--at", "--output", "--resume", "--overwrite", "--print-parameters", "--version", "--help"};
 
     const std::string where = "command line";
     const std::string usage = "retroforge --help shows the usage";
@@ -121,6 +121,8 @@ namespace retroforge
         line.output_directory = arguments.value(option, "the folder of the results");
       else if (option == "--resume")
         line.resume = true;
+      else if (option == "--overwrite")
+        line.overwrite = true;
       else if (option == "--print-parameters")
         line.print_parameters = true;
       else if (option == "--version")
@@ -168,6 +170,11 @@ namespace retroforge
                     "'" + line.command + "' needs a parameter file",
                     "write retroforge " + line.command +
                       " CASE.prm; retroforge --print-parameters writes a template");
+      if (line.resume && line.overwrite)
+        throw Error(where,
+                    "holds --resume and --overwrite",
+                    "a run goes on with what is in the folder, or replaces it",
+                    "leave one of them out");
     }
   } // namespace
 
@@ -213,7 +220,7 @@ namespace retroforge
     return R"(Retroforge simulates hot metal forging in 3D and computes exact gradients of its results.
 
 Usage:
-  retroforge COMMAND CASE.prm [--set Section/name=value]... [--at NAME=VALUE]... [--output DIR] [--resume]
+  retroforge COMMAND CASE.prm [--set Section/name=value]... [--at NAME=VALUE]... [--output DIR] [--resume | --overwrite]
   mpirun -np N retroforge COMMAND CASE.prm ...    (not for scan)
   retroforge --print-parameters | --version | --help
 
@@ -231,6 +238,8 @@ Options:
   --output DIR               folder of the results (default: CASE-results in the current folder)
   --resume                   go on with the run in that folder, to the same bits as if it had not been stopped;
                              of a scan, keep the points that are finished
+  --overwrite                replace the results that are in that folder; without it they are left alone, and the
+                             command is refused
   --print-parameters         write all parameters with their meaning; as a case file they are the defaults
   --version                  write version and commit
   --help                     write this text

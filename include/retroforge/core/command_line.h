@@ -9,7 +9,7 @@
 namespace retroforge
 {
   /// What the user asked for:  `retroforge COMMAND CASE.prm [--set Section/name=value]... [--output DIR]
-  /// [--at NAME=VALUE]... [--resume]`.
+  /// [--at NAME=VALUE]... [--resume | --overwrite]`.
   struct CommandLine
   {
     std::string
@@ -29,7 +29,8 @@ namespace retroforge
     /// `overrides`, and `at` as the parameter Design/at: all that replaces what the case says.
     std::vector<std::pair<std::string, std::string>> settings() const;
 
-    bool resume = false; ///< asked to go on with what is in output_directory
+    bool resume    = false; ///< asked to go on with what is in output_directory
+    bool overwrite = false; ///< asked to replace what is there
 
     bool print_parameters = false; ///< write the annotated parameters and stop
     bool version          = false; ///< write version and commit and stop

@@ -91,7 +91,7 @@ def scenes():
 
 
 def retroforge(build, command, output, settings, *options):
-    words = [os.path.join(build, "retroforge"), command, CASE, "--output", output, *options]
+    words = [os.path.join(build, "retroforge"), command, CASE, "--output", output, *(options or ("--overwrite",))]
     for key, value in settings.items():
         words += ["--set", f"{key}={value}"]
     return subprocess.run(words, capture_output=True, text=True, timeout=1800)

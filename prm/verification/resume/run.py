@@ -19,7 +19,7 @@ SAME = ("history.csv", "fields.pvd", "sensitivity.vtu", "fields_000020.vtu")
 
 
 def command(build, output, resume):
-    return [os.path.join(build, "retroforge"), "gradient", CASE, "--output", output] + (["--resume"] if resume else [])
+    return [os.path.join(build, "retroforge"), "gradient", CASE, "--output", output] + ["--resume" if resume else "--overwrite"]
 
 
 def finish(build, output, resume):

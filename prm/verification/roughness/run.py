@@ -38,7 +38,7 @@ def scan(build, size, increments, settings, points):
     """Columns of scan.csv, and the summary of the first point."""
     settings = {"Billet/element size": size, "Press/increments": increments, "Scan/points": points, "Scan/range": RANGE,
                 **settings}
-    arguments = [os.path.join(build, "retroforge"), "scan", os.path.join(HERE, "case.prm"), "--output", "scan"]
+    arguments = [os.path.join(build, "retroforge"), "scan", os.path.join(HERE, "case.prm"), "--output", "scan", "--overwrite"]
     for name, value in settings.items():
         arguments += ["--set", f"{name}={value}"]
     done = subprocess.run(arguments, capture_output=True, text=True)

@@ -208,11 +208,17 @@ def resumed(folder):
     """What --resume refuses: nothing to resume, other parameters, another billet, files that are no records."""
     short = settings("Press/stroke=0.9", "Press/max cuts=0")
     judge("nothing to resume", run(["case.prm", "--output", "new", "--resume"], folder), "new")
+    judge_that("and no folder made", not os.path.exists(os.path.join(folder, "new")), "there is one")
     run(["case.prm", "--output", "done"] + short, folder)
+    before = contents(os.path.join(folder, "done"))
     for name, value in (("Material/consistency", "2"), ("Press/increments", "4"), ("Die upper/friction", "0.2"),
                         ("Billet/element size", "3")):
         judge(f"resumed with another {name}",
               run(["case.prm", "--output", "done", "--resume"] + short + settings(f"{name}={value}"), folder), name)
+    judge("another run in its folder", run(["case.prm", "--output", "done"] + short, folder), r"done.*already.*--overwrite")
+    judge("a scan in its folder", run(["case.prm", "--output", "done"], folder, "scan"), r"done.*already")
+    judge("a scan that goes on with a run", run(["case.prm", "--output", "done", "--resume"], folder, "scan"), r"done.*run")
+    judge_that("none of them changed a file", contents(os.path.join(folder, "done")) == before, "the folder differs")
     same = run(["case.prm", "--output", "done", "--resume"] + short + settings("Output/fields every=0", "Design/parameters=material/m"),
                folder)
     judge_that("resumed with other output and design", same.returncode == 0, same.stderr)
@@ -223,6 +229,30 @@ def resumed(folder):
         with open(record, "wb") as file:
             file.write(content)
         judge(f"{name} record", run(["case.prm", "--output", "done", "--resume"] + short, folder), r"record\.h5")
+
+
+def replaced(folder):
+    """--overwrite leaves nothing of the longer run before it, and what is not of a run."""
+    output, one = os.path.join(folder, "twice"), settings("Press/stroke=0.3", "Press/increments=1")
+    run(["case.prm", "--output", "twice"], folder)
+    for name in ("mine.txt", "report.html"):
+        with open(os.path.join(output, name), "w", encoding="utf-8") as file:
+            file.write("mine\n")
+    before = set(os.listdir(output))
+    done = run(["case.prm", "--output", "twice", "--overwrite"] + one, folder, "simulate")
+    gone = before - set(os.listdir(output))
+    judge_that("--overwrite replaces all", done.returncode == 0 and
+               gone == {"report.html", "fields_000002.vtu", "fields_000003.vtu", "sensitivity.vtu"}, f"{done.stderr} removed {sorted(gone)}")
+
+
+def contents(folder):
+    """File -> bytes and time of change."""
+    found = {}
+    for place, _, names in os.walk(folder):
+        for path in (os.path.join(place, name) for name in names):
+            with open(path, "rb") as file:
+                found[path] = (file.read(), os.stat(path).st_mtime_ns)
+    return found
 
 
 def full_disk(folder):
@@ -266,13 +296,14 @@ def main():
         judge("missing parameter file", run(["absent.prm"], folder), "absent.prm")
         judge("unknown command", run(["case.prm"], folder, command="forge"), "forge")
         for name, (arguments, pattern) in MISTAKES.items():
-            judge(name, run(["case.prm", "--output", "run"] + arguments, folder), pattern)
+            judge(name, run(["case.prm", "--output", "run", "--overwrite"] + arguments, folder), pattern)
         with open(os.path.join(folder, "unclosed.prm"), "w", encoding="utf-8") as file:
             file.write(CASE.rstrip()[:-3])
         judge("section not closed", run(["unclosed.prm"], folder), "unclosed.prm")
         forbidden_output(folder)
         interrupted(folder)
         resumed(folder)
+        replaced(folder)
         full_disk(folder)
     print(f"{len(failures)} failed")
     return 1 if failures else 0

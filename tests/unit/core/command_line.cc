@@ -21,7 +21,7 @@ void show(const std::vector<const char *> &words)
   {
     const CommandLine line = CommandLine::parse(words.size(), words.data());
     std::cout << "command '" << line.command << "' case '" << line.case_file << "' output '"
-              << line.output_directory << "' resume " << line.resume << " print " << line.print_parameters
+              << line.output_directory << "' resume " << line.resume << " overwrite " << line.overwrite << " print " << line.print_parameters
               << " version " << line.version << " help " << line.help << '\n';
     for (const auto &[path, value] : line.settings())
       std::cout << "  [" << path << "] <- [" << value << "]\n";
@@ -38,6 +38,7 @@ int main()
   show({"retroforge", "gradient", "a.prm", "--set", "Dies/upper die/offset=1 = 2", "--set=Time/steps=3"});
   show({"retroforge", "--resume", "check", "--output", "some dir", "a.prm"});
   show({"retroforge", "check", "a.prm", "--output=x"});
+  show({"retroforge", "check", "a.prm", "--overwrite"});
   show({"retroforge",
         "gradient",
         "a.prm",
@@ -64,6 +65,7 @@ int main()
   show({"retroforge", "simulate", "a.prm", "--set", "Time/steps"});
   show({"retroforge", "simulate", "a.prm", "--set", "=3"});
   show({"retroforge", "simulate", "a.prm", "--resume=yes"});
+  show({"retroforge", "simulate", "a.prm", "--resume", "--overwrite"});
   show({"retroforge", "simulate", "a.prm", "--at", "billet/radius"});
   show({"retroforge", "simulate", "a.prm", "--at", "billet/radius=20mm"});
   show({"retroforge", "simulate", "a.prm", "--at", "=20"});

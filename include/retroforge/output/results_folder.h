@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace retroforge
+{
+  /// What a run, a scan or the report left in a folder, by names relative to it, sorted. Files that none of
+  /// them writes are not listed.
+  std::vector<std::string> results_in(const std::string &directory);
+
+  /// Makes the folder of a new run, without results of an earlier one: they are removed where the user said
+  /// --overwrite.
+  /// @throws Error  where there are some and the user did not, or the folder cannot be made
+  void make_results_folder(const std::string &directory, bool overwrite);
+
+  /// Removes what a run that goes on writes anew: all but its record.  @throws Error
+  void remove_all_but_record(const std::string &directory);
+} // namespace retroforge

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/output/results_folder.h>
+#include <retroforge/output/safe_file.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <regex>
+
+namespace retroforge
+{
+  namespace
+  {
+    namespace fs = std::filesystem;
+
+    /// Of files a run, a scan or the report writes.
+    const std::regex file_names("parameters\\.prm|summary\\.json|(history|objectives|scan)\\.csv|scan\\.json|"
+                                "fields\\.pvd|fields_[0-9]{6,}\\.vtu|failed\\.vtu|failure\\.txt|"
+                                "sensitivity(_die_.*)?\\.vtu|die_.*\\.stl|record\\.h5|report\\.html");
+
+    bool is_result(const fs::path &path)
+    {
+      std::error_code   ignored;
+      const std::string name = path.filename().string();
+      if (!fs::is_directory(path, ignored))
+        return std::regex_match(name, file_names);
+      return (name == "record" && fs::exists(path / "header.h5", ignored)) ||
+             (name == "pictures" && fs::exists(path.parent_path() / "report.html", ignored));
+    }
+
+    void append_results(const fs::path               &folder,
+                        bool (*const                  chosen)(const fs::path &),
+                        const std::string            &prefix,
+                        std::vector<std::string>     &names)
+    {
+      std::error_code error;
+      for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        if (chosen(entry->path()))
+          names.push_back(prefix + entry->path().filename().string());
+    }
+
+    /// The points of a scan, each in a folder of its own.
+    bool is_point(const fs::path &folder)
+    {
+      std::error_code ignored;
+      return fs::exists(folder / "command.txt", ignored);
+    }
+
+    void remove(const std::string &directory, const std::vector<std::string> &names)
+    {
+      for (const std::string &name : names)
+      {
+        std::error_code error;
+        fs::remove_all(fs::path(directory) / name, error);
+        if (error)
+          throw_write_error(directory + "/" + name, error.value());
+      }
+    }
+  } // namespace
+
+  std::vector<std::string> results_in(const std::string &directory)
+  {
+    std::vector<std::string> names;
+    append_results(directory, is_result, "", names);
+    append_results(fs::path(directory) / "points", is_point, "points/", names);
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  void make_results_folder(const std::string &directory, const bool overwrite)
+  {
+    make_directory(directory);
+    const std::vector<std::string> names = results_in(directory);
+    if (!names.empty() && !overwrite)
+      throw Error(directory,
+                  "holds results already (" + names.front() +
+                    (names.size() > 1 ? " and " + std::to_string(names.size() - 1) + " more" : "") + ")",
+                  "no run writes over another unless told to",
+                  "go on with that run with --resume, replace it with --overwrite, or choose another folder "
+                  "with --output DIR");
+    remove(directory, names);
+  }
+
+  void remove_all_but_record(const std::string &directory)
+  {
+    std::vector<std::string> names = results_in(directory);
+    names.erase(std::remove_if(names.begin(),
+                               names.end(),
+                               [](const std::string &name) { return name == "record" || name == "record.h5"; }),
+                names.end());
+    remove(directory, names);
+  }
+} // namespace retroforge
