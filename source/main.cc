@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/core/error.h>
+#include <retroforge/core/exception_message.h>
 #include <retroforge/core/parameter_list.h>
 #include <retroforge/core/version.h>
 #include <retroforge/scan.h>
@@ -43,14 +43,15 @@ int main(int argc, char **argv)
       return retroforge::Scan(command, environment, MPI_COMM_WORLD).run();
     return retroforge::Simulation(command, MPI_COMM_WORLD).run();
   }
-  catch (const std::exception &problem)
+  catch (...)
   {
+    const std::string problem = retroforge::message_of(std::current_exception());
     // An error of all ranks is told once: the first speaks at once and ends the others. One that only another
     // rank met is told by that rank, a moment later.
     const bool alone = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
     if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
       std::this_thread::sleep_for(std::chrono::seconds(2));
-    std::cerr << "retroforge: " << problem.what() << std::endl;
+    std::cerr << "retroforge: " << problem << std::endl;
     if (!alone)
       MPI_Abort(MPI_COMM_WORLD, 1);
     return 1;

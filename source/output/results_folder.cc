@@ -29,10 +29,10 @@ namespace retroforge
              (name == "pictures" && fs::exists(path.parent_path() / "report.html", ignored));
     }
 
-    void append_results(const fs::path               &folder,
-                        bool (*const                  chosen)(const fs::path &),
-                        const std::string            &prefix,
-                        std::vector<std::string>     &names)
+    void append_results(const fs::path &folder,
+                        bool (*const chosen)(const fs::path &),
+                        const std::string        &prefix,
+                        std::vector<std::string> &names)
     {
       std::error_code error;
       for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
@@ -85,10 +85,11 @@ namespace retroforge
   void remove_all_but_record(const std::string &directory)
   {
     std::vector<std::string> names = results_in(directory);
-    names.erase(std::remove_if(names.begin(),
-                               names.end(),
-                               [](const std::string &name) { return name == "record" || name == "record.h5"; }),
-                names.end());
+    names.erase(
+      std::remove_if(names.begin(),
+                     names.end(),
+                     [](const std::string &name) { return name == "record" || name == "record.h5"; }),
+      names.end());
     remove(directory, names);
   }
 } // namespace retroforge

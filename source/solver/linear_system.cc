@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/text.h>
+#include <retroforge/solver/direct_solver.h>
 #include <retroforge/solver/linear_system.h>
 #include <retroforge/solver/preconditioner.h>
 
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/solver_gmres.h>
-#include <deal.II/lac/trilinos_solver.h>
 
 #include <Epetra_CrsGraph.h>
 #include <Epetra_CrsMatrix.h>
@@ -746,7 +747,7 @@ namespace retroforge
     }
     if (parameters_.method != "auto")
       throw Error("Linear solver/method",
-                  "'" + parameters_.method + "' did not reach " + std::to_string(tolerance) + " in " +
+                  "'" + parameters_.method + "' did not reach " + as_text(tolerance) + " in " +
                     std::to_string(parameters_.max_iterations) + " iterations",
                   "the linear system must be solved",
                   "use 'auto', which falls back to the direct solver, or check that the billet cannot slide "
@@ -795,11 +796,7 @@ namespace retroforge
       for (unsigned int i = 0; i < 4; ++i)
         b.trilinos_vector()[0][4 * a + i] =
           i < 3 ? rhs_.block(0).trilinos_vector()[0][3 * a + i] : rhs_.block(1).trilinos_vector()[0][a];
-    SolverControl                  control(1, 0.);
-    TrilinosWrappers::SolverDirect solver(
-      control, TrilinosWrappers::SolverDirect::AdditionalData(false, "Amesos_Mumps"));
-    solver.initialize(whole);
-    solver.solve(x, b);
+    solve_by_mumps(whole, b, x);
     for (unsigned int a = 0; a < n_owned; ++a)
       for (unsigned int i = 0; i < 4; ++i)
         (i < 3 ? x_.block(0).trilinos_vector()[0][3 * a + i] : x_.block(1).trilinos_vector()[0][a]) =

@@ -4,7 +4,9 @@
 #include <retroforge/element/strain_history.h>
 #include <retroforge/mesh/cell_transfer.h>
 #include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/mesh/rebuild.h>
 #include <retroforge/mesh/self_crossing.h>
+#include <retroforge/solver/direct_solver.h>
 #include <retroforge/time/forging.h>
 
 #include <sstream>
@@ -165,7 +167,7 @@ namespace retroforge
     {
       return failure.what();
     }
-    catch (const dealii::ExceptionBase &)
+    catch (const NoLinearSolution &)
     {
       return "the linear systems of an increment have no solution; the flattest element is" +
              at(flattest_cell(state.leg->scene.mesh, state.X));

@@ -7,7 +7,8 @@
 
 namespace retroforge
 {
-  /// A number for a message, to six digits: 1e-06 where std::to_string() says 0.000001, and less says nothing.
+  /// A number for a message, to six digits: 1e-06 where std::to_string() says 0.000001, and less says
+  /// nothing.
   inline std::string as_text(const double x)
   {
     std::ostringstream text;

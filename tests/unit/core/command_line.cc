@@ -21,8 +21,9 @@ void show(const std::vector<const char *> &words)
   {
     const CommandLine line = CommandLine::parse(words.size(), words.data());
     std::cout << "command '" << line.command << "' case '" << line.case_file << "' output '"
-              << line.output_directory << "' resume " << line.resume << " overwrite " << line.overwrite << " print " << line.print_parameters
-              << " version " << line.version << " help " << line.help << '\n';
+              << line.output_directory << "' resume " << line.resume << " overwrite " << line.overwrite
+              << " print " << line.print_parameters << " version " << line.version << " help " << line.help
+              << '\n';
     for (const auto &[path, value] : line.settings())
       std::cout << "  [" << path << "] <- [" << value << "]\n";
   }
