@@ -228,9 +228,14 @@ namespace retroforge
         copy(increment_file(directory_, i), increment_name(i), file);
       hdf5::write_attribute(file, "n_increments", &n_increments_);
     });
-    remove_segments(directory_);
+    tidy(directory_);
+  }
+
+  void RecordWriter::tidy(const std::string &directory)
+  {
+    remove_segments(directory);
     std::error_code ignored;
-    fs::remove(segments(directory_), ignored); // unless someone keeps files there
+    fs::remove(segments(directory), ignored); // unless someone keeps files there
   }
 
   std::uint64_t RecordWriter::bytes() const

@@ -46,6 +46,9 @@ namespace retroforge
     /// more on disk, and in memory; on Error the increments stay as they were.
     void finish();
 
+    /// Removes the increments beside a finished record: they stay where finish() was killed.
+    static void tidy(const std::string &directory);
+
     unsigned int n_increments() const { return n_increments_; }
 
     /// Size of the record on disk.
