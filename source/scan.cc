@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/stop_notice.h>
 #include <retroforge/core/version.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/output/results_folder.h>
@@ -200,6 +201,7 @@ namespace retroforge
     if (command_.resume)
       std::printf("  %zu of them are finished and reused\n", all - points.size());
     std::fflush(stdout);
+    say_when_stopped("stopped; the same command with --resume keeps the points that are finished");
     run_points(points);
     const ScanResults results(lines_, parameters_.scan.degree);
     results.write_csv(command_.output_directory + "/scan.csv");

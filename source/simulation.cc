@@ -2,12 +2,15 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/contact/penetration.h>
 #include <retroforge/core/error.h>
+#include <retroforge/core/exception_message.h>
+#include <retroforge/core/stop_notice.h>
 #include <retroforge/core/text.h>
 #include <retroforge/core/version.h>
 #include <retroforge/geometry/stl_file.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/objective/surface_areas.h>
 #include <retroforge/output/blas.h>
+#include <retroforge/output/console.h>
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/output/vtu_writer.h>
@@ -83,6 +86,44 @@ namespace retroforge
       return Remesher(parameters.remeshing, parameters.edge_length(mesh), dies, comm)
         .remesh(mesh, mesh.X, states, timings)
         ->mesh;
+    }
+
+    Summary::Check as_summary(const CheckRow &row)
+    {
+      const char    *verdict = row.is_zero ? "zero" : row.passed ? "passed" : "failed";
+      Summary::Check check{
+        row.objective, row.parameter, row.adjoint, row.tangent, {}, row.taylor_orders, verdict};
+      for (const DifferenceRow &d : row.steps)
+        check.steps.push_back(
+          {d.step, d.replayed_central, d.replayed_forward, d.replayed_backward, d.free_central});
+      return check;
+    }
+
+    void require_finite(const double x, const std::string &where, const std::string &what)
+    {
+      if (!std::isfinite(x))
+        throw Error(where,
+                    what + " is " + as_text(x),
+                    "results must be finite numbers",
+                    "use values of the usual size: exponents and sharpness above all");
+    }
+
+    void check_finite(const Objectives &objectives, const std::vector<double> &values)
+    {
+      for (std::size_t j = 0; j < objectives.size(); ++j)
+        require_finite(values[j], "Objective " + objectives[j].name, "its value");
+    }
+
+    void check_finite(const Judged &objective, const Design &design)
+    {
+      for (std::size_t j = 0; j < objective.gradient.size(); ++j)
+        require_finite(objective.gradient[j],
+                       "Objective " + objective.name,
+                       "its derivative by " + design.parameters()[j].name);
+      double size = 0.;
+      for (const Vec3 &x : objective.shape.X_0)
+        size += x.norm();
+      require_finite(size, "Objective " + objective.name, "its derivative by the nodes of the billet");
     }
 
     /// "check" solves all systems as well as they can be, or differences would measure the solvers.
@@ -185,14 +226,34 @@ namespace retroforge
                 << " rank(s), BLAS: " << blas_in_use() << std::endl;
     }
     write_dies();
-    bool passed = true;
+    try
+    {
+      return forge_and_judge() ? 0 : 1;
+    }
+    catch (...)
+    {
+      keep_failure();
+      throw;
+    }
+  }
+
+  bool Simulation::forge_and_judge()
+  {
+    bool         passed = true;
+    const double begin  = timings_.seconds("total");
+    summary_.whole      = whole_part(billet_, nominal_.dies[nominal_.leading_die].velocity);
     forge();
+    if (!command_.resume)
+      forging_seconds_ = timings_.seconds("total") - begin;
     if (command_.command != "simulate")
       differentiate();
+    summarise();
     if (command_.command == "check")
       passed = check();
-    summarise();
-    return passed ? 0 : 1;
+    write_summary();
+    if (root_)
+      print_results(summary_, parameters_.contact.largest_depth, command_.output_directory);
+    return passed;
   }
 
   void Simulation::prepare_folder() const
@@ -217,21 +278,23 @@ namespace retroforge
 
   void Simulation::forge()
   {
-    ForgingState state = forging_.start(first_leg_, X_0_);
+    forged_ = forging_.start(first_leg_, X_0_);
     if (root_)
     {
-      history_           = std::make_unique<History>(command_.output_directory + "/history.csv");
-      objective_history_ = std::make_unique<ObjectiveHistory>(command_.output_directory + "/objectives.csv");
-      pvd_               = std::make_unique<PvdWriter>(command_.output_directory + "/fields.pvd");
-      std::cout << "  inc   stroke      force        energy        volume   quality   depth newton krylov   "
-                   "time left\n";
+      const std::string &folder = command_.output_directory;
+      history_                  = std::make_unique<History>(folder + "/history.csv");
+      objective_history_        = std::make_unique<ObjectiveHistory>(folder + "/objectives.csv");
+      fields_                   = std::make_unique<FieldWriter>(folder, model_, process_, billet_, X_0_);
+      print_head(summary_.whole);
     }
     if (command_.resume)
-      resume(state);
+      resume();
     else if (root_ && parameters_.output.record)
       record_ = std::make_unique<RecordWriter>(
         command_.output_directory, RecordHeader{version, commit, echo_, facets(model_.dies), billet_, X_0_});
-    forging_.run(process_, state, [&](const IncrementEvent &event) {
+    if (root_)
+      say_when_stopped(way_on());
+    forging_.run(process_, forged_, [&](const IncrementEvent &event) {
       if (record_)
       {
         const auto timing = timings_.scope("record");
@@ -239,7 +302,6 @@ namespace retroforge
       }
       watch(event);
     });
-    forged_ = std::move(state);
     values_ = trace_.values(forged_, true);
     if (record_)
     {
@@ -247,9 +309,37 @@ namespace retroforge
       record_->finish();
     }
     MPI_Barrier(comm_); // the record is complete before any rank reads it
+    check_finite(objectives_, values_);
+    require_finite(forged_.energy.total(), "Workpiece", "its energy");
+    require_finite(volume(forged_.leg->scene.mesh.cells, forged_.X), "Workpiece", "its volume");
   }
 
-  void Simulation::resume(ForgingState &state)
+  std::string Simulation::way_on() const
+  {
+    const std::string on = parameters_.output.record || command_.resume
+                             ? "the same command with --resume goes on from the last increment"
+                             : "without a record (Output/record) it can only begin anew, with --overwrite";
+    return "stopped; " + on + "; contrib/report " + command_.output_directory + " shows what there is";
+  }
+
+  void Simulation::keep_failure() const
+  {
+    if (!root_)
+      return;
+    const std::string message = message_of(std::current_exception());
+    try
+    {
+      write_file(command_.output_directory + "/failure.txt", message + "\n");
+      if (fields_ && values_.empty())
+        fields_->add_failed(forged_);
+    }
+    catch (const Error &)
+    {
+      // What failed first is what the user must know.
+    }
+  }
+
+  void Simulation::resume()
   {
     const RecordReader record(command_.output_directory);
     const unsigned int n = record.n_increments();
@@ -261,10 +351,12 @@ namespace retroforge
         increment = record.read(i);
         return increment;
       },
-      state,
+      forged_,
       [&](const IncrementEvent &event) { watch(event); });
     MPI_Barrier(comm_); // all have read before the writer removes what is torn
-    if (root_ && !record.finished())
+    if (root_ && record.finished())
+      RecordWriter::tidy(command_.output_directory);
+    else if (root_)
       record_ = std::make_unique<RecordWriter>(RecordWriter::resume(command_.output_directory));
     if (root_)
       std::cout << "  resumed after increment " << n << std::endl;
@@ -294,36 +386,30 @@ namespace retroforge
     const auto  &leading = nominal_.dies[nominal_.leading_die];
     const double force =
       event.record.forces[nominal_.leading_die] * leading.velocity / leading.velocity.norm();
-    const double energy = state.energy.total();
-    history_->add({state.increments,
-                   event.time,
-                   state.stroke,
-                   force,
-                   energy,
-                   size,
-                   quality,
-                   deepest.depth,
-                   event.record.newton,
-                   event.record.krylov});
+    const double     energy = state.energy.total();
+    const WholePart &whole  = summary_.whole;
+    const HistoryRow row{state.increments,
+                         event.time,
+                         state.stroke,
+                         force,
+                         energy,
+                         size,
+                         quality,
+                         deepest.depth,
+                         event.record.newton,
+                         event.record.krylov,
+                         whole.force * force,
+                         whole.copies * energy,
+                         whole.copies * size};
+    history_->add(row);
     if (event.record.remesh)
       std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());
-    const double left = timings_.seconds("total") * (parameters_.press.stroke - state.stroke) / state.stroke;
-    std::printf("%5u %8.4f %12.5g %13.7g %13.7g %8.4f %7.3f %6u %6u %8.0f s\n",
-                state.increments,
-                state.stroke,
-                force,
-                energy,
-                size,
-                quality,
-                deepest.depth,
-                event.record.newton,
-                event.record.krylov,
-                left);
-    std::fflush(stdout);
+    print_increment(row,
+                    timings_.seconds("total") * (parameters_.press.stroke - state.stroke) / state.stroke);
     const unsigned int every = parameters_.output.every;
     if (every > 0 &&
         (state.increments % every == 0 || state.stroke >= parameters_.press.stroke * (1. - 1e-9)))
-      write_fields(event);
+      fields_->add(event);
   }
 
   void Simulation::trace(const IncrementEvent &event)
@@ -335,66 +421,18 @@ namespace retroforge
     if (every == 0 || (event.state.increments % every != 0 && !at_end))
       return;
     const auto              values = trace_.values(event.state, true, false);
-    const auto              parts  = trace_.parts(event.state);
+    const auto              beside = trace_.beside(event.state);
     std::vector<NamedValue> columns;
     for (std::size_t j = 0; j < objectives_.size(); ++j)
     {
       const std::string unit = " [" + objectives_[j].unit() + "]";
       columns.emplace_back(objectives_[j].name + unit, values[j]);
-      for (const auto &[name, value] : parts[j])
-        columns.emplace_back(objectives_[j].name + ": " + name + unit, value);
+      for (const auto *numbers : {&beside[j].parts, &beside[j].details})
+        for (const auto &[name, value] : *numbers)
+          columns.emplace_back(objectives_[j].name + ": " + name + unit, value);
     }
     if (root_)
       objective_history_->add(event.state.stroke, columns);
-  }
-
-  void Simulation::write_fields(const IncrementEvent &event)
-  {
-    const ForgingState  &run   = event.state;
-    const Scene         &scene = run.leg->scene;
-    const TetMesh       &mesh  = scene.mesh;
-    const Field<double> &W     = run.W;
-    ScalarField pressure{"pressure", W.P}, state{"contact_state", std::vector<double>(mesh.n_nodes(), 0.)},
-      contact_pressure{"contact_pressure", std::vector<double>(mesh.n_nodes(), 0.)}, rate{"strain_rate", {}};
-    const LastStage      last(scene, model_.step, process_, event.X_before, event.record);
-    const Stage<double> &stage = last.stage;
-    std::vector<double>  force(mesh.n_nodes(), 0.);
-    for (unsigned int p = 0; p < event.record.pairs.size(); ++p)
-    {
-      const auto          node  = stage.contact_node(p, W, event.record.solves.back().active);
-      const ContactPoint &point = event.record.pairs[p].point;
-      if (node.active)
-        for (unsigned int i = 0; i < point.n_nodes(); ++i)
-        {
-          const NodeIndex k = point.nodes[i];
-          state.values[k]   = event.record.pairs[p].die + 1.;
-          force[k] += point.weight() * stage.physics.contact.rho * node.S * approach_excess(node);
-        }
-    }
-    const std::vector<double> area = lumped_areas(surface_triangles(mesh), stage.X);
-    for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
-      if (force[k] > 0.)
-        contact_pressure.values[k] = force[k] / area[k];
-    for (CellIndex c = 0; c < mesh.n_cells(); ++c)
-    {
-      const auto e =
-        cell_strain_rates(cell_geometry(positions_of_cell(mesh, stage.X, c)), W.on_cell(mesh, c));
-      rate.values.push_back(0.25 * (e[0] + e[1] + e[2] + e[3]));
-    }
-    if (pvd_->steps().empty())
-    {
-      write_vtu(command_.output_directory + "/fields_000000.vtu", billet_, X_0_, {}, {}, {});
-      pvd_->add(0., "fields_000000.vtu");
-    }
-    char name[32];
-    std::snprintf(name, sizeof name, "fields_%06u.vtu", run.increments);
-    write_vtu(command_.output_directory + "/" + name,
-              mesh,
-              run.X,
-              {pressure, state, contact_pressure},
-              {{"velocity", W.V}},
-              {rate, {"equivalent_strain", run.strain}});
-    pvd_->add(event.time, name);
   }
 
   template <typename Number>
@@ -423,8 +461,12 @@ namespace retroforge
       differentiate_directly();
     else
       sweep_back();
-    if (root_)
-      print_gradient();
+    for (const Judged &objective : judged_)
+    {
+      check_finite(objective, design_);
+      if (root_)
+        print_gradient(objective, design_, mu_);
+    }
   }
 
   void Simulation::sweep_back()
@@ -451,37 +493,6 @@ namespace retroforge
       const auto derivatives = tangent(mu_dot, {NodalVectors<double>(X_0_.size()), {}});
       for (std::size_t j = 0; j < judged_.size(); ++j)
         judged_[j].gradient[i] = derivatives[j];
-    }
-  }
-
-  void Simulation::print_gradient() const
-  {
-    for (const Judged &objective : judged_)
-    {
-      // What a forger would turn first: by what one per cent of the parameter's size does.
-      std::vector<std::size_t> order(mu_.size());
-      std::iota(order.begin(), order.end(), 0);
-      const std::string unit   = objective.unit == "none" ? "" : " " + objective.unit;
-      const auto        effect = [&](const std::size_t j) {
-        return 0.01 * design_.parameters()[j].scale * objective.gradient[j];
-      };
-      std::stable_sort(order.begin(), order.end(), [&](const std::size_t a, const std::size_t b) {
-        return std::abs(effect(a)) > std::abs(effect(b));
-      });
-      std::printf("\n  gradient of %s = %.10g%s\n  %-24s %14s   %18s   for +1 %%\n",
-                  objective.name.c_str(),
-                  objective.value,
-                  unit.c_str(),
-                  "parameter",
-                  "value",
-                  "derivative");
-      for (const std::size_t j : order)
-        std::printf("  %-24s %14.8g   %18.12g   %+.4g%s\n",
-                    design_.parameters()[j].name.c_str(),
-                    mu_[j],
-                    objective.gradient[j],
-                    effect(j),
-                    unit.c_str());
     }
   }
 
@@ -615,10 +626,35 @@ namespace retroforge
 
   bool Simulation::check()
   {
-    checks_ = check_gradient(parameters_.check, design_, mu_, judged_, billet_size(), oracle());
+    const double begin = timings_.seconds("total");
+    const auto   rows  = check_gradient(
+      parameters_.check,
+      design_,
+      mu_,
+      judged_,
+      billet_size(),
+      oracle(),
+      [&](const std::vector<CheckRow> &so_far, const unsigned int done, const unsigned int all) {
+        keep_check(so_far, all - done);
+        if (!root_)
+          return;
+        if (done == 0)
+          print_check_begin(all, parameters_.check.n_runs(), forging_seconds_);
+        else
+          print_check_progress(so_far, done, all, timings_.seconds("total") - begin);
+      });
     if (root_)
-      print(checks_, std::cout);
-    return std::all_of(checks_.begin(), checks_.end(), [](const CheckRow &row) { return row.passed; });
+      print(rows, std::cout);
+    return std::all_of(rows.begin(), rows.end(), [](const CheckRow &row) { return row.passed; });
+  }
+
+  void Simulation::keep_check(const std::vector<CheckRow> &rows, const unsigned int remaining)
+  {
+    summary_.check.clear();
+    for (const CheckRow &row : rows)
+      summary_.check.push_back(as_summary(row));
+    summary_.check_remaining = remaining;
+    write_summary();
   }
 
   void Simulation::summarise()
@@ -639,67 +675,45 @@ namespace retroforge
     summary_.volume_initial        = volume(billet_.cells, X_0_);
     summary_.volume_final          = volume(forged_.leg->scene.mesh.cells, forged_.X);
     summary_.volume_repaired       = forged_.repaired;
-    summary_.wall_seconds          = timings_.all();
-    const auto parts               = trace_.parts(forged_);
-    for (std::size_t o = 0; o < objectives_.size(); ++o)
-      summary_.objectives.push_back({objectives_[o].name, values_[o], objectives_[o].unit(), parts[o]});
-    if (parameters_.objectives.gradients == "combined")
-      summary_.objectives.push_back({combinations_[0].name, combine(values_)[0], combinations_[0].unit, {}});
+    summarise_objectives();
     for (std::size_t j = 0; j < mu_.size() && !judged_.empty(); ++j)
     {
       summary_.parameters.push_back({design_.parameters()[j].name, mu_[j], design_.parameters()[j].unit, {}});
       for (const Judged &objective : judged_)
         summary_.parameters.back().gradient[objective.name] = objective.gradient[j];
     }
-    for (const CheckRow &row : checks_)
-    {
-      Summary::Check check{row.objective,
-                           row.parameter,
-                           row.adjoint,
-                           row.tangent,
-                           {},
-                           row.taylor_orders,
-                           row.is_zero  ? "zero"
-                           : row.passed ? "passed"
-                                        : "failed"};
-      for (const auto &d : row.steps)
-        check.steps.push_back(
-          {d.step, d.replayed_central, d.replayed_forward, d.replayed_backward, d.free_central});
-      summary_.check.push_back(check);
-    }
-    if (!root_)
-      return;
     if (record_)
       summary_.record_bytes = record_->bytes();
-    summary_.write(command_.output_directory + "/summary.json");
-    std::printf("\n");
-    for (const Summary::Objective &objective : summary_.objectives)
-    {
-      std::printf("  %s %.12g %s", objective.name.c_str(), objective.value, objective.unit.c_str());
-      for (const auto &[name, value] : objective.parts)
-        std::printf("%s%s %.6g", name == objective.parts.begin()->first ? " (" : ", ", name.c_str(), value);
-      std::printf("%s\n", objective.parts.empty() ? "" : ")");
-    }
-    if (summary_.deepest.relative > parameters_.contact.largest_depth)
-      std::printf(
-        "  warning: the surface was up to %.3g mm (%.1f %% of the element size) inside die %s, at (%.4g, "
-        "%.4g, "
-        "%.4g) and stroke %.5g: what is inside does no work. More increments, a smaller Contact/edge sinking "
-        "or Remeshing/chord error hold it out.\n",
-        summary_.deepest.depth,
-        100. * summary_.deepest.relative,
-        summary_.deepest.die.c_str(),
-        summary_.deepest.place[0],
-        summary_.deepest.place[1],
-        summary_.deepest.place[2],
-        summary_.deepest.stroke);
-    if (summary_.volume_repaired > 0.)
-      std::printf("  the surface crossed itself in places thinner than an element: %.3g mm^3 were taken away "
-                  "there, and put back elsewhere\n",
-                  summary_.volume_repaired);
-    std::printf("  volume change %.3g, %.1f s\n  results in %s\n",
-                summary_.volume_final / summary_.volume_initial - 1.,
-                timings_.seconds("total"),
-                command_.output_directory.c_str());
+  }
+
+  void Simulation::summarise_objectives()
+  {
+    const auto beside = trace_.beside(forged_);
+    for (std::size_t o = 0; o < objectives_.size(); ++o)
+      summary_.objectives.push_back({objectives_[o].name,
+                                     values_[o],
+                                     objectives_[o].unit(),
+                                     beside[o].parts,
+                                     beside[o].details,
+                                     copies(objectives_[o]) * values_[o]});
+    if (parameters_.objectives.gradients == "combined")
+      summary_.objectives.push_back(
+        {combinations_[0].name, combine(values_)[0], combinations_[0].unit, {}, {}});
+  }
+
+  void Simulation::write_summary()
+  {
+    summary_.wall_seconds = timings_.all();
+    if (root_)
+      summary_.write(command_.output_directory + "/summary.json");
+  }
+
+  double Simulation::copies(const NamedObjective &objective) const
+  {
+    if (objective.extent == Extent::none)
+      return Summary::unknown;
+    return objective.extent == Extent::part
+             ? summary_.whole.copies
+             : whole_part(billet_, process_.dies[objective.die].velocity).force;
   }
 } // namespace retroforge

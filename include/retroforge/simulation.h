@@ -3,9 +3,9 @@
 #pragma once
 
 #include <retroforge/core/command_line.h>
+#include <retroforge/output/field_writer.h>
 #include <retroforge/output/history.h>
 #include <retroforge/output/objective_history.h>
-#include <retroforge/output/pvd_writer.h>
 #include <retroforge/output/summary.h>
 #include <retroforge/parameters.h>
 
@@ -31,22 +31,32 @@ namespace retroforge
     void prepare_folder() const;
     /// Surfaces of the dies that are no planes, at the start of the run: die_NAME.stl.
     void write_dies() const;
+    /// @return whether a check passed, or there was none
+    bool forge_and_judge();
     void forge();
-    /// The state after the last increment of the record in the output folder, which the run goes on from.
-    void resume(ForgingState &state);
+    /// To the state after the last increment of the record in the output folder, which the run goes on from.
+    void resume();
+    /// What a user is told who stops the run.
+    std::string way_on() const;
+    /// Leaves the reason why the run failed, which is being thrown, and the workpiece there.
+    void keep_failure() const;
     void differentiate();
     void sweep_back();
     void differentiate_directly();
     bool check();
+    /// Keeps what of a check is done, however it ends.
+    void keep_check(const std::vector<CheckRow> &rows, unsigned int remaining);
     void summarise();
+    void summarise_objectives();
+    void write_summary();
 
     void   watch(const IncrementEvent &event);
     void   trace(const IncrementEvent &event);
-    void   print_gradient() const;
-    void   write_fields(const IncrementEvent &event);
     void   write_sensitivity();
     void   check_billet_against_dies() const;
     double billet_size() const;
+    /// How often the objective's value stands in the whole part; NaN where it says nothing of that.
+    double copies(const NamedObjective &objective) const;
     /// The recorded increments, from memory or from the record's file.
     Forging::Source source();
     RecordedForging recorded();
@@ -82,14 +92,14 @@ namespace retroforge
     std::vector<IncrementRecord> records_;
     ForgingState                 forged_;
     ObjectiveTrace               trace_;
-    std::vector<double>          values_; ///< of the objectives
-    std::vector<Judged>          judged_; ///< each combination that was differentiated
-    std::vector<CheckRow>        checks_;
+    std::vector<double>          values_;               ///< of the objectives
+    std::vector<Judged>          judged_;               ///< each combination that was differentiated
+    double                       forging_seconds_ = 0.; ///< 0: unknown, the run was resumed
 
     std::unique_ptr<RecordWriter>     record_;
     std::unique_ptr<History>          history_;
     std::unique_ptr<ObjectiveHistory> objective_history_;
-    std::unique_ptr<PvdWriter>        pvd_;
+    std::unique_ptr<FieldWriter>      fields_;
     Summary                           summary_;
   };
 } // namespace retroforge

@@ -224,63 +224,109 @@ namespace retroforge
     }
   } // namespace
 
+  unsigned int CheckParameters::n_runs() const
+  {
+    return (free ? 4 : 2) * steps.size() + taylor_halvings + 1;
+  }
+
+  namespace
+  {
+    /// A line in the space of designs along which derivatives are checked.
+    struct Direction
+    {
+      std::string         name, unit;
+      std::vector<double> mu_dot;
+      FreeForm            shift_dot;
+      double              scale;       ///< of the steps, in its unit
+      bool                is_of_shape; ///< all nodes move at once: steps are ten times smaller
+    };
+
+    std::vector<Direction> directions(const Design &design, const FreeForm &shape, const double length)
+    {
+      const std::size_t      n_nodes = shape.X_0.size(), n = design.parameters().size();
+      std::vector<Direction> directions;
+      for (std::size_t j = 0; j < n; ++j)
+      {
+        const auto &parameter = design.parameters()[j];
+        directions.push_back({parameter.name,
+                              parameter.unit,
+                              std::vector<double>(n, 0.),
+                              {NodalVectors<double>(n_nodes), {}},
+                              parameter.scale,
+                              false});
+        directions.back().mu_dot[j] = 1.;
+      }
+      std::mt19937 generator(1);
+      FreeForm     moved;
+      const auto   append = [&](const std::string &name) {
+        directions.push_back(
+          {name + " (random direction)", "mm", std::vector<double>(n, 0.), moved, length, true});
+      };
+      moved.X_0 = random_vectors(n_nodes, generator);
+      moved.dies.resize(shape.dies.size());
+      append("X_0");
+      moved.X_0 = NodalVectors<double>(n_nodes);
+      for (unsigned int d = 0; d < moved.dies.size(); ++d)
+        if (const std::size_t n_vertices = shape.dies[d].size(); n_vertices > 0)
+        {
+          moved.dies[d] = random_vectors(n_vertices, generator);
+          append(design.die_name(d));
+          moved.dies[d].clear();
+        }
+      return directions;
+    }
+
+    /// Rows of a direction before the runs: what the backward sweep says.
+    std::vector<CheckRow> rows_of(const Direction &direction, const std::vector<Judged> &judged)
+    {
+      std::vector<CheckRow> rows;
+      for (const Judged &objective : judged)
+      {
+        auto [slope, magnitude] = along(direction.shift_dot, objective.shape);
+        for (std::size_t j = 0; j < direction.mu_dot.size(); ++j)
+          slope += direction.mu_dot[j] * objective.gradient[j];
+        rows.push_back({objective.name, direction.name, direction.unit, slope, 0., {}, {}, false, magnitude});
+      }
+      return rows;
+    }
+
+    std::vector<CheckRow> by_objective(const std::vector<std::vector<CheckRow>> &of_directions)
+    {
+      std::vector<CheckRow> rows;
+      for (std::size_t o = 0; o < of_directions[0].size(); ++o)
+        for (const auto &direction : of_directions)
+          rows.push_back(direction[o]);
+      return rows;
+    }
+  } // namespace
+
   std::vector<CheckRow> check_gradient(const CheckParameters     &parameters,
                                        const Design              &design,
                                        const std::vector<double> &mu,
                                        const std::vector<Judged> &judged,
                                        const double               length,
-                                       const ObjectiveOracle     &oracle)
+                                       const ObjectiveOracle     &oracle,
+                                       const CheckWatch          &watch)
   {
-    std::vector<std::vector<CheckRow>> of_lines;
-    const std::size_t                  n_nodes = judged[0].shape.X_0.size();
-    for (std::size_t j = 0; j < mu.size(); ++j)
-    {
-      std::vector<double> mu_dot(mu.size(), 0.);
-      mu_dot[j]             = 1.;
-      const auto &parameter = design.parameters()[j];
-      of_lines.emplace_back();
-      for (const Judged &objective : judged)
-        of_lines.back().push_back(
-          {objective.name, parameter.name, parameter.unit, objective.gradient[j], 0., {}, {}, false, 0.});
-      check_line(parameters,
-                 {mu, mu_dot, {NodalVectors<double>(n_nodes), {}}},
-                 judged,
-                 parameter.scale,
-                 oracle,
-                 of_lines.back());
-    }
     CheckParameters small = parameters;
     for (double &step : small.steps)
       step *= 0.1;
     small.taylor_start *= 0.1;
-    const auto check_shape = [&](const std::string &name, const FreeForm &direction) {
-      of_lines.emplace_back();
-      for (const Judged &objective : judged)
-      {
-        const auto [slope, magnitude] = along(direction, objective.shape);
-        of_lines.back().push_back({objective.name, name, "mm", slope, 0., {}, {}, false, magnitude});
-      }
-      check_line(
-        small, {mu, std::vector<double>(mu.size(), 0.), direction}, judged, length, oracle, of_lines.back());
-    };
-    std::mt19937 generator(1);
-    FreeForm     direction;
-    direction.X_0 = random_vectors(n_nodes, generator);
-    direction.dies.resize(judged[0].shape.dies.size());
-    check_shape("X_0 (random direction)", direction);
-    direction.X_0 = NodalVectors<double>(n_nodes);
-    for (unsigned int d = 0; d < direction.dies.size(); ++d)
-      if (const std::size_t n = judged[0].shape.dies[d].size(); n > 0)
-      {
-        direction.dies[d] = random_vectors(n, generator);
-        check_shape(design.die_name(d) + " (random direction)", direction);
-        direction.dies[d].clear();
-      }
-    std::vector<CheckRow> rows;
-    for (std::size_t o = 0; o < judged.size(); ++o)
-      for (const auto &line : of_lines)
-        rows.push_back(line[o]);
-    return rows;
+    std::vector<std::vector<CheckRow>> of_directions;
+    const auto                         all = directions(design, judged[0].shape, length);
+    watch({}, 0, all.size());
+    for (const Direction &direction : all)
+    {
+      of_directions.push_back(rows_of(direction, judged));
+      check_line(direction.is_of_shape ? small : parameters,
+                 {mu, direction.mu_dot, direction.shift_dot},
+                 judged,
+                 direction.scale,
+                 oracle,
+                 of_directions.back());
+      watch(by_objective(of_directions), of_directions.size(), all.size());
+    }
+    return by_objective(of_directions);
   }
 
   void print(const std::vector<CheckRow> &rows, std::ostream &out)

@@ -237,12 +237,25 @@ namespace retroforge
     return std::make_unique<VolumeObjective>();
   }
 
+  Extent ObjectiveParameters::extent() const
+  {
+    if (type == "mean effort" || type == "maximum effort")
+      return Extent::force;
+    for (const char *name : {"energy", "fold", "filling", "unfilled volume", "volume"})
+      if (type == name)
+        return Extent::part;
+    return Extent::none;
+  }
+
   NamedObjective ObjectiveParameters::make(const ObjectiveContext &context) const
   {
     NamedObjective objective;
     objective.name   = name;
     objective.weight = weight;
-    objective.path   = make_path(context);
+    objective.extent = extent();
+    if (objective.extent == Extent::force)
+      objective.die = moving_die(context);
+    objective.path = make_path(context);
     if (!objective.path)
       objective.at_end = make_at_end(context);
     return objective;

@@ -27,7 +27,7 @@ namespace retroforge
     }
   }
 
-  std::map<std::string, double> StrainObjective::parts(const std::vector<double> &) const
+  std::map<std::string, double> StrainObjective::details(const std::vector<double> &) const
   {
     if (statistic_ != StrainStatistic::maximum)
       return {};

@@ -25,7 +25,8 @@ namespace retroforge
       const std::string name = path.filename().string();
       if (!fs::is_directory(path, ignored))
         return std::regex_match(name, file_names);
-      return (name == "record" && fs::exists(path / "header.h5", ignored)) ||
+      return (name == "record" && (fs::exists(path / "header.h5", ignored) ||
+                                   fs::exists(path / "increment_000000.h5", ignored))) ||
              (name == "pictures" && fs::exists(path.parent_path() / "report.html", ignored));
     }
 

@@ -59,6 +59,9 @@ namespace retroforge
     {
       Json json = {{"name", objective.name}, {"value", number(objective.value)}, {"unit", objective.unit}};
       add_unless_empty(json, "parts", number_map(objective.parts));
+      add_unless_empty(json, "details", number_map(objective.details));
+      if (std::isfinite(objective.whole))
+        json["whole"] = objective.whole;
       return json;
     }
 
@@ -93,13 +96,14 @@ namespace retroforge
 
   std::string Summary::to_json() const
   {
-    Json json = {{"schema", schema},
-                 {"command", command},
-                 {"version", version},
-                 {"commit", commit},
-                 {"ranks", number(ranks)},
-                 {"blas", blas},
-                 {"mesh", {{"nodes", number(n_nodes)}, {"cells", number(n_cells)}}}};
+    Json json     = {{"schema", schema},
+                     {"command", command},
+                     {"version", version},
+                     {"commit", commit},
+                     {"ranks", number(ranks)},
+                     {"blas", blas},
+                     {"mesh", {{"nodes", number(n_nodes)}, {"cells", number(n_cells)}}}};
+    json["whole"] = {{"copies", number(whole.copies)}, {"force_factor", number(whole.force)}};
     add_unless_empty(json, "objectives", list(objectives));
     add_unless_empty(json, "parameters", list(parameters));
     json["increments"]            = number(increments);
@@ -122,6 +126,8 @@ namespace retroforge
     add_unless_empty(json, "wall_seconds", number_map(wall_seconds));
     json["record_bytes"] = number(record_bytes);
     add_unless_empty(json, "check", list(check));
+    if (check_remaining)
+      json["check_remaining"] = *check_remaining;
     // names that are not UTF-8 get a replacement character: no reason to lose the results of a run
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }

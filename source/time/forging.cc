@@ -4,7 +4,6 @@
 #include <retroforge/element/strain_history.h>
 #include <retroforge/mesh/cell_transfer.h>
 #include <retroforge/mesh/mesh_quality.h>
-#include <retroforge/mesh/rebuild.h>
 #include <retroforge/mesh/self_crossing.h>
 #include <retroforge/solver/direct_solver.h>
 #include <retroforge/time/forging.h>

@@ -76,19 +76,22 @@ namespace retroforge
     return values;
   }
 
-  std::vector<std::map<std::string, double>> ObjectiveTrace::parts(const ForgingState &state) const
+  std::vector<ObjectiveTrace::Beside> ObjectiveTrace::beside(const ForgingState &state) const
   {
-    const auto                                 dies = process_.at_stroke(state.stroke).dies;
-    std::vector<std::map<std::string, double>> parts;
+    const auto          dies = process_.at_stroke(state.stroke).dies;
+    std::vector<Beside> beside;
     for (const NamedObjective &objective : objectives_)
       if (objective.path)
-        parts.push_back(objective.path->parts(rows_[parts.size()]));
+      {
+        const PathRows<double> &rows = rows_[beside.size()];
+        beside.push_back({objective.path->parts(rows), objective.path->details(rows)});
+      }
       else
       {
         const auto view = final_view(*objective.at_end, state.leg->scene, state.X, state.strain, dies);
-        parts.push_back(
-          objective.at_end->parts(sum_over_ranks(objective.at_end->integrals(view), model_.comm)));
+        const auto b    = sum_over_ranks(objective.at_end->integrals(view), model_.comm);
+        beside.push_back({objective.at_end->parts(b), objective.at_end->details(b)});
       }
-    return parts;
+    return beside;
   }
 } // namespace retroforge

@@ -17,6 +17,9 @@ namespace retroforge
     double              tangent_bar     = 1e-10;
     double              taylor_bar      = 1.95;
 
+    /// Forgings along each direction that is checked, beside the tangent.
+    unsigned int n_runs() const;
+
     void add_parameters(dealii::ParameterHandler &prm);
   };
 
@@ -79,6 +82,11 @@ namespace retroforge
     double smallest_difference() const;
   };
 
+  /// Told before the first direction and after each: the rows so far, how many directions are done, and how
+  /// many there are.
+  using CheckWatch =
+    std::function<void(const std::vector<CheckRow> &rows, unsigned int done, unsigned int all)>;
+
   /// Checks the derivative of each objective in each design parameter, along one random direction of all X_0,
   /// and along one of all vertices of each die that has some. Objectives share the runs. Rows are ordered by
   /// objective.
@@ -87,7 +95,8 @@ namespace retroforge
                                        const std::vector<double> &mu,
                                        const std::vector<Judged> &judged,
                                        double                     length,
-                                       const ObjectiveOracle     &oracle);
+                                       const ObjectiveOracle     &oracle,
+                                       const CheckWatch          &watch);
 
   /// The table a user reads.
   void print(const std::vector<CheckRow> &rows, std::ostream &out);

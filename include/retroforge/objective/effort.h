@@ -102,7 +102,7 @@ namespace retroforge
     /// The largest effort of an increment in the window, what value() stays below [N]; 0 if there is none.
     double true_maximum(const PathRows<double> &rows) const;
 
-    std::map<std::string, double> parts(const PathRows<double> &rows) const override
+    std::map<std::string, double> details(const PathRows<double> &rows) const override
     {
       return {{"true maximum", true_maximum(rows)}};
     }

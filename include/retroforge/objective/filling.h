@@ -38,7 +38,7 @@ namespace retroforge
 
     std::map<std::string, double> parts(const std::vector<double> &integrals) const override
     {
-      return {{"workpiece onto target", integrals[0]}, {"target onto workpiece", integrals[1]}};
+      return {{"workpiece onto target", 0.5 * integrals[0]}, {"target onto workpiece", 0.5 * integrals[1]}};
     }
 
     /// The weights' meaning: integrals are the two sums, workpiece -> target and target -> workpiece.

@@ -70,8 +70,11 @@ namespace retroforge
     virtual double value(const std::vector<double> &integrals) const = 0;
     virtual Dual   value(const std::vector<Dual> &integrals) const   = 0;
 
-    /// Numbers told beside the value, in its unit unless their names say other.
+    /// Summands of the value.
     virtual std::map<std::string, double> parts(const std::vector<double> &) const { return {}; }
+
+    /// Other numbers told beside it, in its unit unless their names say other.
+    virtual std::map<std::string, double> details(const std::vector<double> &) const { return {}; }
 
     /// dF/db.
     virtual std::vector<double> reverse_value(const std::vector<double> &integrals) const = 0;

@@ -61,6 +61,7 @@ namespace retroforge
   private:
     std::string   section() const { return "Objective " + name; }
     unsigned int  find_die(const ObjectiveContext &context, const std::string &die_name) const;
+    Extent        extent() const;
     unsigned int  moving_die(const ObjectiveContext &context) const;
     Effort        effort(const ObjectiveContext &context) const;
     PathWindow    window(const ObjectiveContext &context) const;

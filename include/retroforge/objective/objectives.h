@@ -9,13 +9,25 @@
 
 namespace retroforge
 {
+  /// How the value of the whole part follows from that of the model that symmetry planes cut from it: of what
+  /// adds up over the part, of the force of a die, and of the rest, which says nothing of the whole or is the
+  /// same there.
+  enum class Extent
+  {
+    part,
+    force,
+    none
+  };
+
   /// An objective under the name that the user gave it: of one of the two kinds.
   struct NamedObjective
   {
     std::string                     name;
     double                          weight = 1.; ///< in the combination
-    std::unique_ptr<PathObjective>  path;        ///< null for one of the end
-    std::unique_ptr<FinalObjective> at_end;      ///< null for one of the path
+    Extent                          extent = Extent::none;
+    unsigned int                    die    = invalid_index; ///< of an extent `force`
+    std::unique_ptr<PathObjective>  path;                   ///< null for one of the end
+    std::unique_ptr<FinalObjective> at_end;                 ///< null for one of the path
 
     std::string unit() const { return path ? path->unit() : at_end->unit(); }
   };

@@ -80,8 +80,11 @@ namespace retroforge
     virtual double value(const PathRows<double> &rows) const = 0;
     virtual Dual   value(const PathRows<Dual> &rows) const   = 0;
 
-    /// Numbers told beside the value, in its unit: summands, or the true maximum beside a smooth one.
+    /// Summands of the value.
     virtual std::map<std::string, double> parts(const PathRows<double> &) const { return {}; }
+
+    /// Other numbers told beside it: the true maximum beside a smooth one.
+    virtual std::map<std::string, double> details(const PathRows<double> &) const { return {}; }
 
     /// dPhi/d(a_i, dt_i, t_i) of each increment.
     virtual PathRows<double> reverse_value(const PathRows<double> &rows) const = 0;

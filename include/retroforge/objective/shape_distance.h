@@ -57,7 +57,7 @@ namespace retroforge
     /// @throws Error  when a patch is not there
     void decide(const FinalView<double> &view) override;
 
-    std::map<std::string, double> parts(const std::vector<double> &integrals) const override
+    std::map<std::string, double> details(const std::vector<double> &integrals) const override
     {
       return {{"radius [mm]", radius(integrals)}};
     }

@@ -31,7 +31,7 @@ namespace retroforge
 
     double true_maximum() const { return reference_; }
 
-    std::map<std::string, double> parts(const std::vector<double> &) const override;
+    std::map<std::string, double> details(const std::vector<double> &) const override;
 
     void reverse_integrals(const FinalView<double>   &view,
                            const std::vector<double> &weights,

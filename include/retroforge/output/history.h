@@ -15,13 +15,16 @@ namespace retroforge
     unsigned int increment   = 0; ///< counted from 1; 0 is the initial state
     double       time        = 0; ///< s
     double       stroke      = 0; ///< mm
-    double       force       = 0; ///< of the moving die, N
+    double       force       = 0; ///< of the leading die along its path, in the last stage's equilibrium, N
     double       energy      = 0; ///< spent so far, mJ
     double       volume      = 0; ///< mm^3
     double       min_quality = 0; ///< of the worst cell, dimensionless
     double       depth       = 0; ///< of the surface's deepest point in a die, mm
     unsigned int newton      = 0; ///< Newton iterations of the increment
     unsigned int krylov      = 0; ///< iterations of its linear solves
+
+    /// Of the whole part, of which symmetry may leave a sector: force, energy and volume.
+    double whole_force = 0, whole_energy = 0, whole_volume = 0;
   };
 
   /// The history of a run as a table (.csv). Each row is on the disk when add() returns; numbers read back to

@@ -2,6 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/mesh/whole_part.h>
+
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -28,7 +30,9 @@ namespace retroforge
       std::string                   name;
       double                        value = unknown;
       std::string                   unit;
-      std::map<std::string, double> parts; ///< summands of the value, e.g. deformation and friction
+      std::map<std::string, double> parts;           ///< summands of the value, e.g. deformation and friction
+      std::map<std::string, double> details;         ///< other numbers told beside it, e.g. the true maximum
+      double                        whole = unknown; ///< of the whole part, for what adds up over it
     };
 
     struct Parameter
@@ -64,6 +68,8 @@ namespace retroforge
     std::string command, version, commit, blas;
     Count       ranks, n_nodes, n_cells;
 
+    WholePart whole;
+
     std::vector<Objective> objectives;
     std::vector<Parameter> parameters;
 
@@ -89,6 +95,7 @@ namespace retroforge
     Count                         record_bytes;
 
     std::vector<Check> check;
+    Count              check_remaining; ///< directions not yet checked; unset but for a check
 
     /// The text of the file.
     std::string to_json() const;

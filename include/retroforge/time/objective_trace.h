@@ -32,8 +32,14 @@ namespace retroforge
     /// chose last
     std::vector<double> values(const ForgingState &state, bool decide, bool complete = true) const;
 
-    /// Numbers told beside each value, after values().
-    std::vector<std::map<std::string, double>> parts(const ForgingState &state) const;
+    /// What is told beside a value: its summands, and other numbers.
+    struct Beside
+    {
+      std::map<std::string, double> parts, details;
+    };
+
+    /// Of each objective, after values().
+    std::vector<Beside> beside(const ForgingState &state) const;
 
     /// The rows of each objective; empty for one of the end.
     const std::vector<PathRows<double>> &rows() const { return rows_; }

@@ -16,14 +16,27 @@ bool equal(const HistoryRow &a, const HistoryRow &b)
 {
   return a.increment == b.increment && a.time == b.time && a.stroke == b.stroke && a.force == b.force &&
          a.energy == b.energy && a.volume == b.volume && a.min_quality == b.min_quality &&
-         a.depth == b.depth && a.newton == b.newton && a.krylov == b.krylov;
+         a.depth == b.depth && a.newton == b.newton && a.krylov == b.krylov &&
+         a.whole_force == b.whole_force && a.whole_energy == b.whole_energy &&
+         a.whole_volume == b.whole_volume;
 }
 
 int main()
 {
-  const HistoryRow first{1, 0.1, 1. / 3., 1e6 / 7., 2.5, 1000., 0.3, 0.0125, 7, 120};
-  const HistoryRow second{
-    2, 0.2, 2. / 3., 1e-300, -0., std::numeric_limits<double>::max(), 0.1 + 0.2, 1. / 7., 3, 4000000000u};
+  const HistoryRow first{1, 0.1, 1. / 3., 1e6 / 7., 2.5, 1000., 0.3, 0.0125, 7, 120, 4e6 / 7., 10., 4000.};
+  const HistoryRow second{2,
+                          0.2,
+                          2. / 3.,
+                          1e-300,
+                          -0.,
+                          std::numeric_limits<double>::max(),
+                          0.1 + 0.2,
+                          1. / 7.,
+                          3,
+                          4000000000u,
+                          1. / 11.,
+                          -1e-300,
+                          0.};
   {
     History history("history.csv");
     std::cout << read_file("history.csv");

@@ -22,8 +22,9 @@ Summary filled()
   s.ranks                 = 2;
   s.n_nodes               = 1331;
   s.n_cells               = 6000;
-  s.objectives            = {{"energy", 1.5, "mJ", {{"deformation", 1.25}, {"friction", 0.25}}},
-                             {"volume", 8., "mm^3", {}}};
+  s.objectives            = {{"energy", 1.5, "mJ", {{"deformation", 1.25}, {"friction", 0.25}}, {}, 6.},
+                             {"maximum effort", 8., "N", {}, {{"true maximum", 9.}}}};
+  s.whole                 = {4., Summary::unknown};
   s.parameters            = {{"material/K", 1., "MPa s^m", {{"energy", 1.5}, {"volume", Summary::unknown}}}};
   s.increments            = 20;
   s.cuts                  = 0;
@@ -37,6 +38,7 @@ Summary filled()
   s.wall_seconds          = {{"assembly", 0.5}, {"total", 2.}};
   s.record_bytes          = 5000000000;
   s.check                 = {{"energy", "material/K", 1.5, 1.5, {}, {2., 1. / 0.}, "passed"}};
+  s.check_remaining       = 3;
   s.check[0].steps        = {{1e-3, 1.5, 1.5, 1.5, Summary::unknown}};
   return s;
 }

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/adjoint/check.h>
+#include <retroforge/mesh/whole_part.h>
+#include <retroforge/output/history.h>
+#include <retroforge/output/summary.h>
+
+/// What a user reads while a run goes on.
+namespace retroforge
+{
+  /// Of what part the numbers are, and the head of the table of increments.
+  void print_head(const WholePart &whole);
+
+  /// @param seconds_left  until the forging is done
+  void print_increment(const HistoryRow &row, double seconds_left);
+
+  /// The parameters by what one per cent of each does: what a forger would turn first.
+  void print_gradient(const Judged &objective, const Design &design, const std::vector<double> &mu);
+
+  /// What a check is about to do.
+  /// @param n_directions  to be checked, by n_runs forgings each
+  /// @param seconds       of one forging; 0 when unknown
+  void print_check_begin(unsigned int n_directions, unsigned int n_runs, double seconds);
+
+  /// Of the direction checked last, and the time left as those so far took it.
+  /// @param rows  of all objectives along the directions so far
+  void print_check_progress(const std::vector<CheckRow> &rows,
+                            unsigned int                 done,
+                            unsigned int                 all,
+                            double                       seconds);
+
+  /// The objectives, and what a user must know to trust them.
+  void print_results(const Summary &summary, double largest_depth, const std::string &directory);
+} // namespace retroforge

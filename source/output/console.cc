@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/output/console.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+namespace retroforge
+{
+  void print_head(const WholePart &whole)
+  {
+    if (std::isnan(whole.copies))
+      std::printf(
+        "  forces, energies and volumes are of the model: its symmetry planes bound no whole part\n");
+    else if (!whole.is_model())
+      std::printf("  the model is 1/%.6g of the part: forces, energies and volumes below are of the model\n",
+                  whole.copies);
+    std::printf("  inc   stroke      force        energy        volume   quality   depth newton krylov   "
+                "time left\n");
+    std::fflush(stdout);
+  }
+
+  void print_increment(const HistoryRow &row, const double seconds_left)
+  {
+    std::printf("%5u %8.4f %12.5g %13.7g %13.7g %8.4f %7.3f %6u %6u %8.0f s\n",
+                row.increment,
+                row.stroke,
+                row.force,
+                row.energy,
+                row.volume,
+                row.min_quality,
+                row.depth,
+                row.newton,
+                row.krylov,
+                seconds_left);
+    std::fflush(stdout);
+  }
+
+  void print_gradient(const Judged &objective, const Design &design, const std::vector<double> &mu)
+  {
+    std::vector<std::size_t> order(mu.size());
+    std::iota(order.begin(), order.end(), 0);
+    const std::string unit   = objective.unit == "none" ? "" : " " + objective.unit;
+    const auto        effect = [&](const std::size_t j) {
+      return 0.01 * design.parameters()[j].scale * objective.gradient[j];
+    };
+    std::stable_sort(order.begin(), order.end(), [&](const std::size_t a, const std::size_t b) {
+      return std::abs(effect(a)) > std::abs(effect(b));
+    });
+    std::printf("\n  gradient of %s = %.10g%s\n  %-24s %14s   %18s   for +1 %%\n",
+                objective.name.c_str(),
+                objective.value,
+                unit.c_str(),
+                "parameter",
+                "value",
+                "derivative");
+    for (const std::size_t j : order)
+      std::printf("  %-24s %14.8g   %18.12g   %+.4g%s\n",
+                  design.parameters()[j].name.c_str(),
+                  mu[j],
+                  objective.gradient[j],
+                  effect(j),
+                  unit.c_str());
+  }
+
+  void print_check_begin(const unsigned int n_directions, const unsigned int n_runs, const double seconds)
+  {
+    std::printf("\n  check of %u directions by %u forgings and a tangent each: %u forgings",
+                n_directions,
+                n_runs,
+                n_directions * n_runs);
+    if (seconds > 0.) // a tangent solves a system per stage for each of its directions, and reassembles
+      std::printf(", about %.0f s", std::ceil(n_directions * (n_runs + 2) * seconds));
+    std::printf("\n");
+    std::fflush(stdout);
+  }
+
+  void print_check_progress(const std::vector<CheckRow> &rows,
+                            const unsigned int           done,
+                            const unsigned int           all,
+                            const double                 seconds)
+  {
+    // Rows stand by objective, and within it by direction.
+    unsigned int failed = 0;
+    for (std::size_t row = done - 1; row < rows.size(); row += done)
+      failed += !rows[row].passed;
+    std::printf("  %u/%u %s: %s, %.0f s, about %.0f s left\n",
+                done,
+                all,
+                rows[done - 1].parameter.c_str(),
+                failed == 0 ? "passed" : (std::to_string(failed) + " FAILED").c_str(),
+                seconds,
+                std::ceil(seconds / done * (all - done)));
+    std::fflush(stdout);
+  }
+
+  namespace
+  {
+    /// "energy 20 mJ (deformation 15, friction 5); of the whole part 80 mJ"
+    void print_objective(const Summary::Objective &objective, const bool is_model)
+    {
+      const char *unit = objective.unit.c_str();
+      std::printf("  %s %.12g %s", objective.name.c_str(), objective.value, unit);
+      const char *separator = " (";
+      for (const auto *numbers : {&objective.parts, &objective.details})
+        for (const auto &[name, value] : *numbers)
+        {
+          std::printf("%s%s %.6g", separator, name.c_str(), value);
+          separator = ", ";
+        }
+      std::printf("%s", *separator == ',' ? ")" : "");
+      if (!is_model && std::isfinite(objective.whole))
+        std::printf("; of the whole part %.12g %s", objective.whole, unit);
+      std::printf("\n");
+    }
+
+    void print_depth(const Summary::Depth &deepest)
+    {
+      std::printf(
+        "  warning: the surface was up to %.3g mm (%.1f %% of the element size) inside die %s, at (%.4g, "
+        "%.4g, "
+        "%.4g) and stroke %.5g: what is inside does no work. More increments, a smaller Contact/edge sinking "
+        "or Remeshing/chord error hold it out.\n",
+        deepest.depth,
+        100. * deepest.relative,
+        deepest.die.c_str(),
+        deepest.place[0],
+        deepest.place[1],
+        deepest.place[2],
+        deepest.stroke);
+    }
+  } // namespace
+
+  void print_results(const Summary &summary, const double largest_depth, const std::string &directory)
+  {
+    std::printf("\n");
+    for (const Summary::Objective &objective : summary.objectives)
+      print_objective(objective, summary.whole.is_model());
+    if (summary.deepest.relative > largest_depth)
+      print_depth(summary.deepest);
+    if (summary.volume_repaired > 0.)
+      std::printf("  the surface crossed itself in places thinner than an element: %.3g mm^3 were taken away "
+                  "there, and put back elsewhere\n",
+                  summary.volume_repaired);
+    const auto total = summary.wall_seconds.find("total");
+    std::printf("  volume change %.3g, %.1f s\n  results in %s\n",
+                summary.volume_final / summary.volume_initial - 1.,
+                total == summary.wall_seconds.end() ? 0. : total->second,
+                directory.c_str());
+  }
+} // namespace retroforge

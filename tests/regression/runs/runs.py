@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""What runs leave behind: numbers of the whole part beside those of the model; of a run that fails, the reason and the
+workpiece there; of one that is stopped, what it had, and how to go on; of a check, what is done; nothing of a record beside
+the finished one; no number that is not finite. Usage: runs.py RETROFORGE REPORT
+
+By hand: without friction a block is upset evenly, and its energy does not depend on how symmetry cut it. Pressed from
+above at v against a die, or from both sides at v/2 over half the stroke, is the same flow."""
+import csv
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+PROGRAM, REPORT = (os.path.abspath(name) for name in sys.argv[1:3])
+ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+               "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+
+CASE = """
+subsection Billet
+  set shape           = box
+  set size            = 20, 20, 20
+  set element size    = 7
+  set symmetry planes = -1, 0, 0; 0, -1, 0
+end
+subsection Dies
+  set names = {dies}
+end
+subsection Die lower
+  set point    = 0, 0, 0
+  set facing   = 0, 0, 1
+end
+subsection Die upper
+  set point    = 0, 0, 20
+  set facing   = 0, 0, -1
+  set velocity = 0, 0, -100
+end
+subsection Press
+  set stroke     = 2
+  set increments = 4
+end
+subsection Objectives
+  set names = energy, maximum effort, volume, mean strain
+end
+"""
+
+failures = []
+
+
+def judge(name, good, detail=""):
+    print(f"passed {name}" if good else f"FAILED {name} {detail}", flush=True)
+    if not good:
+        failures.append(name)
+
+
+def command(word, output, *settings, case="case.prm"):
+    words = [PROGRAM, word, case, "--output", output]
+    for setting in settings:
+        words += [setting] if setting.startswith("--") else ["--set", setting]
+    return words
+
+
+def run(word, output, *settings, **more):
+    return subprocess.run(command(word, output, *settings, **more), env=ENVIRONMENT, capture_output=True, text=True, timeout=300,
+                          check=False)
+
+
+def text_of(*path):
+    with open(os.path.join(*path), encoding="utf-8") as file:
+        return file.read()
+
+
+def results(output):
+    """{objective: entry} of its summary, and the last row of its history."""
+    summary = json.loads(text_of(output, "summary.json"))
+    history = list(csv.DictReader(text_of(output, "history.csv").splitlines()))
+    return summary, {o["name"]: o for o in summary["objectives"]}, {k: float(v) for k, v in history[-1].items()}
+
+
+def near(a, b, tolerance):
+    return abs(a - b) <= tolerance * abs(b)
+
+
+def whole_part():
+    """A quarter, an eighth pressed half as far at half the speed, and a half: the same block."""
+    runs = (("quarter", 4, 4, ()), ("half", 2, 2, ("Billet/symmetry planes=-1, 0, 0", "Die lower/friction=1e-4")),
+            ("eighth", 8, 4, ("Billet/symmetry planes=-1, 0, 0; 0, -1, 0; 0, 0, -1", "Billet/symmetry point=centre", "Dies/names=upper",
+                              "Die upper/velocity=0, 0, -50", "Press/stroke=1")))
+    wholes = {}
+    for name, copies, force_factor, settings in runs:
+        done = run("simulate", name, *settings, case="upper.prm" if name == "eighth" else "case.prm")
+        judge(f"{name}: ends", done.returncode == 0, done.stderr)
+        summary, objectives, last = results(name)
+        judge(f"{name}: factors", summary["whole"] == {"copies": copies, "force_factor": force_factor}, summary["whole"])
+        for objective, factor in (("energy", copies), ("volume", copies), ("maximum effort", force_factor)):
+            entry = objectives[objective]
+            judge(f"{name}: {objective}", entry["whole"] == factor * entry["value"], entry)
+        judge(f"{name}: no whole of a mean", "whole" not in objectives["mean strain"])
+        judge(f"{name}: history", near(last["whole_energy"], objectives["energy"]["whole"], 1e-12) and
+              last["whole_force"] == force_factor * last["force"] and last["whole_volume"] == copies * last["volume"])
+        judge(f"{name}: printed", f"1/{copies} of the part" in done.stdout and "of the whole part" in done.stdout)
+        wholes[name] = (last["whole_force"], last["whole_energy"], last["whole_volume"])
+    for name in ("half", "eighth"):
+        judge(f"{name}: the same block", all(near(a, b, 2e-3) for a, b in zip(wholes[name], wholes["quarter"])), wholes)
+    done = subprocess.run([REPORT, "--no-vtk", "quarter"], env=ENVIRONMENT, capture_output=True, text=True, check=False)
+    judge("reported", done.returncode == 0 and "whole part" in text_of("quarter", "report.html"), done.stderr)
+
+
+def beside():
+    """The true maximum is no summand."""
+    _, objectives, last = results("quarter")
+    judge("summands", sum(objectives["energy"]["parts"].values()) == objectives["energy"]["value"])
+    effort = objectives["maximum effort"]
+    judge("the maximum is told beside", "parts" not in effort and effort["details"]["true maximum"] >= effort["value"])
+    judge("which is about the force", near(effort["details"]["true maximum"], last["force"], 1e-2), (effort, last["force"]))
+
+
+def not_finite():
+    done = run("gradient", "infinite", "Objectives/names=contact pressure", "Objective contact pressure/sharpness=1000")
+    judge("infinite results", done.returncode == 1 and "Objective contact pressure: its value is inf" in done.stderr, done.stderr)
+    judge("infinite results: no summary", not os.path.exists("infinite/summary.json"))
+
+
+def failed():
+    """In the second increment, for a reason that a mesh shows."""
+    done = run("gradient", "failed", "Press/stroke=18", "Press/increments=6", "Press/max cuts=0", "Press/largest move=0.3",
+               "Remeshing/when=never")
+    judge("failed: the reason is kept", done.returncode == 1 and text_of("failed", "failure.txt") in done.stderr, done.stderr)
+    judge("failed: the mesh is kept", 'file="failed.vtu"' in text_of("failed", "fields.pvd") and os.path.exists("failed/failed.vtu"))
+    reported("failed", "The run failed", "shapes.png", "Press/stroke")
+
+
+def reported(folder, *expected):
+    done = subprocess.run([REPORT, "--no-vtk", folder], env=ENVIRONMENT, capture_output=True, text=True, check=False)
+    page = text_of(folder, "report.html") if done.returncode == 0 else ""
+    pictures = os.listdir(os.path.join(folder, "pictures")) if page else []
+    missing = [text for text in expected if text not in page and text not in pictures]
+    judge(f"{folder}: reported", done.returncode == 0 and not missing, f"{done.stderr} {missing}")
+
+
+def stop(words, ready):
+    """Ctrl-C when `ready`; what it said on the error stream."""
+    with subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        for _ in range(3000):
+            if ready() or process.poll() is not None:
+                break
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        said = process.communicate()[1]
+        judge("stopped by the signal", process.returncode == -signal.SIGINT, process.returncode)
+    return said
+
+
+def stopped():
+    """And resumed; and the increments put back as if it had been killed as it finished."""
+    fine = ("Press/increments=200", "Output/fields every=20")
+    said = stop(command("gradient", "stopped", *fine), lambda: os.path.exists("stopped/record/increment_000030.h5"))
+    judge("stopped: says how to go on", "--resume" in said and "contrib/report stopped" in said, said)
+    reported("stopped", "The run was stopped", "--resume", "force.png", "Results until stroke")
+    shutil.copytree("stopped/record", "copy")
+    done = run("gradient", "stopped", *fine, "--resume")
+    judge("stopped: resumed", done.returncode == 0, done.stderr)
+    energy = results("stopped")[1]["energy"]["value"]
+    shutil.copytree("copy", "stopped/record")
+    done = run("gradient", "stopped", *fine, "--resume")
+    judge("killed as it finished: same results", done.returncode == 0 and results("stopped")[1]["energy"]["value"] == energy, done.stderr)
+    judge("killed as it finished: nothing stays", not os.path.exists("stopped/record"))
+
+
+def check():
+    """Four directions, one of them random: stopped after the first, and left alone. Runs by hand: 2 of each step, and 3 of the
+    Taylor test."""
+    few = ("Check/steps=1e-4, 1e-6", "Check/taylor halvings=2", "Check/free differences=false",
+           "Design/parameters=material/K, material/m, billet/stretch")
+    done = run("check", "check", *few)
+    judge("check: says how many runs", "check of 4 directions by 7 forgings" in done.stdout and "28 forgings, about" in done.stdout)
+    judge("check: shows progress", all(f"{i}/4 " in done.stdout for i in (1, 2, 3, 4)), done.stdout)
+    summary = results("check")[0]
+    judge("check: nothing remains", done.returncode == 0 and summary["check_remaining"] == 0 and len(summary["check"]) == 16)
+
+    def one_is_done():
+        try:
+            return json.loads(text_of("part", "summary.json"))["check_remaining"] < 4
+        except OSError:
+            return False
+    stop(command("check", "part", *few, "Press/increments=40"), one_is_done)
+    summary = results("part")[0]
+    left = summary["check_remaining"]
+    judge("check stopped: keeps what is done", 0 < left < 4 and len(summary["check"]) == 4 * (4 - left), left)
+    reported("part", f"{left} directions are not checked", "energy")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        for name, dies in (("case.prm", "lower, upper"), ("upper.prm", "upper")):
+            text = CASE.format(dies=dies)
+            if name == "upper.prm":
+                text = text[:text.index("subsection Die lower")] + text[text.index("subsection Die upper"):]
+            with open(name, "w", encoding="utf-8") as file:
+                file.write(text)
+        for test in (whole_part, beside, not_finite, failed, stopped, check):
+            try:
+                test()
+            except (KeyError, OSError, subprocess.SubprocessError) as error:
+                judge(test.__name__, False, repr(error))
+    print(f"{len(failures)} failed")
+    return 1 if failures else 0
+
+
+sys.exit(main())
