@@ -25,14 +25,27 @@ plt.rcParams.update({
 
 
 def forging(history, energy_unit):
-    """Force and energy over the stroke."""
+    """Force and energy over the stroke: of the model, and where symmetry cut it, of the whole part on a second scale."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 3.8), layout="constrained")
     _over_stroke(left, history, history["force"], "press force [N]", BLUE)
     _over_stroke(right, history, history["energy"], bracketed("energy", energy_unit or "mJ"), ORANGE)
+    for axes, name in ((left, "force"), (right, "energy")):
+        _add_whole(axes, history, name)
     for axes in (left, right):
         axes.set_ylim(bottom=min(0, axes.get_ylim()[0]))
         axes.ticklabel_format(axis="y", style="sci", scilimits=(-2, 4), useMathText=True)
     return figure
+
+
+def _add_whole(axes, history, name):
+    whole, model = history.get(f"whole_{name}"), history[name]
+    if whole is None or not np.all(np.isfinite(whole)) or np.array_equal(whole, model):
+        return
+    factor = whole[-1] / model[-1]
+    axes.set_ylabel(axes.get_ylabel() + " of the model")
+    second = axes.secondary_yaxis("right", functions=(lambda y: factor * y, lambda y: y / factor))
+    second.set_ylabel("of the whole part")
+    second.ticklabel_format(axis="y", style="sci", scilimits=(-2, 4), useMathText=True)
 
 
 def health(history, volume_initial):

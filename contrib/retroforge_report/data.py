@@ -33,14 +33,10 @@ class Run:
 
     def __init__(self, directory):
         self.directory = pathlib.Path(directory)
-        path = self.directory / "summary.json"
-        if not path.is_file():
-            raise ValueError(f"{path}: not found; a run directory holds summary.json; "
-                             "give the --output directory of a finished run")
-        self.summary = json.loads(path.read_text(encoding="utf-8"))
-        if self.summary.get("schema") != SCHEMA:
-            raise ValueError(f"{path}: schema is {self.summary.get('schema')}; this report reads {SCHEMA}; "
-                             "run the case again")
+        self.finished = (self.directory / "summary.json").is_file()
+        self.summary = self._read_summary() if self.finished else {}
+        path = self.directory / "failure.txt"
+        self.failure = path.read_text(encoding="utf-8", errors="replace").strip() if path.is_file() else None
         self.history = self._read_history()
         self.objective_strokes, self.objective_columns = self._read_objectives()
         self.initial, self.final = self._read_shapes()
@@ -48,6 +44,18 @@ class Run:
         self.sensitivity = vtu.read(path) if path.is_file() else None
         self.die_sensitivities = {path.stem[len("sensitivity_die_"):]: vtu.read(path)
                                   for path in sorted(self.directory.glob("sensitivity_die_*.vtu"))}
+
+    def _read_summary(self):
+        path = self.directory / "summary.json"
+        summary = json.loads(path.read_text(encoding="utf-8"))
+        if summary.get("schema") != SCHEMA:
+            raise ValueError(f"{path}: schema is {summary.get('schema')}; this report reads {SCHEMA}; run the case again")
+        return summary
+
+    @property
+    def copies(self):
+        """How often the model stands in the whole part, or None when that is unknown."""
+        return self.summary.get("whole", {"copies": 1}).get("copies")
 
     @property
     def objectives(self):

@@ -36,7 +36,7 @@ class Document:
 
     def note(self, text):
         if text:
-            self.body.append(f'<p class="note">{html.escape(text)}</p>')
+            self.body.append(f'<p class="note">{escaped(text)}</p>')
 
     def picture(self, name, figure):
         buffer = io.BytesIO()

@@ -11,6 +11,10 @@ MOST_PICTURED = 4  # objectives
 SOUND = ("passed", "zero")  # verdicts of a derivative
 
 
+def known(value):
+    return number(None if value != value else value)
+
+
 class Page:
     def __init__(self, run, use_vtk, notes):
         self.run, self.use_vtk, self.to = run, use_vtk, Document(run.directory)
@@ -19,18 +23,48 @@ class Page:
 
     def write(self):
         """Returns the path of the page."""
-        for section in (self.results, self.shape, self.force, self.objectives, self.gradients, self.sensitivities,
+        for section in (self.failure, self.results, self.shape, self.force, self.objectives, self.gradients, self.sensitivities,
                         self.dies, self.check, self.conduct):
             section()
         return self.to.save(f"{self.run.directory.resolve().name}: retroforge {self.run.summary.get('command', '')}")
 
+    def failure(self):
+        """What a reader must know first of a run that did not come to its end."""
+        if self.run.failure:
+            self.to.heading("The run failed")
+            self.to.note(bad(self.run.failure))
+        elif not self.run.finished:
+            self.to.heading("The run was stopped, or goes on still")
+            self.to.note("The same command with --resume goes on from its last increment.")
+        if self.run.summary.get("check_remaining"):
+            self.to.note(bad(f"{self.run.summary['check_remaining']} directions are not checked."))
+
     def results(self):
+        if not self.run.finished:
+            self.results_so_far()
+            return
         self.to.heading("Results")
         rows = []
         for objective in self.run.objectives:
-            parts = ", ".join(f"{name} {number(value)}" for name, value in objective.get("parts", {}).items())
-            rows.append((objective["name"], number(objective["value"]), pretty(objective.get("unit")), parts))
-        self.to.table(("objective", "#value", "unit", "of which"), rows)
+            beside = [", ".join(f"{name} {number(value)}" for name, value in objective.get(key, {}).items())
+                      for key in ("parts", "details")]
+            rows.append((objective["name"], number(objective["value"]), number(objective.get("whole")),
+                         pretty(objective.get("unit")), *beside))
+        header = ("objective", "#value", "#whole part", "unit", "of which", "beside it")
+        filled = [j for j in range(len(header)) if j < 2 or any(row[j] not in ("", "–") for row in rows)]
+        shown = [j for j in filled if self.run.copies != 1 or header[j] != "#whole part"]
+        self.to.table([header[j] for j in shown], [[row[j] for j in shown] for row in rows])
+        if self.run.copies is None:
+            self.to.note("Forces, energies and volumes are of the model, whose symmetry planes bound no whole part.")
+        elif self.run.copies != 1:
+            self.to.note(f"The model is 1/{number(self.run.copies)} of the part: values are of the model, except where "
+                         "the whole part is named.")
+
+    def results_so_far(self):
+        columns = [c for c in self.run.objective_columns if not c.of and len(c.values)]
+        if columns:
+            self.to.heading(f"Results until stroke {number(self.run.objective_strokes[-1])} mm, of the model")
+            self.to.table(("objective", "#value", "unit"), [(c.name, known(c.values[-1]), pretty(c.unit)) for c in columns])
 
     def shape(self):
         if self.run.initial is None:
@@ -43,6 +77,8 @@ class Page:
             return
         self.to.heading("Force and energy")
         self.to.picture("force", curves.forging(self.run.history, self.run.unit("energy")))
+        self.to.note("The force of the leading die along its path, in the last equilibrium solved of each increment: its "
+                     "middle with the midpoint scheme, its beginning with Euler's.")
 
     def objectives(self):
         figure = curves.objectives(self.run.objective_strokes, self.run.objective_columns)

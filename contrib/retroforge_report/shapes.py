@@ -15,18 +15,19 @@ SHARPEST = 0.1  # at edges sharper than this, normals cancel and the part along 
 
 
 def forging(run, use_vtk):
-    """Billet before and after; the final shape again with each field that was written."""
+    """Billet before and after; the last shape again with each field that was written."""
+    name = "shape where it failed" if run.failure else "final shape" if run.finished else "last shape"
     first, last = run.initial.surface(), run.final.surface()
-    panels = [("initial shape", first, None, None, None), ("final shape", last, None, None, None)]
+    panels = [("initial shape", first, None, None, None), (name, last, None, None, None)]
     if "strain_rate" in run.final.cell_data:
         rate = np.atleast_2d(run.final.cell_data["strain_rate"].T).T
         rate = np.linalg.norm(rate, axis=1) if rate.shape[1] > 1 else rate[:, 0]
-        panels.append(("final shape, strain rate", last, rate[last.cell], "equivalent strain rate [1/s]", "viridis"))
+        panels.append((f"{name}, strain rate", last, rate[last.cell], "equivalent strain rate [1/s]", "viridis"))
     if "contact_pressure" in run.final.point_data:
         pressure = run.final.point_data["contact_pressure"][last.node]
         touching = (pressure[last.triangles] > 0).all(axis=1)
         pressure = np.where(touching, last.to_triangles(pressure), np.nan)
-        panels.append(("final shape, contact", last, pressure, "contact pressure [MPa]", "magma_r"))
+        panels.append((f"{name}, contact", last, pressure, "contact pressure [MPa]", "magma_r"))
     scene = Scene(np.concatenate([first.points, last.points]), use_vtk)
     figure = plt.figure(figsize=(11, 4.4 * ((len(panels) + 1) // 2)), layout="constrained")
     for place, (title, surface, values, label, cmap) in enumerate(panels, 1):

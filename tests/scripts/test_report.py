@@ -163,13 +163,40 @@ class Report(ScratchTest):
             self.assertNotIn("Drawn for the first", page)
             self.assertEqual((self.root / "run/pictures/gradients.png").is_file(), value is not None)
 
+    def test_unfinished(self):
+        """Without a summary the tables, shapes and the reason of a failure are left."""
+        synthetic_run.write(self.root / "run", n=2, increments=4)
+        (self.root / "run/summary.json").unlink()
+        for failure, text in ((None, "goes on from its last increment"), ("Press/stroke: is < 0", "Press/stroke: is &lt; 0</span>")):
+            if failure:
+                self.write("run/failure.txt", failure + "\n")
+            result = call("report", "--no-vtk", self.root / "run")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            page = (self.root / "run/report.html").read_text()
+            for expected in (text, "Results until stroke 25 mm", '<td>energy</td><td class="n">625</td>'):
+                self.assertIn(expected, page)
+
+    def test_whole_part(self):
+        """Only what adds up has a value of the whole part."""
+        synthetic_run.write(self.root / "run", n=2, increments=4)
+        path = self.root / "run/summary.json"
+        summary = json.loads(path.read_text())
+        summary["objectives"][1]["whole"] = 1e6
+        for copies, text in ((4.0, "The model is 1/4 of the part"), (None, "bound no whole part")):
+            summary["whole"] = {"copies": copies, "force_factor": copies}
+            path.write_text(json.dumps(summary))
+            self.assertEqual(call("report", "--no-vtk", self.root / "run").returncode, 0)
+            page = (self.root / "run/report.html").read_text()
+            for expected in (text, '<th class="n">whole part</th>', '<td class="n">250000</td><td class="n">1e+06</td><td>N</td>'):
+                self.assertIn(expected, page)
+
     def test_bare_summary(self):
         self.write("run/summary.json", '{"schema": 1, "command": "simulate"}')
         result = call("report", "--no-vtk", self.root / "run")
         self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_bad_input(self):
-        self.assertIn("summary.json was not found", call("report", "--no-vtk", self.root).stderr)
+        self.assertIn("neither summary.json nor history.csv", call("report", "--no-vtk", self.root).stderr)
         self.write("summary.json", '{"schema": 99}')
         with self.assertRaisesRegex(ValueError, "schema is 99"):
             data.Run(self.root)
