@@ -99,7 +99,7 @@ def judge(name, good, detail=""):
 
 
 def run(command, case, output, at=(), more=()):
-    arguments = [PROGRAM, command, case, "--output", output, *more]
+    arguments = [PROGRAM, command, case, "--output", output, *more] + ([] if "--resume" in more else ["--overwrite"])
     for name, value in at:
         arguments += ["--at", f"{name}={value!r}"]
     return subprocess.run(arguments, env=ENVIRONMENT, capture_output=True, text=True, timeout=300, check=False)
