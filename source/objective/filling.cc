@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/objective/filling.h>
+#include <retroforge/objective/sector.h>
 #include <retroforge/objective/surface_areas.h>
 
 namespace retroforge
@@ -23,10 +24,16 @@ namespace retroforge
     decisions_.workpiece    = WorkpieceSurface(view);
     const ClosestFeature       closest(decisions_.workpiece.shape());
     const NodalVectors<double> vertices = target_.vertices(view);
+    const Sector               sector(view.scene.mesh);
+    const Vec3                 shift = target_.displacement(view);
+    for (const Triangle &triangle : target_.shape().triangles())
+      if (sector.contains(shift +
+                          (vertices[triangle[0]] + vertices[triangle[1]] + vertices[triangle[2]]) / 3.))
+        decisions_.target.push_back(triangle);
     for (unsigned int l = 0; l < vertices.size(); ++l)
     {
-      const Vec3 x = vertices[l] + target_.displacement(view);
-      if (target_.region() && !is_inside(*target_.region(), x))
+      const Vec3 x = vertices[l] + shift;
+      if (!sector.contains(x) || (target_.region() && !is_inside(*target_.region(), x)))
         continue;
       if (const DieFeature feature = closest(x); feature.found())
         decisions_.by_target.push_back({l, feature});
@@ -59,7 +66,7 @@ namespace retroforge
         sums[0] += rounded(target_.distance(view, view.X[seen.point], seen.feature)) * S[seen.point];
     const auto vertices     = target_.vertices(view);
     const auto workpiece    = decisions_.workpiece.vertices(view);
-    const auto S_target     = lumped_areas(target_.shape().triangles(), vertices);
+    const auto S_target     = lumped_areas(decisions_.target, vertices);
     const auto [begin, end] = share_of_rank(decisions_.by_target.size(), view.scene.partition.comm);
     for (std::size_t l = begin; l < end; ++l)
     {
@@ -100,7 +107,7 @@ namespace retroforge
   FillingObjective::reverse_by_target(const FinalView<double> &view, const double weight, FinalBar &bar) const
   {
     const auto            vertices  = target_.vertices(view);
-    const auto            S         = lumped_areas(target_.shape().triangles(), vertices);
+    const auto            S         = lumped_areas(decisions_.target, vertices);
     const TriangleSurface workpiece = decisions_.workpiece.moved(view);
     NodalVectors<double>  workpiece_bar(workpiece.vertices().size()), vertices_bar(vertices.size());
     std::vector<double>   S_bar(S.size(), 0.);
@@ -127,7 +134,7 @@ namespace retroforge
     decisions_.workpiece.add(workpiece_bar, bar);
     if (bar.target.size() != vertices.size())
       return;
-    reverse_lumped_areas(target_.shape().triangles(), vertices, S_bar, vertices_bar);
+    reverse_lumped_areas(decisions_.target, vertices, S_bar, vertices_bar);
     for (std::size_t v = 0; v < vertices.size(); ++v)
       bar.target[v] += vertices_bar[v];
   }

@@ -46,6 +46,13 @@ namespace retroforge
         box.second[i] += target_.displacement(view)[i] + margin;
       }
     }
+    box = Sector(view.scene.mesh).clipped(box);
+    for (unsigned int i = 0; i < 3; ++i)
+      if (!(box.first[i] < box.second[i]))
+        throw Error("Unfilled volume",
+                    "the target lies behind a symmetry plane",
+                    "only what faces the model is compared with it",
+                    "move the target, or turn the plane's normal round");
     origin_         = box.first;
     const Vec3 size = box.second - box.first;
     width_          = layer_ * longest() / n_samples_;
@@ -74,6 +81,7 @@ namespace retroforge
     const TriangleSurface      target = target_.moved(view);
     const ClosestFeature       closest_target(target), closest_workpiece(workpiece_.shape());
     const NodalVectors<double> vertices = workpiece_.vertices(view);
+    const Sector               sector(view.scene.mesh);
     samples_.clear();
     for (unsigned int g = 0; g < n_[0] * n_[1] * n_[2]; ++g)
     {
@@ -81,6 +89,9 @@ namespace retroforge
       Sample             sample;
       for (unsigned int d = 0; d < 3; ++d)
         sample.x[d] = origin_[d] + (i[d] + 0.5) * spacing_[d];
+      sample.volume = spacing_[0] * spacing_[1] * spacing_[2] * sector.share(sample.x, spacing_);
+      if (sample.volume == 0.)
+        continue;
       // Behind the rim of an open surface is inside what it bounds.
       sample.target = closest_target(sample.x - target_.displacement(view));
       if (sample.target.found() ? step(sign() * target_.distance(view, sample.x, sample.target)) == 0.
@@ -110,16 +121,15 @@ namespace retroforge
         project_on_feature(workpiece_.shape(), vertices, sample.workpiece, x, Vector3<Number>()).delta;
       const Number c =
         sample.target.found() ? step(Number(sign() * target_.distance(view, x, sample.target))) : Number(1.);
-      sum += c * step(u);
+      sum += sample.volume * c * step(u);
     }
-    return {Number(spacing_[0] * spacing_[1] * spacing_[2] * sum)};
+    return {sum};
   }
 
   void UnfilledVolume::reverse_integrals(const FinalView<double>   &view,
                                          const std::vector<double> &weights,
                                          FinalBar                  &bar) const
   {
-    const double          weight    = weights[0] * spacing_[0] * spacing_[1] * spacing_[2];
     const TriangleSurface workpiece = workpiece_.moved(view), target = target_.moved(view);
     NodalVectors<double>  workpiece_bar(workpiece.vertices().size());
     Vec3                  unused; // samples stand still
@@ -127,6 +137,7 @@ namespace retroforge
     for (std::size_t g = begin; g < end; ++g)
     {
       const Sample &sample = samples_[g];
+      const double  weight = weights[0] * sample.volume;
       const double  u =
         project_on_feature(workpiece, workpiece.vertices(), sample.workpiece, sample.x, Vec3()).delta;
       double c = 1.;

@@ -13,6 +13,7 @@ namespace retroforge
     std::vector<SeenFeature> by_workpiece; ///< nodes of the workpiece, features of the target
     std::vector<SeenFeature> by_target;    ///< vertices of the target, features of the workpiece's surface
     WorkpieceSurface         workpiece;
+    std::vector<Triangle>    target; ///< those of the target that face the model, by their centres
   };
 
   /// Volume between the workpiece and the desired shape by double projection [mm^3],
@@ -20,6 +21,7 @@ namespace retroforge
   /// k the nodes of the workpiece's surface, delta_k their distance from the target, S_k a third of the areas
   /// around them; l the vertices of the target, delta_l their distance from the workpiece's surface. All
   /// surface nodes count, those in contact included. |delta| may be rounded to  sqrt(delta^2 + r^2) - r.
+  /// Of the target, only what lies in the sector counts that symmetry planes left of the workpiece.
   /// Frozen: closest features, and which points see any. Moves of an open target's rim past the workpiece are
   /// such decisions.  @cite Laroussi2003, Eq. (109), (111)
   class FillingObjective : public FinalObjectiveOf<FillingObjective>

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/objective/sector.h>
 #include <retroforge/objective/target_surface.h>
 #include <retroforge/objective/workpiece_surface.h>
 
@@ -22,8 +23,8 @@ namespace retroforge
   /// surfaces, so the layer's error is of second order in it, and a plane has none but that of the grid.
   ///
   /// Unlike the double projection it is a volume also where both surfaces are far apart. Samples lie in the
-  /// target's region, whose sides cut sharply, or around the whole target if it has none. The surface of the
-  /// workpiece is open at symmetry planes: the region should end there.
+  /// target's region, whose sides cut sharply, or around the whole target if it has none. Of both, only the
+  /// sector counts that symmetry planes left of the workpiece.
   /// Frozen: the samples, those that count, and their closest features.
   class UnfilledVolume : public FinalObjectiveOf<UnfilledVolume>
   {
@@ -57,6 +58,7 @@ namespace retroforge
     struct Sample
     {
       Vec3       x;
+      double     volume;            ///< that it stands for, in the sector [mm^3]
       DieFeature target, workpiece; ///< a target of none: deep in a cavity within
     };
 

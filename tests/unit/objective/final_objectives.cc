@@ -181,6 +181,22 @@ void check_shapes(Errors &errors)
   errors.compare("same shape", problem.value(same), 0.);
 }
 
+/// A sheet 0.1 below a box, and half of the box: the projection of the sheet is 0.1 times its area, and half of
+/// that, as only the half of the sheet counts that faces the half of the box.
+void check_filling_of_half(Errors &errors)
+{
+  const auto   flat = scaled(sheet(8, [](double, double) { return 0.; }), 1., Vec3());
+  const Vec3   size({2.4, 2.4, 1.}), base({0., 0., 0.1});
+  FinalProblem whole(box(base, size, 0.5), {}), half(box(base, size, 0.5, true), {});
+  for (FinalProblem *problem : {&whole, &half})
+  {
+    FillingObjective filling{TargetSurface(flat, 0)};
+    problem->value(filling);
+    const double all = problem == &whole ? 4. : 2.;
+    errors.compare("sheet to a box", problem->integrals(filling, problem->at)[1], 0.1 * all);
+  }
+}
+
 /// Unfilled volume of a cube of edge 1.5 around one of edge 1, and of the space between a flat die and it.
 void check_unfilled()
 {
@@ -200,6 +216,10 @@ void check_unfilled()
   std::cout << std::endl
             << "  half of the scene: " << std::round(1e5 * (half.value(of_half) / (0.5 * 2.375) - 1.)) / 100.
             << std::endl;
+  // The same without a region, and a quarter: only their sector counts.
+  UnfilledVolume sector_of_half(TargetSurface(centred), Cavity::within, 80);
+  std::cout << "  half, by its sector: "
+            << std::round(1e5 * (half.value(sector_of_half) / (0.5 * 2.375) - 1.)) / 100. << std::endl;
   // A sheet z = 0 facing up, the box above it lifted by 0.3: 0.3 times the region's base.
   const auto     flat = scaled(sheet(4, [](double, double) { return 0.; }), 2., Vec3());
   const Box      base(Vec3({-0.4, -0.4, -0.5}), Vec3({0.4, 0.4, 0.5}));
@@ -320,6 +340,7 @@ int main(int argc, char **argv)
   std::cout << "by hand" << std::endl;
   check_volume_and_strain(errors);
   check_shapes(errors);
+  check_filling_of_half(errors);
   check_cylinder(errors);
   check_unfilled();
   errors.print(1e-12);

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/mesh/tet_mesh.h>
+#include <retroforge/objective/box.h>
+
+namespace retroforge
+{
+  /// What symmetry planes leave of space: of a target that is whole, the part that faces the model.
+  class Sector
+  {
+  public:
+    Sector() = default; ///< all of space
+    explicit Sector(const TetMesh &mesh);
+
+    /// Points on the planes belong to it, to rounding.
+    bool contains(const Vec3 &x) const;
+
+    /// The part of a box of the given edges around x that belongs to it, 0 to 1: exact for a plane along the
+    /// axes, and linear in the distance of others.
+    double share(const Vec3 &x, const Vec3 &edges) const;
+
+    /// The box without what planes along the axes cut off.
+    Box clipped(Box box) const;
+
+  private:
+    std::vector<Plane> planes_;
+  };
+} // namespace retroforge
