@@ -22,9 +22,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <numeric>
-#include <sstream>
+#include <thread>
 #include <utility>
 
 namespace retroforge
@@ -221,9 +222,14 @@ namespace retroforge
     if (root_)
     {
       write_file(command_.output_directory + "/parameters.prm", echo_);
+      const unsigned int ranks = dealii::Utilities::MPI::n_mpi_processes(comm_);
+      double             load  = 0.;
+      if (getloadavg(&load, 1) != 1)
+        load = 0.;
       std::cout << "Retroforge " << version << ' ' << commit << ", " << billet_.n_nodes() << " nodes, "
-                << billet_.n_cells() << " tetrahedra, " << dealii::Utilities::MPI::n_mpi_processes(comm_)
-                << " rank(s), BLAS: " << blas_in_use() << std::endl;
+                << billet_.n_cells() << " tetrahedra, " << ranks << " rank(s), BLAS: " << blas_in_use()
+                << '\n'
+                << note_on_load(ranks, load, std::thread::hardware_concurrency()) << std::flush;
     }
     write_dies();
     try

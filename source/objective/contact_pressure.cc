@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/text.h>
 #include <retroforge/objective/contact_pressure.h>
 #include <retroforge/objective/contact_pullback.h>
 
@@ -62,12 +63,12 @@ namespace retroforge
   {
     if (!(exponent >= 1.))
       throw Error("Contact pressure",
-                  "the exponent is " + std::to_string(exponent),
+                  "the exponent is " + as_text(exponent),
                   "it must be at least 1",
                   "use 10 to 50: the larger, the nearer to the maximum");
     if (!(reference > 0.))
       throw Error("Contact pressure",
-                  "the reference is " + std::to_string(reference) + " MPa",
+                  "the reference is " + as_text(reference) + " MPa",
                   "it must be positive",
                   "use the pressure expected, or the consistency K");
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/text.h>
 #include <retroforge/objective/contact_pullback.h>
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>
@@ -80,7 +81,7 @@ namespace retroforge
   {
     if (!(begin < end))
       throw Error(where,
-                  "the window goes from " + std::to_string(begin) + " to " + std::to_string(end),
+                  "the window goes from " + as_text(begin) + " to " + as_text(end),
                   "it must end after it begins",
                   "swap the two, or leave the end away");
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/text.h>
 #include <retroforge/objective/filling.h>
 #include <retroforge/objective/sector.h>
 #include <retroforge/objective/surface_areas.h>
@@ -12,7 +13,7 @@ namespace retroforge
   {
     if (!(rounding >= 0.))
       throw Error("Filling",
-                  "the rounding of distances is " + std::to_string(rounding) + " mm",
+                  "the rounding of distances is " + as_text(rounding) + " mm",
                   "it must not be negative",
                   "use 0, or a thousandth of an element's edge");
   }

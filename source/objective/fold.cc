@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/text.h>
 #include <retroforge/element/mini_element.templates.h>
 #include <retroforge/element/strain_history.h>
 #include <retroforge/objective/fold.h>
@@ -147,7 +148,7 @@ namespace retroforge
   {
     if (!(exponent >= 1.))
       throw Error("Fold",
-                  "the exponent is " + std::to_string(exponent),
+                  "the exponent is " + as_text(exponent),
                   "it must be at least 1, or material at rest has infinite derivatives",
                   "use 4 for the plain indicator, 2 to 4 for the dimensionless one");
     if (region)

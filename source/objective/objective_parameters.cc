@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/text.h>
 #include <retroforge/geometry/stl_file.h>
 #include <retroforge/objective/contact_pressure.h>
 #include <retroforge/objective/energy.h>
@@ -132,7 +133,7 @@ namespace retroforge
     const double end   = window.over == PathWindow::Over::time ? context.stroke / speed : context.stroke;
     if (window.begin >= end)
       throw Error(section() + "/window begin",
-                  "is " + std::to_string(window.begin) + ", but the run ends at " + std::to_string(end),
+                  "is " + as_text(window.begin) + ", but the run ends at " + as_text(end),
                   "some of the run must lie in the window",
                   "let it begin earlier, or lengthen Press/stroke");
     return window;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/text.h>
 #include <retroforge/objective/smooth_maximum.h>
 
 namespace retroforge
@@ -18,12 +19,12 @@ namespace retroforge
   {
     if (kind == Kind::p_norm && !(sharpness >= 1.))
       throw Error(where,
-                  "the exponent of the p-norm is " + std::to_string(sharpness),
+                  "the exponent of the p-norm is " + as_text(sharpness),
                   "it must be at least 1",
                   "use 10 to 50: the larger, the nearer to the maximum");
     if (kind == Kind::log_sum_exp && !(sharpness > 0.))
       throw Error(where,
-                  "the sharpness of the log-sum-exp is " + std::to_string(sharpness),
+                  "the sharpness of the log-sum-exp is " + as_text(sharpness),
                   "it must be positive",
                   "use 10 to 50 divided by the maximum expected");
   }

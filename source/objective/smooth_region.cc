@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/text.h>
 #include <retroforge/objective/smooth_region.h>
 
 namespace retroforge
@@ -21,14 +22,13 @@ namespace retroforge
   {
     if (!(width > 0.))
       throw Error(where,
-                  "the width of the region's edge is " + std::to_string(width) + " mm",
+                  "the width of the region's edge is " + as_text(width) + " mm",
                   "it must be positive",
                   "use an element's edge");
     for (unsigned int i = 0; i < 3; ++i)
       if (!(box.first[i] < box.second[i]))
         throw Error(where,
-                    "the region goes from " + std::to_string(box.first[i]) + " to " +
-                      std::to_string(box.second[i]),
+                    "the region goes from " + as_text(box.first[i]) + " to " + as_text(box.second[i]),
                     "its first corner must be the lower one",
                     "give the lower coordinates first");
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/text.h>
 #include <retroforge/objective/unfilled_volume.h>
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace retroforge
   {
     if (!(layer >= 1.))
       throw Error("Unfilled volume",
-                  "the layer is " + std::to_string(layer) + " spacings thick",
+                  "the layer is " + as_text(layer) + " spacings thick",
                   "it must be at least 1, or the volume jumps from sample to sample",
                   "use 2");
     if (!(n_samples > 2. * layer))

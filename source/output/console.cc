@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/text.h>
 #include <retroforge/output/console.h>
 
 #include <algorithm>
@@ -9,6 +10,14 @@
 
 namespace retroforge
 {
+  std::string note_on_load(const unsigned int n_ranks, const double load, const unsigned int n_cores)
+  {
+    if (n_ranks == 1 || n_ranks + load <= n_cores + 0.5)
+      return "";
+    return "  note: " + std::to_string(n_ranks) + " ranks beside a load of " + as_text(load) + " on " +
+           std::to_string(n_cores) + " cores wait for each other: fewer ranks, or one, may be faster\n";
+  }
+
   void print_head(const WholePart &whole)
   {
     if (std::isnan(whole.copies))

@@ -10,6 +10,11 @@
 /// What a user reads while a run goes on.
 namespace retroforge
 {
+  /// A warning, or nothing: ranks that wait for each other keep their cores busy, and with other programs
+  /// there all of them wait.
+  /// @param load   programs that want to run without this one
+  std::string note_on_load(unsigned int n_ranks, double load, unsigned int n_cores);
+
   /// Of what part the numbers are, and the head of the table of increments.
   void print_head(const WholePart &whole);
 

@@ -181,8 +181,8 @@ void check_shapes(Errors &errors)
   errors.compare("same shape", problem.value(same), 0.);
 }
 
-/// A sheet 0.1 below a box, and half of the box: the projection of the sheet is 0.1 times its area, and half of
-/// that, as only the half of the sheet counts that faces the half of the box.
+/// A sheet 0.1 below a box, and half of the box: the projection of the sheet is 0.1 times its area, and half
+/// of that, as only the half of the sheet counts that faces the half of the box.
 void check_filling_of_half(Errors &errors)
 {
   const auto   flat = scaled(sheet(8, [](double, double) { return 0.; }), 1., Vec3());
