@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
 """A run killed at random moments and resumed each time must end with the bits of one that was left alone:  run.py BUILD KILLS"""
+import json
 import os
 import random
 import shutil
@@ -23,41 +24,39 @@ def command(build, output, resume):
 
 
 def finish(build, output, resume):
+    """Objectives and gradients of the run, to all digits."""
     done = subprocess.run(command(build, output, resume), capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(done.stdout[-2000:] + done.stderr)
-    return [line for line in done.stdout.splitlines() if "d/d =" in line or line.startswith("  energy")]
-
-
-def results(lines):
-    """What is printed of energy and gradient, but for the time it took."""
-    return [line.rsplit(",", 1)[0] for line in lines]
+    with open(os.path.join(output, "summary.json"), encoding="utf-8") as file:
+        summary = json.load(file)
+    return summary["objectives"], summary["parameters"]
 
 
 def kill_and_resume(build, output, seconds):
-    """Kills a new run after so many seconds, and resumes it; its printed results, or None when it was done before."""
+    """Kills a new run after so many seconds, and resumes it; its results."""
     shutil.rmtree(output, ignore_errors=True)
     with subprocess.Popen(command(build, output, False), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
         time.sleep(seconds)
         process.send_signal(signal.SIGKILL)
         process.wait()
     started = os.path.exists(os.path.join(output, "record", "header.h5")) or os.path.exists(os.path.join(output, "record.h5"))
-    return results(finish(build, output, started))
+    return finish(build, output, started)
 
 
 def main():
     build, kills = sys.argv[1], int(sys.argv[2])
     begin = time.monotonic()
-    expected = results(finish(build, "whole", False))
+    expected = finish(build, "whole", False)
     duration = time.monotonic() - begin
     generator, same = random.Random(1), 0
     for i in range(kills):
         moment = duration * generator.uniform(0.05, 1.0)
-        printed = kill_and_resume(build, "killed", moment)
+        found = kill_and_resume(build, "killed", moment)
         differs = [f for f in SAME if open(os.path.join("whole", f), "rb").read() != open(os.path.join("killed", f), "rb").read()]
-        print(f"killed after {moment:.2f} s of {duration:.2f} s: {'same' if printed == expected else 'other'} results, "
+        print(f"killed after {moment:.2f} s of {duration:.2f} s: {'same' if found == expected else 'other'} results, "
               f"{', '.join(differs) or 'no file'} differs", flush=True)
-        same += printed == expected and not differs
+        same += found == expected and not differs
     case_tools.figure("same_bits" if kills < 20 else "same_bits_20", same / kills)
 
 
