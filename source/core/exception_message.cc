@@ -49,7 +49,7 @@ namespace retroforge
       return Error("memory",
                    "there is not enough of it",
                    "mesh, matrices and, without Output/record, all increments must fit",
-                   "use a coarser mesh or fewer vertices of dies, or a machine with more memory")
+                   "use a coarser mesh, a larger chord error of the dies, or a machine with more memory")
         .what();
     }
     catch (const dealii::ExceptionBase &failure)
