@@ -84,7 +84,7 @@ namespace retroforge
       std::vector<DieState<double>> states;
       for (const DieParameters &die : parameters.dies)
         states.push_back(die.initial_state());
-      return Remesher(parameters.remeshing, parameters.edge_length(mesh), dies, comm)
+      return Remesher(parameters.remeshing, parameters.edge_length(mesh), dies, mesh.patches, comm)
         .remesh(mesh, mesh.X, states, timings)
         ->mesh;
     }
@@ -159,7 +159,7 @@ namespace retroforge
       , objectives_(parameters_.make_objectives(model_.dies))
       , combinations_(parameters_.combinations(objectives_))
       , first_leg_(std::make_shared<Leg>(billet_, model_, timings_))
-      , remesher_(parameters_.remeshing, parameters_.edge_length(billet_), model_.dies, comm)
+      , remesher_(parameters_.remeshing, parameters_.edge_length(billet_), model_.dies, billet_.patches, comm)
       , forging_(model_, parameters_.press, remesher_, timings_)
       , trace_(objectives_, model_, process_)
   {
@@ -582,8 +582,9 @@ namespace retroforge
     for (std::size_t d = 0; d < model.dies.size(); ++d)
       if (const auto vertices = std::exchange(at_dies.dies[d].vertices, nullptr))
         model.dies[d] = model.dies[d].moved(*vertices);
-    Timings          timings;
-    const Remesher   remesher(parameters_.remeshing, parameters_.edge_length(billet_), model.dies, comm_);
+    Timings        timings;
+    const Remesher remesher(
+      parameters_.remeshing, parameters_.edge_length(billet_), model.dies, billet_.patches, comm_);
     const Forging    forging(model, parameters_.press, remesher, timings);
     const Objectives objectives = parameters_.make_objectives(model.dies);
     ObjectiveTrace   trace(objectives, model, at_dies);

@@ -66,4 +66,14 @@ namespace retroforge
         }
     return ridges;
   }
+
+  std::vector<TriangleSurface::Edge> rim(const TriangleSurface &surface)
+  {
+    std::vector<TriangleSurface::Edge> edges;
+    for (unsigned int f = 0; f < surface.n_facets(); ++f)
+      for (unsigned int e = 0; e < 3; ++e)
+        if (surface.neighbour(f, e).facet == invalid_index)
+          edges.push_back({f, e});
+    return edges;
+  }
 } // namespace retroforge

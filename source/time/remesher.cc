@@ -89,6 +89,29 @@ namespace retroforge
     // Edges at a die longer than this times the wanted length call for a remeshing, which halves them.
     constexpr double coarse = 2.;
 
+    /// Edges that metal may be drawn over: those that stick out, and the rim of an open die. Where a die that
+    /// was made for a sector ends in a plane of symmetry, nothing is.
+    std::vector<TriangleSurface::Edge>
+    refined_edges(const Die &die, const std::vector<Patch> &patches, const double element_size)
+    {
+      const TriangleSurface &surface = *die.surface();
+      const auto             is_cut  = [&](const TriangleSurface::Edge &edge) {
+        const auto &t = surface.triangles()[edge.facet];
+        const Vec3 &a = surface.vertices()[t[edge.edge]], &b = surface.vertices()[t[(edge.edge + 1) % 3]];
+        return std::any_of(patches.begin(), patches.end(), [&](const Patch &patch) {
+          const auto above = [&](const Vec3 &x) {
+            return (x - patch.symmetry->point) * patch.symmetry->normal > -1e-3 * element_size;
+          };
+          return patch.symmetry && above(a) && above(b); // the plane's normal points out of the workpiece
+        });
+      };
+      auto edges = sharp_ridges(surface, die.feature_angle());
+      for (const TriangleSurface::Edge &edge : rim(surface))
+        if (!is_cut(edge))
+          edges.push_back(edge);
+      return edges;
+    }
+
     /// Positions rounded to about 1e-10 of the workpiece's size. Decisions must not hang on rounding, which
     /// is another one on another number of ranks: edges of equal length would be taken in another order.
     NodalVectors<double> on_grid(const NodalVectors<double> &X)
@@ -106,6 +129,7 @@ namespace retroforge
   Remesher::Remesher(const RemesherParameters &parameters,
                      const double              element_size,
                      const std::vector<Die>   &dies,
+                     const std::vector<Patch> &patches,
                      MPI_Comm                  comm)
       : parameters_(parameters), element_size_(element_size), dies_(dies), comm_(comm), near_die_(dies.size())
   {
@@ -125,7 +149,7 @@ namespace retroforge
                              size,
                              element_size,
                              parameters_.growth,
-                             sharp_ridges(*dies[d].surface(), dies[d].feature_angle()),
+                             refined_edges(dies[d], patches, element_size),
                              parameters_.smallest_size * element_size);
       }
   }

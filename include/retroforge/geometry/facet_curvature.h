@@ -15,4 +15,7 @@ namespace retroforge
 
   /// Sharp edges that stick out of the surface, each once.
   std::vector<TriangleSurface::Edge> sharp_ridges(const TriangleSurface &surface, double feature_angle);
+
+  /// Edges where an open surface ends.
+  std::vector<TriangleSurface::Edge> rim(const TriangleSurface &surface);
 } // namespace retroforge

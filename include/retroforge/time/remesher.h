@@ -43,9 +43,11 @@ namespace retroforge
     using DieStates = std::vector<DieState<double>>;
 
     /// @param element_size  wanted length of the edges away from curved dies [mm]
+    /// @param patches  of the workpiece: its symmetry planes count
     Remesher(const RemesherParameters &parameters,
              double                    element_size,
              const std::vector<Die>   &dies,
+             const std::vector<Patch> &patches,
              MPI_Comm                  comm);
 
     double largest_repair() const { return parameters_.largest_repair; }

@@ -42,7 +42,11 @@ namespace retroforge
         , model{std::move(dies), parameters.step_model(), all.newton, all.linear_solver, MPI_COMM_WORLD}
         , leg(std::make_shared<Leg>(make_billet(all.billet, MPI_COMM_WORLD), model, timings))
         , scene(leg->scene)
-        , remesher(parameters.remeshing, parameters.edge_length(scene.mesh), model.dies, MPI_COMM_WORLD)
+        , remesher(parameters.remeshing,
+                   parameters.edge_length(scene.mesh),
+                   model.dies,
+                   scene.mesh.patches,
+                   MPI_COMM_WORLD)
         , forging(model, parameters.press, remesher, timings)
         , forged(forging.start(leg, scene.mesh.X))
         , objectives(judged.empty() ? all.make_objectives(model.dies) : std::move(judged))

@@ -177,9 +177,9 @@ int main(int argc, char **argv)
   parameters.method = "local";
   const std::vector<Die> dies;
   Timings                timings;
-  mesh              = Remesher(parameters, h, dies, MPI_COMM_WORLD).remesh(mesh, mesh.X, {}, timings)->mesh;
+  mesh = Remesher(parameters, h, dies, mesh.patches, MPI_COMM_WORLD).remesh(mesh, mesh.X, {}, timings)->mesh;
   parameters.method = method;
-  const Remesher remesher(parameters, h, dies, MPI_COMM_WORLD);
+  const Remesher remesher(parameters, h, dies, mesh.patches, MPI_COMM_WORLD);
 
   Study                study{1. * n};
   const double         V0 = volume(mesh.cells, mesh.X), width = argc == 6 ? std::stod(argv[5]) : 2. * h;
