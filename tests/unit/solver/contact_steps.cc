@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// Velocities made to respect the dies, at any velocity of the corner of a billet. Proved, on one rank and on
+// two:
+// - afterwards no node goes through its die by more than 1e-7 of its speed, nodes between two dies too, and
+//   those corrected at one die count as active;
+// - what the plane of symmetry fixes stays fixed, nodes that no die holds keep their velocity;
+// - nodes that were active in a step are left alone by what follows the step;
+// - a node that leaves its die, but that the metal presses against it, is held.
+
+#include <deal.II/base/mpi.h>
+
+#include <retroforge/solver/contact_steps.h>
+
+#include "corner_stage.h"
+
+#include <cstdio>
+
+using namespace retroforge;
+
+namespace
+{
+  const char *yes(const bool condition)
+  {
+    return condition ? "yes" : "NO";
+  }
+
+  void compare(const char          *title,
+               const CornerStage   &corner,
+               const Field<double> &before,
+               const Field<double> &after)
+  {
+    const auto               &pairs = corner.contact.pairs;
+    std::vector<unsigned int> n_dies(before.V.size(), 0);
+    for (const ContactPair &pair : pairs)
+      n_dies[pair.point.nodes[0]] += pair.point.is_node();
+    std::vector<bool> watched(before.V.size(), false);
+    double            through = 0., out_of_plane = 0.;
+    unsigned int      stopped = 0, active = 0, strangers = 0;
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+      if (pairs[p].point.is_node())
+      {
+        watched[pairs[p].point.nodes[0]] = true;
+        const auto node                  = corner.stage().contact_node(p, after, {});
+        through                          = std::max(through, approach_excess(node) / node.u.norm());
+        const NodeIndex k                = pairs[p].point.nodes[0];
+        if (corner.stage().contact_node(p, before, {}).active && n_dies[k] == 1)
+        {
+          ++stopped;
+          active += node.active;
+        }
+      }
+    for (NodeIndex k = 0; k < before.V.size(); ++k)
+    {
+      strangers += !watched[k] && (after.V[k] - before.V[k]).norm() > 0.;
+      for (const Vec3 &n : corner.scene.topology.fixed_directions[k])
+        out_of_plane = std::max(out_of_plane, std::abs(after.V[k] * n));
+    }
+    std::printf("%s: nodes stopped: %s, through a die: %s, of one die all count as active: %s\n"
+                "  out of the plane of symmetry: %s, others moved: %u\n",
+                title,
+                yes(stopped > 3),
+                through < 1e-7 ? "none" : "some",
+                yes(active == stopped),
+                out_of_plane < 1e-14 ? "none" : "some",
+                strangers);
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
+    std::freopen("/dev/null", "w", stdout);
+  Random            random;
+  const CornerStage corner(random, 10.);
+  const auto       &pairs = corner.contact.pairs;
+  Field<double>     held  = corner.W;
+  hold_on_dies(corner.stage(), held);
+  compare("any velocity", corner, corner.W, held);
+
+  Field<double> stopped = corner.W;
+  stop_at_dies(corner.stage(), ActiveSet(pairs.size(), 0), stopped);
+  compare("after a step without contact", corner, corner.W, stopped);
+
+  Field<double> same = corner.W;
+  stop_at_dies(corner.stage(), corner.active, same);
+  double change = 0.;
+  for (NodeIndex k = 0; k < same.V.size(); ++k)
+    change = std::max(change, (same.V[k] - corner.W.V[k]).norm());
+  std::printf("active in the step: moved: %s\n", change == 0. ? "none" : "some");
+
+  // A billet at rest under pressure: its boundary pushes outwards.
+  Field<double> pressed(corner.scene.mesh);
+  for (NodeIndex k = 0; k < pressed.P.size(); ++k)
+    pressed.P[k] = 50.;
+  const auto velocity_of = [&](const unsigned int p) -> Vec3 & { return pressed.V[pairs[p].point.nodes[0]]; };
+  std::vector<unsigned int> n_dies(pressed.V.size(), 0);
+  for (unsigned int p = 0; p < pairs.size(); ++p)
+    if (pairs[p].point.is_node())
+    {
+      ++n_dies[pairs[p].point.nodes[0]];
+      velocity_of(p) = Vec3({0., 5., 0.});
+    }
+  // Nodes inside the wavy die, and not at the other: they slide along it, and away from it by 0.1.
+  unsigned int inside = 0, held_there = 0;
+  const auto   chosen = [&](const unsigned int p) {
+    return pairs[p].point.is_node() && pairs[p].die == 0 && n_dies[pairs[p].point.nodes[0]] == 1 &&
+           corner.contact.projections[p].delta < 0. &&
+           corner.scene.topology.fixed_directions[pairs[p].point.nodes[0]].size() == 0;
+  };
+  for (unsigned int p = 0; p < pairs.size(); ++p)
+    if (chosen(p))
+    {
+      const auto node = corner.stage().contact_node(p, pressed, {});
+      velocity_of(p) -= (approach_excess(node) + 0.1) * node.n;
+    }
+  hold_on_dies(corner.stage(), pressed);
+  for (unsigned int p = 0; p < pairs.size(); ++p)
+    if (chosen(p))
+    {
+      ++inside;
+      held_there += std::abs(approach_excess(corner.stage().contact_node(p, pressed, {}))) < 1e-6;
+    }
+  std::printf("leaving, but pressed by the metal: some: %s, held: %s\n",
+              yes(inside > 3),
+              held_there == inside      ? "all"
+              : held_there > inside / 2 ? "most"
+                                        : "few");
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/mesh/billet.h>
+#include <retroforge/solver/stage.h>
+
+#include "../contact/wavy_sheet.h"
+#include "../element/element_test_tools.h"
+
+namespace retroforge
+{
+  inline TetMesh make_mesh()
+  {
+    BilletParameters parameters;
+    parameters.size            = Vec3({10., 8., 6.});
+    parameters.element_size    = 2.;
+    parameters.symmetry_planes = {Vec3({-1., 0., 0.})};
+    return make_billet(parameters, MPI_COMM_WORLD);
+  }
+
+  inline std::vector<Die> make_dies()
+  {
+    const Vec3 side = Vec3({-1., 0.1, 0.2});
+    return {Die("lower", wavy_sheet(), 2., {true, 40., 1.}),
+            Die("side", Vec3({5., 0., 0.}), side / side.norm())};
+  }
+
+  /// A corner of a billet with a plane of symmetry between a wavy die and a tilted plane, at any velocity.
+  struct CornerStage
+  {
+    Scene                scene{make_mesh(), make_dies(), MPI_COMM_WORLD};
+    NodalVectors<double> X;
+    Physics<double>      physics;
+    ContactSet<double>   contact;
+    Field<double>        W;
+    ActiveSet            active;
+
+    CornerStage(Random &random, const double rho) : X(scene.mesh.X), W(scene.mesh)
+    {
+      for (Vec3 &x : X)
+        x += 0.05 * random.vector();
+      physics = {{1.3, 0.4, 0.2}, {rho, 0.3}, {{}, {}}};
+      for (auto &die : physics.dies)
+        die = {0.3 * random.vector(), Vec3(), 0.3, {}};
+      const FrictionRamp ramp{0.5, false};
+      contact =
+        make_contact_set(scene.mesh,
+                         scene.topology,
+                         scene.dies,
+                         physics.dies,
+                         find_contact_pairs(scene.topology, scene.dies, physics.dies, X, ramp, 0.8, true),
+                         ramp,
+                         0.4,
+                         X,
+                         0.3,
+                         0.3);
+      W      = random_field(random);
+      active = stage().decide_active(W);
+    }
+
+    Stage<double> stage() const { return {scene, physics, contact, X}; }
+
+    /// Without what the plane of symmetry fixes.
+    Field<double> random_field(Random &random) const
+    {
+      Field<double> x(scene.mesh);
+      for (NodeIndex k = 0; k < scene.mesh.n_nodes(); ++k)
+      {
+        x.V[k] = random.vector();
+        x.P[k] = random.scalar();
+        for (const Vec3 &n : scene.topology.fixed_directions[k])
+          x.V[k] -= (x.V[k] * n) * n;
+      }
+      for (Vec3 &beta : x.beta)
+        beta = 0.1 * random.vector();
+      return x;
+    }
+  };
+} // namespace retroforge
