@@ -408,6 +408,7 @@ namespace retroforge
                          whole.copies * energy,
                          whole.copies * size};
     history_->add(row);
+    fields_->follow(event);
     if (event.record.remesh)
       std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());
     print_increment(row,

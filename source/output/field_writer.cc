@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/objective/surface_areas.h>
+#include <retroforge/element/strain_history.h>
+#include <retroforge/output/contact_fields.h>
+#include <retroforge/output/die_pictures.h>
 #include <retroforge/output/field_writer.h>
 #include <retroforge/output/vtu_writer.h>
 
@@ -8,49 +10,49 @@
 
 namespace retroforge
 {
+  /// What is drawn of it.
+  struct FieldWriter::Workpiece
+  {
+    const TetMesh              &mesh;
+    const NodalVectors<double> &X;
+    const NodalVectors<double> &position; ///< where W is an equilibrium
+    const Field<double>        &W;
+    const std::vector<double>  &strain;
+    const NodalVectors<double> *displacement; ///< null: unknown
+    const ContactFields        *contact;      ///< null: unknown
+  };
+
   namespace
   {
-    /// Mean equivalent strain rate of each cell [1/s].
-    ScalarField strain_rates(const TetMesh &mesh, const NodalVectors<double> &X, const Field<double> &W)
+    /// Of each cell: mean equivalent strain rate, von Mises stress, deviatoric stress.
+    struct CellFields
     {
-      ScalarField rate{"strain_rate", {}};
-      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
-      {
-        const auto e = cell_strain_rates(cell_geometry(positions_of_cell(mesh, X, c)), W.on_cell(mesh, c));
-        rate.values.push_back(0.25 * (e[0] + e[1] + e[2] + e[3]));
-      }
-      return rate;
-    }
-
-    /// Which die presses a node (its number, counted from 1, or 0), and how strongly.
-    struct ContactFields
-    {
-      ScalarField state, pressure;
+      std::vector<double>          strain_rate, von_mises;
+      std::vector<SymmetricTensor> stress;
     };
 
-    ContactFields contact_fields(const LastStage &last, const IncrementEvent &event)
+    CellFields cell_fields(const TetMesh              &mesh,
+                           const NodalVectors<double> &X,
+                           const Field<double>        &W,
+                           const NortonHoff<double>   &law)
     {
-      const Stage<double> &stage   = last.stage;
-      const TetMesh       &mesh    = event.state.leg->scene.mesh;
-      const ActiveSet     &pressed = event.record.solves.back().active;
-      std::vector<double>  state(mesh.n_nodes(), 0.), force(mesh.n_nodes(), 0.), pressure(mesh.n_nodes(), 0.);
-      for (unsigned int p = 0; p < event.record.pairs.size(); ++p)
+      CellFields fields;
+      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
       {
-        const auto          node  = stage.contact_node(p, event.state.W, pressed);
-        const ContactPoint &point = event.record.pairs[p].point;
-        if (node.active)
-          for (unsigned int i = 0; i < point.n_nodes(); ++i)
-          {
-            const NodeIndex k = point.nodes[i];
-            state[k]          = event.record.pairs[p].die + 1.;
-            force[k] += point.weight() * stage.physics.contact.rho * node.S * approach_excess(node);
-          }
+        const auto geometry = cell_geometry(positions_of_cell(mesh, X, c));
+        const auto w        = W.on_cell(mesh, c);
+        fields.strain_rate.push_back(cell_strain_rate(geometry, w.V, w.beta));
+        fields.stress.push_back(cell_deviatoric_stress(geometry, w, law));
+        fields.von_mises.push_back(von_mises(fields.stress.back()));
       }
-      const std::vector<double> area = lumped_areas(surface_triangles(mesh), stage.X);
-      for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
-        if (force[k] > 0.)
-          pressure[k] = force[k] / area[k];
-      return {{"contact_state", state}, {"contact_pressure", pressure}};
+      return fields;
+    }
+
+    std::string six_digits(const unsigned int number)
+    {
+      char text[16];
+      std::snprintf(text, sizeof text, "%06u", number);
+      return text;
     }
   } // namespace
 
@@ -64,16 +66,79 @@ namespace retroforge
       , process_(process)
       , billet_(billet)
       , X_0_(X_0)
+      , displacement_(X_0.size())
       , pvd_(directory + "/fields.pvd")
   {
+  }
+
+  void FieldWriter::write(const std::string &file, const Workpiece &workpiece) const
+  {
+    const CellFields cells = cell_fields(workpiece.mesh, workpiece.position, workpiece.W, process_.law);
+    std::vector<ScalarField> scalars = {{"pressure [MPa]", workpiece.W.P}};
+    std::vector<VectorField> vectors = {{"velocity [mm/s]", workpiece.W.V}};
+    if (workpiece.displacement)
+      vectors.push_back({"displacement [mm]", *workpiece.displacement});
+    if (workpiece.contact)
+    {
+      scalars.push_back({"touching_die", workpiece.contact->die});
+      scalars.push_back({"contact_pressure [MPa]", workpiece.contact->pressure});
+      vectors.push_back({"slip_velocity [mm/s]", workpiece.contact->slip});
+    }
+    write_vtu(directory_ + "/" + file,
+              workpiece.mesh,
+              workpiece.X,
+              scalars,
+              vectors,
+              {{"equivalent_strain", workpiece.strain},
+               {"strain_rate [1/s]", cells.strain_rate},
+               {"von_mises_stress [MPa]", cells.von_mises}},
+              {{"deviatoric_stress [MPa]", cells.stress}});
+  }
+
+  PvdWriter::Part FieldWriter::write_die(const unsigned int          d,
+                                         const double                stroke,
+                                         const std::string          &suffix,
+                                         const NodalVectors<double> &X) const
+  {
+    const Die        &die   = model_.dies[d];
+    const bool        still = die.surface() && process_.dies[d].velocity.norm() == 0.;
+    const std::string file  = "die_" + die.name + "_" + (still ? six_digits(0) : suffix) + ".vtu";
+    if (!still || stroke == 0.)
+      write_vtu(directory_ + "/" + file,
+                die_picture(die, process_.at_stroke(stroke).dies[d].displacement, X));
+    return {"die " + die.name, file};
+  }
+
+  void FieldWriter::add_step(const double                stroke,
+                             const std::string          &file,
+                             const std::string          &suffix,
+                             const NodalVectors<double> &X)
+  {
+    std::vector<PvdWriter::Part> parts = {{"workpiece", file}};
+    for (unsigned int d = 0; d < model_.dies.size(); ++d)
+      parts.push_back(write_die(d, stroke, suffix, X));
+    pvd_.add(stroke / process_.speed(), parts);
   }
 
   void FieldWriter::add_billet()
   {
     if (!pvd_.steps().empty())
       return;
-    write_vtu(directory_ + "/fields_000000.vtu", billet_, X_0_, {}, {}, {});
-    pvd_.add(0., "fields_000000.vtu");
+    const std::string         file = "fields_" + six_digits(0) + ".vtu";
+    const Field<double>       at_rest(billet_);
+    const std::vector<double> zero(billet_.n_nodes(), 0.), strain(billet_.n_cells(), 0.);
+    const ContactFields       contact{zero, zero, at_rest.V};
+    write(file, {billet_, X_0_, X_0_, at_rest, strain, &at_rest.V, &contact});
+    add_step(0., file, six_digits(0), X_0_);
+  }
+
+  void FieldWriter::follow(const IncrementEvent &event)
+  {
+    if (event.record.remesh)
+      displacement_ = event.record.remesh->transfer.apply(displacement_);
+    for (std::size_t k = 0; k < displacement_.size(); ++k)
+      displacement_[k] += event.state.X[k] - event.X_before[k];
+    n_remeshings_ = event.state.remeshed.size();
   }
 
   void FieldWriter::add(const IncrementEvent &event)
@@ -81,29 +146,20 @@ namespace retroforge
     const ForgingState &run   = event.state;
     const Scene        &scene = run.leg->scene;
     const LastStage     last(scene, model_.step, process_, event.X_before, event.record);
-    const auto          contact = contact_fields(last, event);
-    char                name[32];
-    std::snprintf(name, sizeof name, "fields_%06u.vtu", run.increments);
+    const ContactFields contact = contact_fields(last.stage, run.W, event.record.solves.back().active);
+    const std::string   number = six_digits(run.increments), file = "fields_" + number + ".vtu";
     add_billet();
-    write_vtu(directory_ + "/" + name,
-              scene.mesh,
-              run.X,
-              {{"pressure", run.W.P}, contact.state, contact.pressure},
-              {{"velocity", run.W.V}},
-              {strain_rates(scene.mesh, last.stage.X, run.W), {"equivalent_strain", run.strain}});
-    pvd_.add(event.time, name);
+    write(file, {scene.mesh, run.X, last.stage.X, run.W, run.strain, &displacement_, &contact});
+    add_step(run.stroke, file, number, run.X);
   }
 
   void FieldWriter::add_failed(const ForgingState &state)
   {
-    const TetMesh &mesh = state.leg->scene.mesh;
+    // The increment that failed may have begun with a remeshing, which nobody was told of.
+    const auto *displacement = state.remeshed.size() == n_remeshings_ ? &displacement_ : nullptr;
     add_billet();
-    write_vtu(directory_ + "/failed.vtu",
-              mesh,
-              state.X,
-              {{"pressure", state.W.P}},
-              {{"velocity", state.W.V}},
-              {strain_rates(mesh, state.X, state.W), {"equivalent_strain", state.strain}});
-    pvd_.add(state.stroke / process_.speed(), "failed.vtu");
+    write("failed.vtu",
+          {state.leg->scene.mesh, state.X, state.X, state.W, state.strain, displacement, nullptr});
+    add_step(state.stroke, "failed.vtu", "failed", state.X);
   }
 } // namespace retroforge

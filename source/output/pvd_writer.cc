@@ -12,9 +12,11 @@ namespace retroforge
 {
   PvdWriter::PvdWriter(const std::string &file) : file_(file) {}
 
-  void PvdWriter::add(const double time, const std::string &vtu_file)
+  void PvdWriter::add(const double time, const std::vector<Part> &parts)
   {
-    steps_.emplace_back(time, vtu_file);
+    if (!steps_.empty() && steps_.back().time == time)
+      steps_.pop_back();
+    steps_.push_back({time, parts});
     write();
   }
 
@@ -24,12 +26,15 @@ namespace retroforge
     tree.put("VTKFile.<xmlattr>.type", "Collection");
     tree.put("VTKFile.<xmlattr>.version", "0.1");
     boost::property_tree::ptree &collection = tree.put("VTKFile.Collection", "");
-    for (const auto &[time, vtu_file] : steps_)
-    {
-      boost::property_tree::ptree &step = collection.add("DataSet", "");
-      step.put("<xmlattr>.timestep", time); // all digits: reads back to the same bits
-      step.put("<xmlattr>.file", vtu_file);
-    }
+    for (const Step &step : steps_)
+      for (std::size_t p = 0; p < step.parts.size(); ++p)
+      {
+        boost::property_tree::ptree &part = collection.add("DataSet", "");
+        part.put("<xmlattr>.timestep", step.time); // all digits: reads back to the same bits
+        part.put("<xmlattr>.part", p);
+        part.put("<xmlattr>.name", step.parts[p].name);
+        part.put("<xmlattr>.file", step.parts[p].file);
+      }
     std::ostringstream out;
     boost::property_tree::write_xml(
       out, tree, boost::property_tree::xml_writer_make_settings<std::string>(' ', 1));

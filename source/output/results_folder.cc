@@ -17,7 +17,7 @@ namespace retroforge
     /// Of files a run, a scan or the report writes.
     const std::regex file_names("parameters\\.prm|summary\\.json|(history|objectives|scan)\\.csv|scan\\.json|"
                                 "fields\\.pvd|fields_[0-9]{6,}\\.vtu|failed\\.vtu|failure\\.txt|"
-                                "sensitivity(_die_.*)?\\.vtu|die_.*\\.stl|record\\.h5|report\\.html");
+                                "sensitivity(_die_.*)?\\.vtu|die_.*\\.(stl|vtu)|record\\.h5|report\\.html");
 
     bool is_result(const fs::path &path)
     {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/mesh/whole_part.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/output/vtu_writer.h>
 #include <retroforge/output/xml.h>
@@ -61,7 +62,8 @@ namespace retroforge
     data_array(const std::string &name, const unsigned int n_components, const std::vector<T> &values)
     {
       return "<DataArray type=\"" + vtk_type<T>() + "\" Name=\"" + xml_escaped(name) +
-             "\" NumberOfComponents=\"" + std::to_string(n_components) + "\" format=\"binary\">\n" +
+             "\" NumberOfComponents=\"" + std::to_string(n_components) + "\" NumberOfTuples=\"" +
+             std::to_string(values.size() / n_components) + "\" format=\"binary\">\n" +
              compressed(reinterpret_cast<const unsigned char *>(values.data()), values.size() * sizeof(T)) +
              "\n</DataArray>\n";
     }
@@ -77,28 +79,48 @@ namespace retroforge
       return values;
     }
 
-    std::string scalar_arrays(const std::vector<ScalarField> &fields, const std::size_t n_values)
+    std::vector<float> components(const ScalarField &field)
     {
-      std::string arrays;
-      for (const ScalarField &field : fields)
-      {
-        AssertThrow(field.values.size() == n_values,
-                    dealii::ExcDimensionMismatch(field.values.size(), n_values));
-        arrays += data_array(field.name, 1, std::vector<float>(field.values.begin(), field.values.end()));
-      }
-      return arrays;
+      return {field.values.begin(), field.values.end()};
     }
 
-    std::string vector_arrays(const std::vector<VectorField> &fields, const std::size_t n_values)
+    std::vector<float> components(const VectorField &field)
     {
-      std::string arrays;
-      for (const VectorField &field : fields)
+      return components<float>(field.values);
+    }
+
+    std::vector<float> components(const TensorField &field)
+    {
+      std::vector<float> values;
+      for (const SymmetricTensor &s : field.values)
+        for (const unsigned int k : {0, 1, 2, 5, 3, 4}) // yz, xz, xy -> xy, yz, xz
+          values.push_back(static_cast<float>(s[k]));
+      return values;
+    }
+
+    template <typename Field>
+    std::string
+    arrays(const std::vector<Field> &fields, const unsigned int n_components, const std::size_t n_values)
+    {
+      std::string text;
+      for (const Field &field : fields)
       {
         AssertThrow(field.values.size() == n_values,
                     dealii::ExcDimensionMismatch(field.values.size(), n_values));
-        arrays += data_array(field.name, 3, components<float>(field.values));
+        text += data_array(field.name, n_components, components(field));
       }
-      return arrays;
+      return text;
+    }
+
+    /// Point and outward normal of each plane, as field data; nothing where there is none.
+    std::string symmetry(const TetMesh &mesh)
+    {
+      std::vector<double> numbers;
+      for (const Plane &plane : symmetry_planes(mesh))
+        for (const Vec3 &vector : {plane.point, plane.normal})
+          numbers.insert(numbers.end(), vector.begin_raw(), vector.end_raw());
+      return numbers.empty() ? ""
+                             : "<FieldData>\n" + data_array("symmetry_planes", 6, numbers) + "</FieldData>\n";
     }
 
     template <std::size_t n_corners>
@@ -125,13 +147,15 @@ namespace retroforge
                     const std::vector<std::array<unsigned int, n_corners>> &cells,
                     const NodalVectors<double>                             &X,
                     const std::string                                      &point_arrays,
-                    const std::string                                      &cell_fields)
+                    const std::string                                      &cell_fields = "",
+                    const std::string                                      &field_data  = "")
     {
       write_file(file,
                  "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" +
                    byte_order() + "\" header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\">\n" +
-                   "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(X.size()) +
-                   "\" NumberOfCells=\"" + std::to_string(cells.size()) + "\">\n" + //
+                   "<UnstructuredGrid>\n" + field_data + "<Piece NumberOfPoints=\"" +
+                   std::to_string(X.size()) + "\" NumberOfCells=\"" + std::to_string(cells.size()) +
+                   "\">\n" + //
                    "<PointData>\n" + point_arrays + "</PointData>\n<CellData>\n" + cell_fields +
                    "</CellData>\n<Points>\n" + data_array("Points", 3, components<double>(X)) +
                    "</Points>\n<Cells>\n" + cell_arrays(cells) +
@@ -144,24 +168,23 @@ namespace retroforge
                  const NodalVectors<double>     &X,
                  const std::vector<ScalarField> &nodal_scalars,
                  const std::vector<VectorField> &nodal_vectors,
-                 const std::vector<ScalarField> &cell_scalars)
+                 const std::vector<ScalarField> &cell_scalars,
+                 const std::vector<TensorField> &cell_tensors)
   {
     AssertThrow(X.size() == mesh.n_nodes(), dealii::ExcDimensionMismatch(X.size(), mesh.n_nodes()));
     write_grid(file,
                mesh.cells,
                X,
-               scalar_arrays(nodal_scalars, X.size()) + vector_arrays(nodal_vectors, X.size()),
-               scalar_arrays(cell_scalars, mesh.n_cells()));
+               arrays(nodal_scalars, 1, X.size()) + arrays(nodal_vectors, 3, X.size()),
+               arrays(cell_scalars, 1, mesh.n_cells()) + arrays(cell_tensors, 6, mesh.n_cells()),
+               symmetry(mesh));
   }
 
   void write_vtu(const std::string              &file,
                  const TriangleSurface          &surface,
                  const std::vector<VectorField> &vertex_vectors)
   {
-    write_grid(file,
-               surface.triangles(),
-               surface.vertices(),
-               vector_arrays(vertex_vectors, surface.vertices().size()),
-               "");
+    write_grid(
+      file, surface.triangles(), surface.vertices(), arrays(vertex_vectors, 3, surface.vertices().size()));
   }
 } // namespace retroforge

@@ -147,9 +147,10 @@ def read_dies(results, settings):
 
 
 def fields(results):
-    """[(time, file)] in the order of the run"""
+    """[(time, file)] of the workpiece, part 0, in the order of the run"""
     tree = xml.etree.ElementTree.parse(os.path.join(results, "fields.pvd"))
-    return [(float(entry.get("timestep")), os.path.join(results, entry.get("file"))) for entry in tree.iter("DataSet")]
+    return [(float(entry.get("timestep")), os.path.join(results, entry.get("file"))) for entry in tree.iter("DataSet")
+            if int(entry.get("part")) == 0]
 
 
 def measure(faces, die, displacement):

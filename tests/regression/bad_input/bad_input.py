@@ -241,8 +241,9 @@ def replaced(folder):
     before = set(os.listdir(output))
     done = run(["case.prm", "--output", "twice", "--overwrite"] + one, folder, "simulate")
     gone = before - set(os.listdir(output))
-    judge_that("--overwrite replaces all", done.returncode == 0 and
-               gone == {"report.html", "fields_000002.vtu", "fields_000003.vtu", "sensitivity.vtu"}, f"{done.stderr} removed {sorted(gone)}")
+    of_increments = {f"{of}_00000{i}.vtu" for of in ("fields", "die_lower", "die_upper") for i in (2, 3)}
+    judge_that("--overwrite replaces all", done.returncode == 0 and gone == {"report.html", "sensitivity.vtu", *of_increments},
+               f"{done.stderr} removed {sorted(gone)}")
 
 
 def contents(folder):

@@ -67,12 +67,17 @@ std::vector<T> array(const Tree &tree, const std::string &name)
   return as_array<T>(decode(find_array(tree, name).data()));
 }
 
-Tree read(const std::string &file)
+Tree read_grid(const std::string &file)
 {
   std::istringstream in(read_file(file));
   Tree               tree;
   boost::property_tree::read_xml(in, tree);
-  return tree.get_child("VTKFile.UnstructuredGrid.Piece");
+  return tree.get_child("VTKFile.UnstructuredGrid");
+}
+
+Tree read(const std::string &file)
+{
+  return read_grid(file).get_child("Piece");
 }
 
 template <typename T>
@@ -93,10 +98,18 @@ void two_cells()
   NodalVectors<double> X = mesh.X, V(5);
   X[4][2]                = 1.25;
   V[3]                   = Vec3({0.5, 0., -2.});
-  write_vtu(
-    "two.vtu", mesh, X, {{"p < \"q\" & r", {1, 2, 3, 4, 5}}}, {{"velocity", V}}, {{"quality", {0.5, 0.75}}});
+  mesh.patches           = {{"x", Plane{Vec3({0., 0., 0.}), Vec3({-1., 0., 0.})}}};
+  mesh.faces             = {{{{0, 3, 2}}, 0}};
+  write_vtu("two.vtu",
+            mesh,
+            X,
+            {{"p < \"q\" & r", {1, 2, 3, 4, 5}}},
+            {{"velocity", V}},
+            {{"quality", {0.5, 0.75}}},
+            {{"stress", {{{1, 2, 3, 4, 5, 6}}, {{0, 0, 0, 0, 0, 7}}}}});
 
-  const Tree piece = read("two.vtu");
+  const Tree grid  = read_grid("two.vtu");
+  const Tree piece = grid.get_child("Piece");
   std::cout << "points " << piece.get<int>("<xmlattr>.NumberOfPoints") << ", cells "
             << piece.get<int>("<xmlattr>.NumberOfCells") << '\n';
   print("points", array<double>(piece.get_child("Points"), "Points"));
@@ -106,6 +119,8 @@ void two_cells()
   print("scalar", array<float>(piece.get_child("PointData"), "p < \"q\" & r"));
   print("velocity", array<float>(piece.get_child("PointData"), "velocity"));
   print("quality", array<float>(piece.get_child("CellData"), "quality"));
+  print("stress xx, yy, zz, xy, yz, xz", array<float>(piece.get_child("CellData"), "stress"));
+  print("symmetry planes", array<double>(grid.get_child("FieldData"), "symmetry_planes"));
 }
 
 void many_cells()

@@ -37,7 +37,7 @@ void all_writers(const std::string &file)
   mesh.X     = {Vec3({0., 0., 0.}), Vec3({1., 0., 0.}), Vec3({0., 1., 0.}), Vec3({0., 0., 1.})};
   mesh.cells = {{{0, 1, 2, 3}}};
   show([&] { write_vtu(file, mesh, mesh.X, {}, {}, {}); });
-  show([&] { PvdWriter(file).add(0., "a.vtu"); });
+  show([&] { PvdWriter(file).add(0., {{"workpiece", "a.vtu"}}); });
   show([&] { History history(file); });
   show([&] { Summary().write(file); });
 }
