@@ -28,6 +28,13 @@ class Column:
     values: np.ndarray
 
 
+@dataclasses.dataclass
+class Step:
+    """What fields.pvd shows at one time."""
+    workpiece: vtu.Mesh
+    dies: list  # of vtu.Mesh
+
+
 class Run:
     """Files that are absent read as None, or as empty: not every command writes all of them."""
 
@@ -39,7 +46,7 @@ class Run:
         self.failure = path.read_text(encoding="utf-8", errors="replace").strip() if path.is_file() else None
         self.history = self._read_history()
         self.objective_strokes, self.objective_columns = self._read_objectives()
-        self.initial, self.final = self._read_shapes()
+        self.initial, self.final = self._read_shapes()  # None where no fields were written
         path = self.directory / "sensitivity.vtu"
         self.sensitivity = vtu.read(path) if path.is_file() else None
         self.die_sensitivities = {path.stem[len("sensitivity_die_"):]: vtu.read(path)
@@ -119,8 +126,16 @@ class Run:
         path = self.directory / "fields.pvd"
         if not path.is_file():
             return None, None
-        entries = [(float(entry.get("timestep", 0)), entry.get("file")) for entry in xml.parse(path).iter("DataSet")]
-        if not entries:
+        steps = {}
+        for entry in xml.parse(path).iter("DataSet"):
+            steps.setdefault(float(entry.get("timestep", 0)), []).append(
+                (int(entry.get("part", 0)), entry.get("name"), self.directory / entry.get("file")))
+        if not steps:
             return None, None
-        entries.sort(key=lambda entry: entry[0])
-        return tuple(vtu.read(self.directory / entries[i][1]) for i in (0, -1))
+        return tuple(self._read_step(sorted(steps[time])) for time in (min(steps), max(steps)))
+
+    @staticmethod
+    def _read_step(parts):
+        """Part 0 is the workpiece, the others are dies."""
+        (_, _, workpiece), *dies = parts
+        return Step(vtu.read(workpiece), [vtu.read(file) for _, _, file in dies])

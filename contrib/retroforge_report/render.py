@@ -5,6 +5,7 @@ import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 METAL = (0.72, 0.74, 0.77, 1.0)
+DIE = (0.45, 0.52, 0.62, 0.22)  # seen through
 PIXELS = 900
 SHADING = {True: 0.15, False: 0.3}  # with edges, without: little, so that colours stay close to the scale
 
@@ -45,22 +46,22 @@ class Scene:
         self.half_width, self.half_height = margin * np.maximum(extent, 0.3 * extent.max())
         self.use_vtk, self.view = use_vtk, view
 
-    def draw(self, figure, position, surface, rgba, arrows=None, edges=True):
-        """Into one place of a figure. `rgba`: one colour per triangle. `arrows`: (origins, vectors).
+    def draw(self, figure, position, surface, rgba, arrows=None, edges=True, dies=()):
+        """Into one place of a figure. `rgba`: one colour per triangle. `arrows`: (origins, vectors). `dies`: surfaces.
 
         Without the edges of triangles there is more shading instead.
         """
         if self.use_vtk:
             axes = figure.add_subplot(*position)
-            axes.imshow(_render(self, surface, rgba, arrows, edges))
+            axes.imshow(_render(self, surface, rgba, arrows, edges, dies))
         else:
             axes = figure.add_subplot(*position, projection="3d")
-            _plot(self, axes, surface, rgba, arrows, edges)
+            _plot(self, axes, surface, rgba, arrows, edges, dies)
         axes.axis("off")
         return axes
 
 
-def _plot(scene, axes, surface, rgba, arrows, edges):
+def _plot(scene, axes, surface, rgba, arrows, edges, dies):
     normals = surface.area_vectors()
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     shaded = rgba.copy()
@@ -68,6 +69,8 @@ def _plot(scene, axes, surface, rgba, arrows, edges):
     shaded[:, :3] *= (1 - shading + shading * np.clip(normals @ scene.view.light, -1, 1))[:, None]
     axes.add_collection3d(Poly3DCollection(surface.points[surface.triangles], facecolors=shaded,
                                            edgecolors=(0.2, 0.2, 0.2, 0.35) if edges else shaded, linewidths=0.2))
+    for die in dies:
+        axes.add_collection3d(Poly3DCollection(die.points[die.triangles], facecolors=DIE))
     if arrows:
         axes.computed_zorder = False  # by order of drawing: arrows begin where the surface faces the eye
         axes.quiver(*arrows[0].T, *arrows[1].T, color="#b03000", linewidth=0.8)
@@ -79,13 +82,15 @@ def _plot(scene, axes, surface, rgba, arrows, edges):
     axes.view_init(np.degrees(np.arcsin(eye[2])), np.degrees(np.arctan2(eye[1], eye[0])))
 
 
-def _render(scene, surface, rgba, arrows, edges):
+def _render(scene, surface, rgba, arrows, edges, dies):
     """Off-screen picture as an array (rows, columns, 3)."""
     import vtk
     from vtk.util.numpy_support import vtk_to_numpy
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(1, 1, 1)
     renderer.AddActor(_surface_actor(vtk, surface, rgba, edges))
+    for die in dies:
+        renderer.AddActor(_die_actor(vtk, die))
     if arrows:
         renderer.AddActor(_arrow_actor(vtk, *arrows))
     view = scene.view
@@ -117,14 +122,32 @@ def _render(scene, surface, rgba, arrows, edges):
     return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(rows, columns, -1)[::-1, :, :3]
 
 
-def _surface_actor(vtk, surface, rgba, edges):
-    from vtk.util.numpy_support import numpy_to_vtk
+def _poly_data(vtk, surface):
+    from vtk.util.numpy_support import numpy_to_vtkIdTypeArray
     data = vtk.vtkPolyData()
     data.SetPoints(_vtk_points(vtk, surface.points))
     triangles = vtk.vtkCellArray()
-    for triangle in surface.triangles:
-        triangles.InsertNextCell(3, [int(node) for node in triangle])
+    n = len(surface.triangles)
+    triangles.SetData(numpy_to_vtkIdTypeArray(np.arange(0, 3 * n + 1, 3), deep=True),
+                      numpy_to_vtkIdTypeArray(surface.triangles.reshape(-1).astype(np.int64), deep=True))
     data.SetPolys(triangles)
+    return data
+
+
+def _die_actor(vtk, surface):
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputData(_poly_data(vtk, surface))
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(*DIE[:3])
+    actor.GetProperty().SetOpacity(DIE[3])
+    actor.GetProperty().SetInterpolationToFlat()
+    return actor
+
+
+def _surface_actor(vtk, surface, rgba, edges):
+    from vtk.util.numpy_support import numpy_to_vtk
+    data = _poly_data(vtk, surface)
     data.GetCellData().SetScalars(numpy_to_vtk((255 * rgba[:, :3]).astype(np.uint8), deep=True))
     mapper = vtk.vtkPolyDataMapper()
     mapper.SetInputData(data)

@@ -8,38 +8,49 @@ from matplotlib import cm, colors
 from retroforge_report.refine import refined
 from retroforge_report.render import METAL, Scene, view_onto
 from retroforge_report.units import per_volume
+from retroforge_report.whole import clipped, whole
 
 MOST_ARROWS = 250
 MOVED_BY_MORE = 1e-3  # of the strongest: what counts when the eye looks for the place that matters
 SHARPEST = 0.1  # at edges sharper than this, normals cancel and the part along them fades
 
 
+CELL_FIELDS = (("equivalent_strain", "equivalent strain"), ("strain_rate [1/s]", "equivalent strain rate [1/s]"),
+               ("von_mises_stress [MPa]", "von Mises stress [MPa]"))
+
+
 def forging(run, use_vtk):
-    """Billet before and after; the last shape again with each field that was written."""
+    """The whole part and the dies, before and after; the last shape again with fields that were written."""
     name = "shape where it failed" if run.failure else "final shape" if run.finished else "last shape"
-    first, last = run.initial.surface(), run.final.surface()
-    panels = [("initial shape", first, None, None, None), (name, last, None, None, None)]
-    if "strain_rate" in run.final.cell_data:
-        rate = np.atleast_2d(run.final.cell_data["strain_rate"].T).T
-        rate = np.linalg.norm(rate, axis=1) if rate.shape[1] > 1 else rate[:, 0]
-        panels.append((f"{name}, strain rate", last, rate[last.cell], "equivalent strain rate [1/s]", "viridis"))
-    if "contact_pressure" in run.final.point_data:
-        pressure = run.final.point_data["contact_pressure"][last.node]
+    mesh = run.final.workpiece
+    first, last = (whole(step.workpiece.surface(), step.workpiece.symmetry_planes) for step in (run.initial, run.final))
+    panels = [("initial shape", first, None, None, None, run.initial), (name, last, None, None, None, run.final)]
+    for field, label in CELL_FIELDS:
+        if field in mesh.cell_data:
+            panels.append((f"{name}, {label.split(' [')[0]}", last, mesh.cell_data[field][last.cell], label, "viridis", None))
+    if "contact_pressure [MPa]" in mesh.point_data:
+        pressure = mesh.point_data["contact_pressure [MPa]"][last.node]
         touching = (pressure[last.triangles] > 0).all(axis=1)
         pressure = np.where(touching, last.to_triangles(pressure), np.nan)
-        panels.append((f"{name}, contact", last, pressure, "contact pressure [MPa]", "magma_r"))
-    scene = Scene(np.concatenate([first.points, last.points]), use_vtk)
+        panels.append((f"{name}, contact", last, pressure, "contact pressure [MPa]", "magma_r", None))
+    scene = Scene(np.concatenate([first.points, last.points]), use_vtk, margin=1.3)
     figure = plt.figure(figsize=(11, 4.4 * ((len(panels) + 1) // 2)), layout="constrained")
-    for place, (title, surface, values, label, cmap) in enumerate(panels, 1):
+    for place, (title, surface, values, label, cmap, step) in enumerate(panels, 1):
         position = ((len(panels) + 1) // 2, 2, place)
         if values is None:
-            axes = scene.draw(figure, position, surface, np.tile(METAL, (len(surface.triangles), 1)))
+            axes = scene.draw(figure, position, surface, np.tile(METAL, (len(surface.triangles), 1)), dies=_dies(step))
         else:
             known = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
             norm = colors.Normalize(min(0, known.min()), max(np.percentile(known, 99), 1e-300))
             axes = _coloured(scene, figure, position, surface, values, norm, cmap, label)
         axes.set_title(title)
     return figure
+
+
+def _dies(step):
+    """Of the whole part, as is the workpiece."""
+    planes = step.workpiece.symmetry_planes
+    return [whole(clipped(die.surface(), planes), planes) for die in step.dies]
 
 
 def billet_sensitivity(mesh, field, objective, use_vtk):

@@ -48,11 +48,12 @@ class Surface:
 
 @dataclasses.dataclass
 class Mesh:
-    """Cells (n, 4) are tetrahedra, cells (n, 3) triangles."""
+    """Cells (n, 4) are tetrahedra, cells (n, 3) triangles. Symmetry planes: point and outward normal of each."""
     points: np.ndarray
     cells: np.ndarray
     point_data: dict
     cell_data: dict
+    symmetry_planes: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros((0, 6)))
 
     def surface(self):
         """Without the points that belong to no triangle of it."""
@@ -95,7 +96,11 @@ def read(path):
     cell_data = {array.get("Name"): decode(array)[chosen] for array in pieces[0].findall("CellData/DataArray")}
     if kind == TRIANGLE:
         return Mesh(points.astype(float), connectivity, point_data, cell_data)
-    return _merge(points, connectivity, point_data, cell_data)
+    mesh = _merge(points, connectivity, point_data, cell_data)
+    planes = grid.find("FieldData/DataArray[@Name='symmetry_planes']")
+    if planes is not None:
+        mesh.symmetry_planes = decode(planes).reshape(-1, 6)
+    return mesh
 
 
 def _merge(points, cells, point_data, cell_data):

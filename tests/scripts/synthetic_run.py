@@ -103,8 +103,8 @@ def write_fields(directory, n):
         centre = points[cells].mean(axis=1)
         rate = 1 + 3 * np.exp(-((centre - SIDE / 2)**2).sum(axis=1) / 300)
         write_vtu(directory / f"fields_{index:06}.vtu", X, cells,
-                  {"velocity": velocity, "pressure": pressure / 2, "contact_pressure": pressure,
-                   "contact_state": on_die.astype("f8")}, {"strain_rate": rate}, encoding)
+                  {"velocity [mm/s]": velocity, "pressure [MPa]": pressure / 2, "contact_pressure [MPa]": pressure,
+                   "touching_die": on_die.astype("f8")}, {"strain_rate [1/s]": rate}, encoding)
     entries = "".join(f'<DataSet timestep="{t}" file="fields_{i:06}.vtu"/>' for i, t in enumerate((0.0, 0.1, 0.2)))
     (directory / "fields.pvd").write_text(f'<VTKFile type="Collection"><Collection>{entries}</Collection></VTKFile>')
 

@@ -15,7 +15,7 @@ from scripts import CONTRIB, ScratchTest, call
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(CONTRIB))
-from retroforge_report import data, effects, refine, render, shapes, units, vtu  # noqa: E402
+from retroforge_report import data, effects, refine, render, shapes, units, vtu, whole  # noqa: E402
 
 SIDE = synthetic_run.SIDE
 
@@ -80,6 +80,50 @@ class Report(ScratchTest):
         np.testing.assert_allclose(fine.area_vectors()[:, 2] < 0, True)
         self.assertEqual(len(refine.refined(surface, field, 1e3, 0.0)[1]), 8)
         self.assertEqual(len(refine.refined(surface, field, 0.0, 1e3)[1]), 8)
+
+    def test_whole_part(self):
+        """A cube between 1, 2 and 3 of its planes and its images is a box of 2, 4 and 8 of it; in a wedge of 60 degrees six.
+
+        By hand: the surface of boxes 2 x 1 x 1, 2 x 2 x 1, 2 x 2 x 2 is 10, 16, 24 faces of the cube.
+        """
+        cube = vtu.Mesh(*synthetic_run.cube(2), {}, {}).surface()
+        planes = [np.array([0.0, 0.0, 0.0, *-axis]) for axis in np.eye(3)]
+        for n, faces in ((0, 6), (1, 10), (2, 16), (3, 24)):
+            part = whole.whole(cube, planes[:n])
+            self.assertEqual(len(whole.symmetries(planes[:n])), 2**n)
+            self.assertAlmostEqual(np.linalg.norm(part.area_vectors(), axis=1).sum(), faces * SIDE**2, 6)
+            np.testing.assert_allclose(part.points.min(axis=0), [-SIDE] * n + [0] * (3 - n), atol=1e-9)
+            np.testing.assert_allclose(np.abs(part.points), np.tile(cube.points, (2**n, 1)), atol=1e-9)
+            np.testing.assert_array_equal(part.node, np.tile(cube.node, 2**n))
+            volume = (part.area_vectors() * part.to_triangles(part.points)).sum() / 3  # all normals point outwards
+            self.assertAlmostEqual(volume, 2**n * SIDE**3, 4)
+        wedge = [np.array([1.0, 2.0, 0.0, np.sin(a), -np.cos(a), 0.0]) for a in (0, np.pi / 3)]
+        self.assertEqual(len(whole.symmetries(wedge)), 6)
+        without_end = [np.array([x, 0.0, 0.0, 1.0, 0.0, 0.0]) for x in (0.0, 1.0)]
+        self.assertIs(whole.whole(cube, without_end), cube)
+
+    def test_clipped_die(self):
+        """Of a flat square of side 100 about (25, 25), planes leave what is between them, turned as it was."""
+        square = vtu.Mesh(*synthetic_run.dome(3, depth=0.0), {}, {}).surface()
+        for planes, area in (([], 100**2), ([[0, 0, 0, -1, 0, 0]], 75 * 100), ([[0, 0, 0, -1, 0, 0], [0, 10, 0, 0, 1, 0]], 75 * 35),
+                             ([[200, 0, 0, -1, 0, 0]], 0)):
+            part = whole.clipped(square, np.array(planes, float).reshape(-1, 6))
+            np.testing.assert_allclose(part.area_vectors().sum(axis=0), [0, 0, -area], atol=1e-9)
+            self.assertAlmostEqual(np.linalg.norm(part.area_vectors(), axis=1).sum(), area, 8)
+
+    def test_steps(self):
+        """Parts of the first and the last time; a file of one part has no numbers."""
+        synthetic_run.write(self.root, n=2, increments=4)
+        points, triangles = synthetic_run.dome(2)
+        synthetic_run.write_vtu(self.root / "die.vtu", points, triangles, {}, {}, "ascii")
+        self.write("fields.pvd", '<VTKFile><Collection><DataSet timestep="0" file="fields_000000.vtu"/>'
+                   '<DataSet timestep="1" part="1" file="die.vtu"/><DataSet timestep="1" part="0" file="fields_000001.vtu"/>'
+                   '</Collection></VTKFile>')
+        run = data.Run(self.root)
+        self.assertEqual([len(step.dies) for step in (run.initial, run.final)], [0, 1])
+        self.assertEqual(run.final.workpiece.cells.shape[1], 4)
+        np.testing.assert_array_equal(run.final.dies[0].points, points)
+        self.assertEqual(call("report", "--no-vtk", self.root).returncode, 0)
 
     def test_view_onto_a_die(self):
         for direction in ([0, 0, -1], [0, 0, 2], [1, 0, 0], [0.3, -0.4, -0.5]):
@@ -176,7 +220,7 @@ class Report(ScratchTest):
             for expected in (text, "Results until stroke 25 mm", '<td>energy</td><td class="n">625</td>'):
                 self.assertIn(expected, page)
 
-    def test_whole_part(self):
+    def test_values_of_the_whole_part(self):
         """Only what adds up has a value of the whole part."""
         synthetic_run.write(self.root / "run", n=2, increments=4)
         path = self.root / "run/summary.json"

@@ -2,12 +2,13 @@
 # Copyright (C) 2026 The Retroforge authors
 """What runs leave behind: numbers of the whole part beside those of the model; of a run that fails, the reason and the
 workpiece there; of one that is stopped, what it had, and how to go on; of a check, what is done; nothing of a record beside
-the finished one; no number that is not finite. Usage: runs.py RETROFORGE REPORT
+the finished one; no number that is not finite; fields and dies as time goes on. Usage: runs.py RETROFORGE REPORT
 
 By hand: without friction a block is upset evenly, and its energy does not depend on how symmetry cut it. Pressed from
 above at v against a die, or from both sides at v/2 over half the stroke, is the same flow."""
 import csv
 import json
+import math
 import os
 import shutil
 import signal
@@ -15,8 +16,14 @@ import subprocess
 import sys
 import tempfile
 import time
+import xml.etree.ElementTree as xml
+
+import numpy as np
 
 PROGRAM, REPORT = (os.path.abspath(name) for name in sys.argv[1:3])
+sys.path.insert(0, os.path.dirname(REPORT))
+from retroforge_report import vtu  # noqa: E402
+
 ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 
@@ -125,6 +132,30 @@ def not_finite():
     judge("infinite results: no summary", not os.path.exists("infinite/summary.json"))
 
 
+def fields():
+    """Of the block upset evenly, its mesh remade before every other increment."""
+    done = run("simulate", "fields", "Contact/approach=1", "Remeshing/when=increments", "Remeshing/every=2")
+    judge("fields: ends", done.returncode == 0 and done.stdout.count("remeshed") == 1, done.stdout + done.stderr)
+    parts = [(float(p.get("timestep")), int(p.get("part")), p.get("file")) for p in xml.parse("fields/fields.pvd").iter("DataSet")]
+    judge("fields: three parts at five times", [p for _, p, _ in parts] == [0, 1, 2] * 5, parts)
+    judge("fields: the dies move", all(np.abs(vtu.read(f"fields/{file}").points[:, 2] - (0, 20 - 100 * t)[part - 1]).max() < 1e-9
+                                       for t, part, file in parts if part > 0))
+    billet, last = (vtu.read(f"fields/{parts[i][2]}") for i in (0, -3))
+    judge("fields: all of the billet's are zero", {**last.point_data, **last.cell_data}.keys() == {
+        **billet.point_data, **billet.cell_data}.keys() and not any(x.any() for x in billet.point_data.values()))
+    judge("fields: symmetry planes", np.array_equal(last.symmetry_planes[:, 3:], [[-1, 0, 0], [0, -1, 0]]), last.symmetry_planes)
+    side = math.sqrt(18 / 20)
+    for name, found, expected in (
+            ("displacement", last.point_data["displacement [mm]"], last.points * (1 - np.array([side, side, 20 / 18]))),
+            ("equivalent strain", last.cell_data["equivalent_strain"], math.log(20 / 18)),
+            ("von Mises stress", last.cell_data["von_mises_stress [MPa]"], 1.693 * 3**(1.139 / 2) * (100 / 18.25)**0.139),
+            ("touching die", last.point_data["touching_die"], np.select([last.points[:, 2] < 1e-3, last.points[:, 2] > 17.999],
+                                                                        [1, 2]))):
+        error = np.abs(found - expected).max() / np.abs(expected).max()
+        judge(f"fields: {name}", error < 2e-3, f"{error:.1e}")
+    reported("fields", "shapes.png")
+
+
 def failed():
     """In the second increment, for a reason that a mesh shows."""
     done = run("gradient", "failed", "Press/stroke=18", "Press/increments=6", "Press/max cuts=0", "Press/largest move=0.3",
@@ -203,7 +234,7 @@ def main():
                 text = text[:text.index("subsection Die lower")] + text[text.index("subsection Die upper"):]
             with open(name, "w", encoding="utf-8") as file:
                 file.write(text)
-        for test in (whole_part, beside, not_finite, failed, stopped, check):
+        for test in (whole_part, beside, not_finite, fields, failed, stopped, check):
             try:
                 test()
             except (KeyError, OSError, subprocess.SubprocessError) as error:
