@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""contrib/python: results of a run as Python has them; designs on one mesh, whose differences are the gradient; mistakes as
+exceptions with the program's message; the example ends where the gradient vanishes, with less than a third of the barrel.
+Usage: from_python.py FOLDER, with the program in the environment variable RETROFORGE"""
+import pathlib
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+FOLDER = pathlib.Path(sys.argv.pop(1)).resolve()
+sys.path.insert(0, str(FOLDER))
+import retroforge  # noqa: E402
+import straight_side  # noqa: E402
+
+CASE, RADII = straight_side.CASE, straight_side.RADII
+QUICK = {"Press/increments": 4, "Newton/tolerance": 1e-12}
+
+
+class FromPython(unittest.TestCase):
+    def test_results(self):
+        with tempfile.TemporaryDirectory() as folder:
+            forging = retroforge.run(CASE, QUICK, folder=folder)
+            self.assertTrue((pathlib.Path(folder) / "parameters.prm").is_file())
+            with self.assertRaisesRegex(retroforge.Error, "--overwrite"):
+                retroforge.run(CASE, QUICK, folder=folder)
+        self.assertEqual(list(forging.objectives), ["barrel", "energy"])
+        self.assertEqual(list(forging.gradients["energy"]), RADII)
+        self.assertEqual(forging.summary["increments"], 4)
+        np.testing.assert_array_equal(forging.history["increment"], [1, 2, 3, 4])
+        np.testing.assert_allclose(forging.history["stroke"], [1.25, 2.5, 3.75, 5.0])
+        self.assertEqual(forging.history["energy"][-1], forging.objectives["energy"])
+        np.testing.assert_array_equal(forging.gradient("barrel", RADII), list(forging.gradients["barrel"].values()))
+
+    def test_designs(self):
+        """On one mesh: differences over 2 um are the gradient but for the decisions that it freezes."""
+        nominal = retroforge.run(CASE, QUICK)
+        for name in RADII:
+            plus, minus = (retroforge.run(CASE, QUICK, {name: radius}, "simulate") for radius in (10.001, 9.999))
+            for objective, values in nominal.gradients.items():
+                difference = (plus.objectives[objective] - minus.objectives[objective]) / 0.002
+                self.assertAlmostEqual(difference / values[name], 1.0, delta=1e-4)
+            self.assertEqual(plus.gradients, {"barrel": {}, "energy": {}})
+
+    def test_mistakes(self):
+        for settings, at, message in (({"Press/strok": 1}, {}, "unknown parameter 'Press/strok'"),
+                                      ({}, {"billet/control point 9 r": 1.0}, "billet/control point 9 r"),
+                                      ({"Press/stroke": 14.9, "Press/max cuts": 0, "Press/increments": 3}, {}, "Press/stroke")):
+            with self.assertRaisesRegex(retroforge.Error, message) as caught:
+                retroforge.run(CASE, settings, at)
+            self.assertFalse(str(caught.exception).startswith("retroforge:"))
+        with self.assertRaisesRegex(retroforge.Error, "no_case.prm"):
+            retroforge.run("no_case.prm")
+
+    def test_values(self):
+        for value, text in ((True, "true"), (np.bool_(False), "false"), (3, "3"), (np.int64(4), "4"), (0.1, "0.1"),
+                            (np.float64(1 / 3), repr(1 / 3)), ((1, 2.5), "1, 2.5"), (np.zeros(2), "0.0, 0.0"), ("never", "never")):
+            self.assertEqual(retroforge.as_text(value), text)
+
+    def test_example(self):
+        start, _ = straight_side.barrel([10.0, 10.0])
+        found = straight_side.optimize()
+        self.assertTrue(found.success)
+        self.assertLess(found.nfev, 12)
+        self.assertLess(found.fun**0.5, 0.3 * start**0.5)
+        self.assertLess(np.abs(found.jac).max(), 0.01)
+
+
+if __name__ == "__main__":
+    unittest.main()
