@@ -8,7 +8,7 @@ from matplotlib import cm, colors
 from retroforge_report.refine import refined
 from retroforge_report.render import METAL, Scene, view_onto
 from retroforge_report.units import per_volume
-from retroforge_report.whole import clipped, whole
+from retroforge_report.whole import clipped, whole, whole_vectors
 
 MOST_ARROWS = 250
 MOVED_BY_MORE = 1e-3  # of the strongest: what counts when the eye looks for the place that matters
@@ -54,9 +54,9 @@ def _dies(step):
 
 
 def billet_sensitivity(mesh, field, objective, use_vtk):
-    """None when the objective does not depend on the shape."""
-    surface = mesh.surface()
-    density, normal = _per_area(surface, mesh.point_data[field][surface.node])
+    """Of the whole part, whose nodes all move as the model's. None when the objective does not depend on the shape."""
+    surface = whole(mesh.surface(), mesh.symmetry_planes)
+    density, normal = _per_area(surface, whole_vectors(mesh.point_data[field], mesh.surface(), mesh.symmetry_planes))
     if not density.any():
         return None
     scenes = Scene(surface.points, use_vtk), Scene(surface.points, use_vtk, margin=1.5)

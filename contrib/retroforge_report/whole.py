@@ -35,19 +35,27 @@ def whole(surface, planes):
     maps = symmetries(planes)
     if len(maps) == 1:
         return surface
-    n, outside = len(surface.points), _without(surface, planes)
-    points = np.concatenate([surface.points @ A.T + b for A, b in maps])
-    triangles = [surface.triangles[outside][:, ::int(np.sign(np.linalg.det(A)))] + n * copy
-                 for copy, (A, _) in enumerate(maps)]
-    return Surface(points, np.concatenate(triangles), np.tile(surface.cell[outside], len(maps)),
-                   np.tile(surface.node, len(maps)))
+    part = _without(surface, planes)
+    n = len(part.points)
+    triangles = [part.triangles[:, ::int(np.sign(np.linalg.det(A)))] + n * copy for copy, (A, _) in enumerate(maps)]
+    return Surface(np.concatenate([part.points @ A.T + b for A, b in maps]), np.concatenate(triangles),
+                   np.tile(part.cell, len(maps)), np.tile(part.node, len(maps)))
+
+
+def whole_vectors(vectors, surface, planes):
+    """At the points of the whole of a surface, from those of the mesh's nodes."""
+    part = whole(surface, planes)
+    maps = symmetries(planes)
+    return np.einsum("cij,cpj->cpi", [A for A, _ in maps], vectors[part.node].reshape(len(maps), -1, 3)).reshape(-1, 3)
 
 
 def _without(surface, planes):
-    """Which triangles do not lie in a plane."""
+    """What does not lie in a plane."""
     size = np.ptp(surface.points, axis=0).max()
     distances = [np.abs((surface.points - plane[:3]) @ plane[3:]) for plane in planes]
-    return ~np.any([(d[surface.triangles] < 1e-6 * size).all(axis=1) for d in distances], axis=0)
+    outside = ~np.any([(d[surface.triangles] < 1e-6 * size).all(axis=1) for d in distances], axis=0)
+    node, triangles = np.unique(surface.triangles[outside], return_inverse=True)
+    return Surface(surface.points[node], triangles.reshape(-1, 3), surface.cell[outside], surface.node[node])
 
 
 def clipped(surface, planes):
