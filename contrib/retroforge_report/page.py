@@ -71,6 +71,9 @@ class Page:
             return
         self.to.heading("Shape")
         self.to.picture("shapes", shapes.forging(self.run, self.use_vtk))
+        if len(self.run.final.workpiece.symmetry_planes):
+            self.to.note("Mirrored by the symmetry planes to the whole part, where they bound one, and cut open along them for "
+                         "what is inside. Fields are those of the last equilibrium solved; fields.pvd has more of them.")
 
     def force(self):
         if self.run.history is None:

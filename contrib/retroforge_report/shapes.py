@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib import cm, colors
 
 from retroforge_report.refine import refined
-from retroforge_report.render import METAL, Scene, view_onto
+from retroforge_report.render import FROM_THE_SIDE, METAL, Scene, view_onto
 from retroforge_report.units import per_volume
-from retroforge_report.whole import clipped, whole, whole_vectors
+from retroforge_report.whole import clipped, cut_open, whole, whole_vectors
 
 MOST_ARROWS = 250
 MOVED_BY_MORE = 1e-3  # of the strongest: what counts when the eye looks for the place that matters
@@ -20,14 +20,16 @@ CELL_FIELDS = (("equivalent_strain", "equivalent strain"), ("strain_rate [1/s]",
 
 
 def forging(run, use_vtk):
-    """The whole part and the dies, before and after; the last shape again with fields that were written."""
+    """The whole part and the dies, before and after; the last shape again with fields that were written, cut open for those of
+    the inside."""
     name = "shape where it failed" if run.failure else "final shape" if run.finished else "last shape"
     mesh = run.final.workpiece
     first, last = (whole(step.workpiece.surface(), step.workpiece.symmetry_planes) for step in (run.initial, run.final))
+    opened = cut_open(mesh.surface(), mesh.symmetry_planes, FROM_THE_SIDE.eye)
     panels = [("initial shape", first, None, None, None, run.initial), (name, last, None, None, None, run.final)]
     for field, label in CELL_FIELDS:
         if field in mesh.cell_data:
-            panels.append((f"{name}, {label.split(' [')[0]}", last, mesh.cell_data[field][last.cell], label, "viridis", None))
+            panels.append((f"{name}, {label.split(' [')[0]}", opened, mesh.cell_data[field][opened.cell], label, "viridis", None))
     if "contact_pressure [MPa]" in mesh.point_data:
         pressure = mesh.point_data["contact_pressure [MPa]"][last.node]
         touching = (pressure[last.triangles] > 0).all(axis=1)

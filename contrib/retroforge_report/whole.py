@@ -33,13 +33,24 @@ def symmetries(planes):
 def whole(surface, planes):
     """The surface, without what lies in symmetry planes, and its mirror images; as it is where they bound no whole part."""
     maps = symmetries(planes)
+    return surface if len(maps) == 1 else _images(_without(surface, planes), maps)
+
+
+def cut_open(surface, planes, eye):
+    """The whole but for the image that is next to the eye: one looks onto the planes, into the part."""
+    maps = symmetries(planes)
     if len(maps) == 1:
         return surface
-    part = _without(surface, planes)
-    n = len(part.points)
-    triangles = [part.triangles[:, ::int(np.sign(np.linalg.det(A)))] + n * copy for copy, (A, _) in enumerate(maps)]
-    return Surface(np.concatenate([part.points @ A.T + b for A, b in maps]), np.concatenate(triangles),
-                   np.tile(part.cell, len(maps)), np.tile(part.node, len(maps)))
+    middle = surface.points.mean(axis=0)
+    nearest = np.argmax([(A @ middle + b) @ eye for A, b in maps])
+    return _images(surface, maps[:nearest] + maps[nearest + 1:])
+
+
+def _images(surface, maps):
+    n = len(surface.points)
+    triangles = [surface.triangles[:, ::int(np.sign(np.linalg.det(A)))] + n * copy for copy, (A, _) in enumerate(maps)]
+    return Surface(np.concatenate([surface.points @ A.T + b for A, b in maps]), np.concatenate(triangles),
+                   np.tile(surface.cell, len(maps)), np.tile(surface.node, len(maps)))
 
 
 def whole_vectors(vectors, surface, planes):

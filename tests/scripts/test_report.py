@@ -97,6 +97,9 @@ class Report(ScratchTest):
             np.testing.assert_allclose(whole.whole_vectors(positions, cube, planes[:n]), part.points, atol=1e-9)
             volume = (part.area_vectors() * part.to_triangles(part.points)).sum() / 3  # all normals point outwards
             self.assertAlmostEqual(volume, 2**n * SIDE**3, 4)
+        opened = whole.cut_open(cube, planes[:2], np.array([1.0, 2.0, 1.0]))  # three of four, with their faces inside
+        self.assertAlmostEqual(np.linalg.norm(opened.area_vectors(), axis=1).sum(), 3 * 6 * SIDE**2, 6)
+        self.assertFalse((opened.points > 1e-9)[:, :2].all(axis=1).any())
         wedge = [np.array([1.0, 2.0, 0.0, np.sin(a), -np.cos(a), 0.0]) for a in (0, np.pi / 3)]
         self.assertEqual(len(whole.symmetries(wedge)), 6)
         without_end = [np.array([x, 0.0, 0.0, 1.0, 0.0, 0.0]) for x in (0.0, 1.0)]
