@@ -201,7 +201,7 @@ namespace retroforge
         const double to_ends   = std::min((vertices_[*v] - a).norm(), (vertices_[*v] - b).norm());
         if (!(is_beside(edge.a) || is_beside(edge.b)) || to_ends >= width)
           throw Error(where,
-                      "there is a crack at " + at(vertices_[*v]) + ", narrower than " + std::to_string(width),
+                      "there is a crack at " + at(vertices_[*v]) + ", narrower than " + as_text(width),
                       "facets that meet must share their vertices",
                       "close it with a mesh repair tool, or export anew with a finer tolerance");
       }

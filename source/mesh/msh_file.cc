@@ -98,8 +98,7 @@ namespace retroforge
         const int    binary = in_.integer_in_text(), data_size = in_.integer_in_text();
         in_.rest_of_line();
         if (version_ != 0. || !((version >= 2. && version < 3.) || (version >= 4. && version < 4.2)))
-          in_.fail("the version is " + std::to_string(version),
-                   "versions 2, 4.0 and 4.1 are read, one in a file");
+          in_.fail("the version is " + as_text(version), "versions 2, 4.0 and 4.1 are read, one in a file");
         if (binary < 0 || binary > 1 || data_size != 8)
           in_.fail("file type is " + std::to_string(binary) + ", data size " + std::to_string(data_size),
                    "the type is 0 (ASCII) or 1 (binary), the data size 8");

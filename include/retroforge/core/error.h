@@ -2,6 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/core/text.h>
+
 #include <stdexcept>
 #include <string>
 

@@ -21,7 +21,7 @@ namespace retroforge
         if (!(tet_volume(corners(mesh.cells[c], X)) > 0))
           throw Error("remeshing",
                       "tetrahedron " + std::to_string(c) + " has the volume " +
-                        std::to_string(tet_volume(corners(mesh.cells[c], X))),
+                        as_text(tet_volume(corners(mesh.cells[c], X))),
                       "local remeshing needs positive volumes",
                       "take smaller increments, remesh earlier, or rebuild the mesh from its surface");
     }

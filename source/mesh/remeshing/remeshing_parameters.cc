@@ -13,8 +13,8 @@ namespace retroforge
     {
       if (less > more)
         throw Error("Remeshing/" + less_name,
-                    "is " + std::to_string(less),
-                    "must not exceed `" + more_name + "`, which is " + std::to_string(more),
+                    "is " + as_text(less),
+                    "must not exceed `" + more_name + "`, which is " + as_text(more),
                     "lower the one or raise the other");
     }
   } // namespace
