@@ -148,6 +148,36 @@ namespace retroforge
         }
     }
 
+    CellIndex body_of(std::vector<CellIndex> &next, CellIndex c)
+    {
+      while (next[c] != c)
+        c = next[c] = next[next[c]];
+      return c;
+    }
+
+    // Each tetrahedron leads, by way of others, to the first one of its body.
+    void check_connected(const TetMesh &mesh, const std::string &where)
+    {
+      std::vector<CellIndex> next(mesh.n_cells());
+      std::iota(next.begin(), next.end(), 0);
+      const auto faces = sorted_cell_faces(mesh.cells);
+      for (std::size_t i = 1; i < faces.size(); ++i)
+        if (faces[i - 1].key == faces[i].key)
+        {
+          const auto [first, second] =
+            std::minmax({body_of(next, faces[i - 1].cell), body_of(next, faces[i].cell)});
+          next[second] = first;
+        }
+      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+        if (body_of(next, c) != 0)
+          throw Error(
+            where,
+            "tetrahedra 0 at " + in_words(mesh.X[mesh.cells[0][0]]) + " and " + std::to_string(c) + " at " +
+              in_words(mesh.X[mesh.cells[c][0]]) + " belong to bodies that no face connects",
+            "a workpiece is one body, and is given once",
+            "keep one of the bodies, or join them by merging the nodes that stand in the same place");
+    }
+
     // Sorted index of the listed boundary faces; throws when two are the same.
     std::vector<std::pair<FaceKey, std::size_t>> listed_faces(const TetMesh &mesh, const std::string &where)
     {
@@ -274,5 +304,6 @@ namespace retroforge
     check_boundary(mesh, where);
     check_edges(mesh, where);
     check_fans(mesh, where);
+    check_connected(mesh, where);
   }
 } // namespace retroforge

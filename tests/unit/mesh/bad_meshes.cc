@@ -74,4 +74,12 @@ int main()
     check_mesh(with_boundary({o, x, y, z, -1. * x, -1. * y, -1. * z}, {{{0, 1, 2, 3}}, {{0, 5, 4, 6}}}),
                "mesh");
   });
+  const Vec3 far = 9. * x;
+  print_error("two bodies", [&]() {
+    check_mesh(with_boundary({o, x, y, z, far, far + x, far + y, far + z}, {{{0, 1, 2, 3}}, {{4, 5, 6, 7}}}),
+               "mesh");
+  });
+  print_error("twice in one place", [&]() {
+    check_mesh(with_boundary({o, x, y, z, o, x, y, z}, {{{0, 1, 2, 3}}, {{4, 5, 6, 7}}}), "mesh");
+  });
 }
