@@ -167,12 +167,13 @@ namespace retroforge
     std::vector<StlFacet> parse_binary(const std::string &file_name, const std::string &bytes)
     {
       const std::size_t n = unpack(bytes.data() + header_bytes), n_whole = header_bytes + 4 + n * facet_bytes;
-      if (bytes.size() < n_whole)
+      // Some programs leave a few bytes behind the last facet.
+      if (bytes.size() < n_whole || bytes.size() >= n_whole + facet_bytes)
         throw Error(file_name,
-                    "has " + std::to_string(bytes.size()) + " bytes where its " + std::to_string(n) +
-                      " facets take " + std::to_string(n_whole),
+                    "has " + std::to_string(bytes.size()) + " bytes where the " + std::to_string(n) +
+                      " facets that it announces take " + std::to_string(n_whole),
                     "a binary STL file has 84 bytes and 50 per facet",
-                    "the file is cut short or no STL file: copy or export it anew");
+                    "the file is damaged or no STL file: copy or export it anew");
       std::vector<StlFacet> facets(n);
       for (std::size_t f = 0; f < n; ++f)
       {
@@ -258,9 +259,12 @@ namespace retroforge
       std::ostringstream bytes;
       std::error_code    ignored;
       const bool         is_folder = std::filesystem::is_directory(file_name, ignored);
-      if (!in || is_folder || (in.peek() != EOF && !(bytes << in.rdbuf())))
+      const bool         is_device = std::filesystem::is_character_file(file_name, ignored);
+      if (!in || is_folder || is_device || (in.peek() != EOF && !(bytes << in.rdbuf())))
         throw Error(file_name,
-                    is_folder ? "is a folder" : "cannot be read",
+                    is_folder   ? "is a folder"
+                    : is_device ? "is a device"
+                                : "cannot be read",
                     "the file of a die must exist",
                     "paths are relative to the folder the program was started in");
       return bytes.str();

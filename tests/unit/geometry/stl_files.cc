@@ -153,6 +153,7 @@ void check_bad_files()
   show_error("four corners", solid(facet("0 0 0,1 0 0,1 1 0,0 1 0")));
   show_error("another format", "ply\nformat ascii 1.0\n");
   show_error("binary cut", binary.substr(0, binary.size() - 1));
+  show_error("binary, one facet more than announced", binary + binary.substr(84, 50));
   show_error("binary without facets", binary.substr(0, 80) + std::string(4, '\0'));
   show_error("binary, not finite", nan);
   show_error("two equal corners", solid(good + facet("0 0 0,1 1 0,1 1 0")));
