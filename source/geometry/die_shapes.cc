@@ -13,7 +13,7 @@ namespace retroforge
 {
   namespace
   {
-    constexpr double pi = dealii::numbers::PI;
+    constexpr double pi = dealii::numbers::PI, most_facets = 1e6;
 
     template <typename Number>
     struct Point2
@@ -74,10 +74,10 @@ namespace retroforge
       for (const auto &[name, x] : {std::make_pair("depth", &profile.depth),
                                     std::make_pair("edge radius", &profile.edge),
                                     std::make_pair("fillet radius", &profile.fillet)})
-        require(value_of(*x) > 0., where + "/" + name, "is " + std::to_string(value_of(*x)), "must be > 0");
+        require(value_of(*x) > 0., where + "/" + name, "is " + as_text(value_of(*x)), "must be > 0");
       require(value_of(profile.draft) >= 0. && value_of(profile.draft) < 80.,
               where + "/draft angle",
-              "is " + std::to_string(value_of(profile.draft)),
+              "is " + as_text(value_of(profile.draft)),
               "must be from 0 to 80 degrees");
       const Number draft = profile.draft * (pi / 180.), turn = 0.5 * pi - draft, slope = tan(draft),
                    tangent = tan(Number(0.5 * turn));
@@ -128,12 +128,19 @@ namespace retroforge
     }
 
     template <typename Number>
-    ShapeMesh<Number> make_rings(const Outline<Number> &outline,
+    ShapeMesh<Number> make_rings(const std::string     &where,
+                                 const Outline<Number> &outline,
                                  const Section<Number> &section,
                                  const Number          &outer,
                                  const unsigned int     n_halves)
     {
       using std::sqrt;
+      const double n_facets =
+        2. * section.points.size() * n_halves * (outline(section.points[0].x).size() - 1.);
+      require(n_facets <= most_facets,
+              where,
+              "has " + as_text(n_facets) + " facets",
+              "a die may have 1e6, and its `chord error' sets their number");
       ShapeMesh<Number> mesh;
       const auto        add = [&mesh](const Number &x, const Number &y, const Number &z) {
         Vector3<Number> v;
@@ -197,31 +204,30 @@ namespace retroforge
     const double hub = value_of(shape.hub), half = value_of(b), corner = value_of(shape.corner);
     require(half > value_of(in),
             where + "/arm width",
-            "is " + std::to_string(2. * half) + " where draft and fillet take " +
-              std::to_string(2. * value_of(in)),
+            "is " + as_text(2. * half) + " where draft and fillet take " + as_text(2. * value_of(in)),
             "a part of the floor must remain in the arms");
     require(corner > value_of(out),
             where + "/corner radius",
-            "is " + std::to_string(corner) + " where the rounded edge takes " + std::to_string(value_of(out)),
+            "is " + as_text(corner) + " where the rounded edge takes " + as_text(value_of(out)),
             "the corner in plan must be rounder than the edge");
     // The corner's arc is tangent to the hub's circle and to the arm's side.
     const Number reach = shape.hub + shape.corner, rise = b + shape.corner;
     require(value_of(rise) < value_of(reach),
             where + "/hub radius",
-            "is " + std::to_string(hub) + " where the arms are " + std::to_string(2. * half) + " wide",
+            "is " + as_text(hub) + " where the arms are " + as_text(2. * half) + " wide",
             "the hub must be wider than an arm");
     const Number foot = sqrt(Number(reach * reach - rise * rise)), angle = atan2(rise, foot);
     require(value_of(angle) < pi / 3.,
             where + "/corner radius",
-            "is " + std::to_string(corner),
+            "is " + as_text(corner),
             "corners of neighbouring arms must leave a part of the hub between them");
     require(value_of(shape.length) - half > value_of(foot),
             where + "/arm length",
-            "is " + std::to_string(value_of(shape.length)),
+            "is " + as_text(value_of(shape.length)),
             "an arm must be longer than hub and corner");
     require(value_of(shape.outer) > value_of(Number(shape.length + out)),
             where + "/outer radius",
-            "is " + std::to_string(value_of(shape.outer)),
+            "is " + as_text(value_of(shape.outer)),
             "the face must surround the cavity");
     const unsigned int n_cap = segments(value_of(Number(b + out)), 0.5 * pi, error),
                        n_corner =
@@ -237,7 +243,7 @@ namespace retroforge
       append_arc(points, {zero, zero}, Number(shape.hub - o), angle, Number(pi / 3.), n_hub);
       return points;
     };
-    return make_rings(outline, section, shape.outer, 6);
+    return make_rings(where, outline, section, shape.outer, 6);
   }
 
   template <typename Number>
@@ -250,12 +256,12 @@ namespace retroforge
     const auto   section = make_section(where, shape.profile, error, segments);
     require(value_of(shape.mouth) > value_of(section.reach_in),
             where + "/mouth radius",
-            "is " + std::to_string(value_of(shape.mouth)) + " where draft and fillet take " +
-              std::to_string(value_of(section.reach_in)),
+            "is " + as_text(value_of(shape.mouth)) + " where draft and fillet take " +
+              as_text(value_of(section.reach_in)),
             "a part of the floor must remain");
     require(value_of(shape.outer) > value_of(Number(shape.mouth + section.reach_out)),
             where + "/outer radius",
-            "is " + std::to_string(value_of(shape.outer)),
+            "is " + as_text(value_of(shape.outer)),
             "the face must surround the cavity");
     const unsigned int    n = segments(value_of(Number(shape.mouth + section.reach_out)), 0.5 * pi, error);
     const Outline<Number> outline = [&](const Number &o) {
@@ -264,7 +270,7 @@ namespace retroforge
       append_arc(points, {zero, zero}, Number(shape.mouth - o), zero, Number(0.5 * pi), n);
       return points;
     };
-    return make_rings(outline, section, shape.outer, 4);
+    return make_rings(where, outline, section, shape.outer, 4);
   }
 
 #define RETROFORGE_INSTANTIATE(Number)                                     \
