@@ -16,9 +16,10 @@ def effects(objective, parameters):
     """Largest first; then, in the order of the run, parameters without a size."""
     result = []
     for parameter in parameters:
-        derivative, value = parameter.get("gradient", {}).get(objective["name"]), parameter["value"]
+        derivative = parameter.get("gradient", {}).get(objective["name"])
+        scale = parameter.get("scale", parameter["value"])
         if derivative is not None:
-            result.append(Effect(parameter, derivative, 0.01 * abs(value) * derivative if value else None))
+            result.append(Effect(parameter, derivative, 0.01 * abs(scale) * derivative if scale else None))
     return sorted(result, key=lambda e: -1.0 if e.for_one_percent is None else abs(e.for_one_percent), reverse=True)
 
 

@@ -67,7 +67,10 @@ namespace retroforge
 
     Json as_json(const Summary::Parameter &parameter)
     {
-      Json json = {{"name", parameter.name}, {"value", number(parameter.value)}, {"unit", parameter.unit}};
+      Json json = {{"name", parameter.name},
+                   {"value", number(parameter.value)},
+                   {"unit", parameter.unit},
+                   {"scale", number(parameter.scale)}};
       add_unless_empty(json, "gradient", number_map(parameter.gradient));
       return json;
     }

@@ -40,7 +40,8 @@ namespace retroforge
       std::string                   name;
       double                        value = unknown;
       std::string                   unit;
-      std::map<std::string, double> gradient; ///< by objective
+      std::map<std::string, double> gradient;        ///< by objective
+      double                        scale = unknown; ///< what per cent of the parameter are taken of
     };
 
     /// Finite differences of one step: with the recorded decisions replayed, and free (decided anew).

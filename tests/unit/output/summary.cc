@@ -25,7 +25,7 @@ Summary filled()
   s.objectives            = {{"energy", 1.5, "mJ", {{"deformation", 1.25}, {"friction", 0.25}}, {}, 6.},
                              {"maximum effort", 8., "N", {}, {{"true maximum", 9.}}}};
   s.whole                 = {4., Summary::unknown};
-  s.parameters            = {{"material/K", 1., "MPa s^m", {{"energy", 1.5}, {"volume", Summary::unknown}}}};
+  s.parameters            = {{"material/K", 1., "MPa s^m", {{"energy", 1.5}, {"volume", Summary::unknown}}, 2.}};
   s.increments            = 20;
   s.cuts                  = 0;
   s.remeshings            = 3;
