@@ -25,6 +25,8 @@ namespace retroforge
         case ENOENT:
         case ENOTDIR:
           return "make the folder, or choose another one with --output DIR";
+        case EISDIR:
+          return "remove the folder of that name, or choose another place with --output DIR";
         case EACCES:
         case EPERM:
         case EROFS:
@@ -73,6 +75,17 @@ namespace retroforge
     }
     if (error != 0)
       throw_write_error(file, error);
+  }
+
+  void check_writable(const std::string &file)
+  {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored))
+      throw_write_error(file, EISDIR);
+    const std::string written = file + ".tmp";
+    if (const int error = write_directly(written, ""); error != 0)
+      throw_write_error(file, error);
+    std::remove(written.c_str());
   }
 
   std::string read_file(const std::string &file)

@@ -49,6 +49,12 @@ int main()
   all_writers("nowhere/file");
   write_file("plain_file", "old");
   all_writers("plain_file/file");
+  show([] { check_writable("plain_file/file"); });
+  show([] { check_writable("nowhere/file"); });
+  std::filesystem::create_directory("a_folder");
+  show([] { check_writable("a_folder"); });
+  show([] { check_writable("plain_file"); });
+  std::cout << "left as it was: " << read_file("plain_file") << '\n';
   show([] { make_directory("plain_file/folder"); });
   show([] { make_directory("made/folder"); });
   show([] { read_file("nowhere/file"); });
