@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/exception_message.h>
-#include <retroforge/core/parameter_list.h>
 #include <retroforge/core/version.h>
 #include <retroforge/scan.h>
 #include <retroforge/simulation.h>
@@ -19,12 +18,7 @@ namespace
     else if (command.version)
       std::cout << "Retroforge " << retroforge::version << ' ' << retroforge::commit << '\n';
     else
-    {
-      dealii::ParameterHandler prm;
-      retroforge::Parameters   parameters;
-      parameters.add_parameters(prm, {"lower", "upper"}, {"energy"});
-      retroforge::print_parameters(prm, std::cout);
-    }
+      retroforge::Parameters::print_template(std::cout);
     return 0;
   }
 } // namespace

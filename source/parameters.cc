@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
 #include <retroforge/core/parameter_input.h>
 #include <retroforge/core/parameter_list.h>
 #include <retroforge/parameters.h>
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <sstream>
 
 namespace retroforge
@@ -52,8 +52,8 @@ namespace retroforge
       "layer",
       layer,
       "Bends the speed at which a gap may close, so that the force on an arriving node sets in gradually: "
-      "smooths the objective at less bias than `approach' does. 0.5 is moderate, 0.3 strong; 0, or the sharp "
-      "law, for none. In units of approach times the increment's stroke. Units: none.",
+      "smooths the objective at less bias than `approach' does. 0.5 is moderate, 0.3 strong, 0.1 the least; "
+      "0, or the sharp law, for none. In units of approach times the increment's stroke. Units: none.",
       Double(0.));
     prm.add_parameter(
       "ramp width",
@@ -73,6 +73,16 @@ namespace retroforge
       "v0 in |dv|^2 -> |dv|^2 + v0^2, as a part of the leading die's speed. Part of the model. Units: none.",
       Double(0.));
     prm.leave_subsection();
+  }
+
+  void ContactParameters::check() const
+  {
+    constexpr double least = 0.1;
+    if (law == "smooth" && layer > 0. && layer < least)
+      throw Error("Contact/layer",
+                  "is " + as_text(layer) + ", with which a die is felt over thousands of increments' strokes",
+                  "it is 0, or " + as_text(least) + " at least",
+                  "use 0.3 for a strong layer, 0 for none");
   }
 
   void AdjointParameters::add_parameters(dealii::ParameterHandler &prm)
@@ -224,35 +234,16 @@ namespace retroforge
                     "rename it and its section");
     }
 
-    /// Names of dies and objectives must be known before their sections can be: they are looked for ahead of
-    /// the real reading.
-    std::vector<std::string> names_ahead(const std::string                                      &section,
-                                         const std::string                                      &by_default,
-                                         const std::string                                      &file,
-                                         const std::vector<std::pair<std::string, std::string>> &overrides)
+    /// The names that a parameter lists. Those of dies and objectives must be known before their sections can
+    /// be declared.
+    std::vector<std::string> names_in(const std::map<std::string, std::string> &values,
+                                      const std::string                        &where,
+                                      const std::string                        &by_default)
     {
-      std::string   names = by_default;
-      std::ifstream in(file);
-      for (std::string line, current; std::getline(in, line);)
-      {
-        std::istringstream words(line.substr(0, line.find('#')));
-        std::string        first, second, equals;
-        words >> first >> second;
-        if (first == "subsection")
-          current = second;
-        else if (first == "set" && second == "names" && current == section && words >> equals &&
-                 equals == "=")
-        {
-          names.clear();
-          std::getline(words, names);
-        }
-      }
-      for (const auto &[path, value] : overrides)
-        if (path == section + "/names")
-          names = value;
-      const std::vector<std::string> all   = dealii::Utilities::split_string_list(names);
-      const std::string              where = section + "/names";
-      constexpr std::size_t          most  = 100;
+      const auto                     given = values.find(where);
+      const std::vector<std::string> all =
+        dealii::Utilities::split_string_list(given == values.end() ? by_default : given->second);
+      constexpr std::size_t most = 100;
       if (all.size() > most)
         throw Error(where,
                     "holds " + std::to_string(all.size()) + " names",
@@ -266,28 +257,87 @@ namespace retroforge
       }
       return all;
     }
+
+    std::vector<std::string> objective_names(const std::map<std::string, std::string> &values)
+    {
+      const std::string              where = "Objectives/names";
+      const std::vector<std::string> names = names_in(values, where, "energy"),
+                                     types = ObjectiveParameters::types();
+      for (const std::string &name : names)
+        if (std::find(types.begin(), types.end(), name) == types.end() &&
+            values.count("Objective " + name + "/type") == 0)
+        {
+          const std::string meant = nearest_name(name, types, tolerated_edits(name));
+          throw Error(where,
+                      "'" + name + "' is no type of objective, and `Objective " + name + "' sets none",
+                      "the types are " + join(types),
+                      meant.empty() ? "name one of them, or set the type in that section"
+                                    : "did you mean '" + meant + "'?");
+        }
+      return names;
+    }
   } // namespace
+
+  void Parameters::print_template(std::ostream &out)
+  {
+    dealii::ParameterHandler prm;
+    Parameters               parameters;
+    parameters.add_parameters(prm, {"lower", "upper"}, {"energy"});
+    set_parameters(prm,
+                   parameter_lines_of(R"(subsection Dies
+  set names = lower, upper
+end
+subsection Die lower
+  set facing   = 0, 0, 1
+  set friction = 0.3
+end
+subsection Die upper
+  set point    = 0, 0, 50
+  set facing   = 0, 0, -1
+  set velocity = 0, 0, -100
+  set friction = 0.3
+end
+)",
+                                      "template"));
+    print_parameters(prm, out);
+  }
 
   Parameters Parameters::read(const std::string                                      &file,
                               const std::vector<std::pair<std::string, std::string>> &overrides,
                               std::string                                            &echo)
   {
-    Parameters               parameters;
-    dealii::ParameterHandler prm;
-    parameters.add_parameters(
-      prm, names_ahead("Dies", "", file, overrides), names_ahead("Objectives", "energy", file, overrides));
-    read_parameters(prm, file, overrides);
+    const std::vector<ParameterLine> lines  = read_parameter_lines(file, overrides);
+    const auto                       values = parameter_values(lines);
+    Parameters                       parameters;
+    dealii::ParameterHandler         prm;
+    parameters.add_parameters(prm, names_in(values, "Dies/names", ""), objective_names(values));
+    set_parameters(prm, lines);
     parameters.check_all();
+    parameters.find_without_effect(declared_parameters(prm));
     std::ostringstream text;
     print_parameters(prm, text);
     echo = text.str();
     return parameters;
   }
 
+  void Parameters::find_without_effect(const std::vector<ParameterEntry> &entries)
+  {
+    const auto add = [&](const std::string &chooser, const ReadBy &read_by) {
+      const auto found = settings_without_effect(entries, chooser, read_by);
+      without_effect.insert(without_effect.end(), found.begin(), found.end());
+    };
+    add("Billet/shape", BilletParameters::read_by_shape());
+    for (const DieParameters &die : dies)
+      add("Die " + die.name + "/shape", DieParameters::read_by_shape());
+    for (const ObjectiveParameters &objective : objectives.all)
+      add("Objective " + objective.name + "/type", ObjectiveParameters::read_by_type());
+  }
+
   void Parameters::check_all()
   {
     billet.check();
     material.check();
+    contact.check();
     remeshing.check();
     scan.check();
     if (dies.empty())
@@ -322,12 +372,15 @@ namespace retroforge
                       "give it a velocity or name another");
         return d;
       }
+    std::vector<std::string> names;
+    for (const DieParameters &die : dies)
+      names.push_back(die.name);
     if (press.leading_die.empty())
       throw Error("Dies", "no die moves", "one at least must", "give a die a velocity");
     throw Error("Press/leading die",
                 "there is no die '" + press.leading_die + "'",
-                "it must be one of Dies/names",
-                "leave it empty for the first die that moves");
+                "the dies are: " + join(names),
+                "name one of them, or leave it empty for the first die that moves");
   }
 
   double Parameters::height(const double size) const
@@ -364,7 +417,7 @@ namespace retroforge
       const double     number = std::max(1., std::ceil(press.stroke / smooth_step - 1e-9));
       if (!(number <= most))
         throw Error("Press/stroke",
-                    "is so long that it takes " + std::to_string(number) + " increments",
+                    "is so long that it takes " + as_text(number) + " increments",
                     "there may be 1e9",
                     "shorten the stroke, or set Press/increments");
       press.increments = number;
@@ -397,14 +450,15 @@ namespace retroforge
     return process;
   }
 
-  Objectives Parameters::make_objectives(const std::vector<Die> &made_dies) const
+  Objectives Parameters::make_objectives(const std::vector<Die> &made_dies, const TetMesh &made_billet) const
   {
     std::vector<DieState<double>> states;
     for (const DieParameters &die : dies)
       states.push_back(die.initial_state());
     Objectives made;
     for (const ObjectiveParameters &objective : objectives.all)
-      made.push_back(objective.make({made_dies, states, leading_die(), press.stroke, material.consistency}));
+      made.push_back(
+        objective.make({made_dies, states, leading_die(), press.stroke, material.consistency, made_billet}));
     return made;
   }
 

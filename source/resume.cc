@@ -1,39 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/parameter_input.h>
 #include <retroforge/resume.h>
 
 #include <map>
-#include <sstream>
 
 namespace retroforge
 {
   namespace
   {
-    std::string trimmed(const std::string &text)
-    {
-      const auto begin = text.find_first_not_of(" \t"), end = text.find_last_not_of(" \t");
-      return begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
-    }
-
-    /// Values by Section/name of a text as print_parameters() writes it.
     std::map<std::string, std::string> values_of(const std::string &parameters)
     {
-      std::map<std::string, std::string> values;
-      std::istringstream                 lines(parameters);
-      std::vector<std::string>           paths = {""}; // of the sections that are open
-      for (std::string line; std::getline(lines, line);)
-      {
-        line              = trimmed(line);
-        const auto equals = line.find('=');
-        if (line.rfind("subsection ", 0) == 0)
-          paths.push_back(paths.back() + trimmed(line.substr(11)) + "/");
-        else if (line == "end" && paths.size() > 1)
-          paths.pop_back();
-        else if (line.rfind("set ", 0) == 0 && equals != std::string::npos)
-          values[paths.back() + trimmed(line.substr(4, equals - 4))] = trimmed(line.substr(equals + 1));
-      }
-      return values;
+      return parameter_values(parameter_lines_of(parameters, "parameters of the record"));
     }
 
     bool changes_the_run(const std::string &path)

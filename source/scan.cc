@@ -188,6 +188,8 @@ namespace retroforge
   int Scan::run()
   {
     prepare_folder();
+    for (const char *file : {"parameters.prm", "scan.csv", "scan.json"})
+      check_writable(command_.output_directory + "/" + file);
     write_file(command_.output_directory + "/parameters.prm", echo_);
     const std::vector<ScanPoint *> points = to_do();
     const std::size_t              all    = lines_.size() * parameters_.scan.points;
@@ -198,6 +200,8 @@ namespace retroforge
                 parameters_.scan.points,
                 all,
                 at_a_time());
+    for (const std::string &sentence : parameters_.without_effect)
+      std::printf("  note: %s\n", sentence.c_str());
     if (command_.resume)
       std::printf("  %zu of them are finished and reused\n", all - points.size());
     std::fflush(stdout);

@@ -16,8 +16,8 @@
 #include <retroforge/output/vtu_writer.h>
 #include <retroforge/record/record_file.h>
 #include <retroforge/resume.h>
+#include <retroforge/scene_checks.h>
 #include <retroforge/simulation.h>
-#include <retroforge/solver/rigid_modes.h>
 
 #include <algorithm>
 #include <cctype>
@@ -156,14 +156,16 @@ namespace retroforge
                parameters_.newton,
                parameters_.linear_solver,
                comm}
-      , objectives_(parameters_.make_objectives(model_.dies))
+      , objectives_(parameters_.make_objectives(model_.dies, billet_))
       , combinations_(parameters_.combinations(objectives_))
       , first_leg_(std::make_shared<Leg>(billet_, model_, timings_))
       , remesher_(parameters_.remeshing, parameters_.edge_length(billet_), model_.dies, billet_.patches, comm)
       , forging_(model_, parameters_.press, remesher_, timings_)
       , trace_(objectives_, model_, process_)
   {
-    check_billet_against_dies();
+    check_scene(parameters_, first_leg_->scene, process_, X_0_);
+    if (!parameters_.scan.parameter.empty())
+      design_.check_offered(parameters_.scan.parameter, "Scan/parameter");
   }
 
   Simulation::~Simulation() = default;
@@ -173,46 +175,21 @@ namespace retroforge
     return std::cbrt(volume(billet_.cells, billet_.X));
   }
 
-  void Simulation::check_billet_against_dies() const
+  void Simulation::check_outputs() const
   {
-    // A neighbour of a sound design may begin a little inside a die: contact pushes it out as the run begins.
-    const double allowed = (parameters_.design.at.empty() ? 1e-3 : 0.05) * billet_size();
-    double       nearest = std::numeric_limits<double>::max();
-    for (unsigned int d = 0; d < model_.dies.size(); ++d)
-    {
-      const double least_depth = 0.1 * parameters_.edge_length(billet_);
-      if (model_.dies[d].surface() && parameters_.dies[d].depth > 0. &&
-          parameters_.dies[d].depth < least_depth)
-        throw Error("Die " + parameters_.dies[d].name + "/depth of contact",
-                    "is " + as_text(parameters_.dies[d].depth) + " mm",
-                    "nodes deeper are lost to the die, so it must be a tenth of the element size at least, " +
-                      as_text(least_depth) + " mm",
-                    "leave it out, which takes a tenth of the die's extent");
-      double deepest = 0.;
-      for (NodeIndex k = 0; k < billet_.n_nodes(); ++k)
-        if (first_leg_->scene.topology.is_on_surface(k))
-        {
-          const double delta = model_.dies[d].signed_distance(X_0_[k], process_.dies[d].displacement);
-          nearest            = std::min(nearest, delta);
-          deepest            = std::max(deepest, -delta);
-        }
-      if (deepest > allowed)
-        throw Error(
-          "Die " + parameters_.dies[d].name,
-          "the billet stands " + as_text(deepest) + " mm inside it",
-          "a billet starts outside of all dies",
-          "move the die's point, or the billet (Billet/translation), or turn the die's facing round");
-    }
-    if (nearest > parameters_.press.stroke + billet_size())
-      throw Error("Dies",
-                  "none comes near the billet: the nearest is " + as_text(nearest) + " mm away",
-                  "a die must be within the stroke of " + as_text(parameters_.press.stroke) + " mm",
-                  "move the dies' points or the billet");
-    if (const unsigned int n = n_free_rigid_modes(first_leg_->scene, process_.at_stroke(0.), X_0_); n > 0)
-      throw Error("Dies",
-                  "the billet can slide or spin freely in " + std::to_string(n) + " rigid motion(s)",
-                  "its velocity must be unique",
-                  "cut it by symmetry planes, or give a die some friction");
+    const std::string       &folder = command_.output_directory;
+    std::vector<std::string> files  = {
+       "parameters.prm", "history.csv", "objectives.csv", "fields.pvd", "summary.json"};
+    if (command_.command != "simulate")
+      files.push_back("sensitivity.vtu");
+    for (const Die &die : model_.dies)
+      if (die.surface())
+      {
+        files.push_back("die_" + die.name + ".stl");
+        files.push_back("sensitivity_die_" + die.name + ".vtu");
+      }
+    for (const std::string &file : files)
+      check_writable(folder + "/" + file);
   }
 
   int Simulation::run()
@@ -221,6 +198,7 @@ namespace retroforge
     prepare_folder();
     if (root_)
     {
+      check_outputs();
       write_file(command_.output_directory + "/parameters.prm", echo_);
       const unsigned int ranks = dealii::Utilities::MPI::n_mpi_processes(comm_);
       double             load  = 0.;
@@ -229,7 +207,10 @@ namespace retroforge
       std::cout << "Retroforge " << version << ' ' << commit << ", " << billet_.n_nodes() << " nodes, "
                 << billet_.n_cells() << " tetrahedra, " << ranks << " rank(s), BLAS: " << blas_in_use()
                 << '\n'
-                << note_on_load(ranks, load, std::thread::hardware_concurrency()) << std::flush;
+                << note_on_load(ranks, load, std::thread::hardware_concurrency());
+      for (const std::string &sentence : parameters_.without_effect)
+        std::cout << "  note: " << sentence << '\n';
+      std::cout << std::flush;
     }
     write_dies();
     try
@@ -258,8 +239,17 @@ namespace retroforge
       passed = check();
     write_summary();
     if (root_)
-      print_results(summary_, parameters_.contact.largest_depth, command_.output_directory);
+      print_results(summary_, parameters_.contact.largest_depth, untouched_dies(), command_.output_directory);
     return passed;
+  }
+
+  std::vector<std::string> Simulation::untouched_dies() const
+  {
+    std::vector<std::string> names;
+    for (unsigned int d = 0; d < model_.dies.size(); ++d)
+      if (touched_.count(d) == 0)
+        names.push_back(model_.dies[d].name);
+    return names;
   }
 
   void Simulation::prepare_folder() const
@@ -373,6 +363,9 @@ namespace retroforge
     // A check reads the increments many times over; a gradient once, from the record.
     if (command_.command == "check" || (command_.command == "gradient" && !parameters_.output.record))
       records_.push_back(event.record);
+    for (std::size_t p = 0; p < event.record.pairs.size(); ++p)
+      if (event.record.solves.back().active[p])
+        touched_.insert(event.record.pairs[p].die);
     trace(event);
     const auto          timing = timings_.scope("output");
     const ForgingState &state  = event.state;
@@ -587,7 +580,7 @@ namespace retroforge
     const Remesher remesher(
       parameters_.remeshing, parameters_.edge_length(billet_), model.dies, billet_.patches, comm_);
     const Forging    forging(model, parameters_.press, remesher, timings);
-    const Objectives objectives = parameters_.make_objectives(model.dies);
+    const Objectives objectives = parameters_.make_objectives(model.dies, billet_);
     ObjectiveTrace   trace(objectives, model, at_dies);
     ForgingState     state = forging.start(std::make_shared<Leg>(billet_, model, timings), X_0);
     forging.run(at_dies, state, [&](const IncrementEvent &event) { trace.add(event); });
@@ -686,7 +679,8 @@ namespace retroforge
     summarise_objectives();
     for (std::size_t j = 0; j < mu_.size() && !judged_.empty(); ++j)
     {
-      summary_.parameters.push_back({design_.parameters()[j].name, mu_[j], design_.parameters()[j].unit, {}});
+      const DesignParameter &parameter = design_.parameters()[j];
+      summary_.parameters.push_back({parameter.name, mu_[j], parameter.unit, {}, parameter.scale});
       for (const Judged &objective : judged_)
         summary_.parameters.back().gradient[objective.name] = objective.gradient[j];
     }

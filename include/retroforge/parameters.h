@@ -8,6 +8,8 @@
 #include <retroforge/scan/scan_parameters.h>
 #include <retroforge/time/forging.h>
 
+#include <iosfwd>
+
 namespace retroforge
 {
   struct ContactParameters
@@ -24,6 +26,7 @@ namespace retroforge
     double      largest_depth = 0.05;
 
     void add_parameters(dealii::ParameterHandler &prm);
+    void check() const;
   };
 
   struct AdjointParameters
@@ -84,6 +87,8 @@ namespace retroforge
     AdjointParameters          adjoint;
     RemesherParameters         remeshing;
 
+    std::vector<std::string> without_effect; ///< a sentence on each setting that nothing reads
+
     /// Declares everything; dies and objectives are those of the names given.
     void add_parameters(dealii::ParameterHandler       &prm,
                         const std::vector<std::string> &die_names,
@@ -93,6 +98,9 @@ namespace retroforge
     static Parameters read(const std::string                                      &file,
                            const std::vector<std::pair<std::string, std::string>> &overrides,
                            std::string                                            &echo);
+
+    /// A case to start from: all parameters with their meaning, a box between two planes.
+    static void print_template(std::ostream &out);
 
     /// Chooses the number of increments where it is left open, and checks what follows from the parameters.
     /// @throws Error  where steps, contact or penalty come out zero or infinite
@@ -105,7 +113,7 @@ namespace retroforge
     /// Of settled parameters.
     StepModel step_model() const;
     /// Of settled parameters.  @throws Error
-    Objectives make_objectives(const std::vector<Die> &made_dies) const;
+    Objectives make_objectives(const std::vector<Die> &made_dies, const TetMesh &billet) const;
     /// What is differentiated: each objective, or their weighted sum.
     std::vector<Combination> combinations(const Objectives &made_objectives) const;
     /// Wanted length of the edges in remeshing [mm]; of a billet from a file, the mean length there is.
@@ -118,6 +126,7 @@ namespace retroforge
     /// Of a frictionless upsetting [MPa].
     double       mean_pressure(double size) const;
     void         check_all();
+    void         find_without_effect(const std::vector<ParameterEntry> &entries);
     void         check_derived(double size) const;
     unsigned int leading_die() const;
   };

@@ -9,7 +9,7 @@
 #include <retroforge/output/summary.h>
 #include <retroforge/parameters.h>
 
-#include <iosfwd>
+#include <set>
 
 namespace retroforge
 {
@@ -33,7 +33,9 @@ namespace retroforge
     void write_dies() const;
     /// @return whether a check passed, or there was none
     bool forge_and_judge();
-    void forge();
+    /// Names of the dies that pressed no node.
+    std::vector<std::string> untouched_dies() const;
+    void                     forge();
     /// To the state after the last increment of the record in the output folder, which the run goes on from.
     void resume();
     /// What a user is told who stops the run.
@@ -50,10 +52,11 @@ namespace retroforge
     void summarise_objectives();
     void write_summary();
 
-    void   watch(const IncrementEvent &event);
-    void   trace(const IncrementEvent &event);
-    void   write_sensitivity();
-    void   check_billet_against_dies() const;
+    void watch(const IncrementEvent &event);
+    void trace(const IncrementEvent &event);
+    void write_sensitivity();
+    /// Results that cannot be written are no reason to stop at the end of a run.  @throws Error
+    void   check_outputs() const;
     double billet_size() const;
     /// How often the objective's value stands in the whole part; NaN where it says nothing of that.
     double copies(const NamedObjective &objective) const;
@@ -89,6 +92,7 @@ namespace retroforge
     Remesher                 remesher_;
     Forging                  forging_;
 
+    std::set<unsigned int>       touched_; ///< dies that some node was pressed by
     std::vector<IncrementRecord> records_;
     ForgingState                 forged_;
     ObjectiveTrace               trace_;

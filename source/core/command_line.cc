@@ -240,7 +240,7 @@ Options:
                              of a scan, keep the points that are finished
   --overwrite                replace the results that are in that folder; without it they are left alone, and the
                              command is refused
-  --print-parameters         write all parameters with their meaning; as a case file they are the defaults
+  --print-parameters         write all parameters with their meaning; a case to start from
   --version                  write version and commit
   --help                     write this text
 

@@ -3,7 +3,9 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/known_parameters.h>
 #include <retroforge/core/parameter_input.h>
+#include <retroforge/core/parameter_list.h>
 
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -11,19 +13,13 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <utility>
 
 namespace retroforge
 {
   namespace
   {
     using Names = std::vector<std::string>;
-
-    struct Assignment
-    {
-      std::string where;
-      std::string path;
-      std::string value;
-    };
 
     /// Blanks and tabs at the ends removed, those inside made single.
     std::string single_spaced(const std::string &text)
@@ -45,22 +41,58 @@ namespace retroforge
                     "save the file as UTF-8, or write the line anew");
     }
 
+    /// Lines end with a line feed, and no byte order mark stands before the first.
+    std::string with_plain_lines(const std::string &text)
+    {
+      const std::string mark = "\xef\xbb\xbf";
+      std::string       plain;
+      for (std::size_t i = text.compare(0, mark.size(), mark) == 0 ? mark.size() : 0; i < text.size(); ++i)
+        if (text[i] != '\r')
+          plain += text[i];
+        else if (i + 1 == text.size() || text[i + 1] != '\n')
+          plain += '\n';
+      return plain;
+    }
+
+    std::string lower_case(std::string word)
+    {
+      for (char &c : word)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      return word;
+    }
+
+    std::string text_of(const std::string &file)
+    {
+      const std::string rule   = "parameters are read from a text file",
+                        remedy = "check its name and permissions";
+      std::error_code ignored;
+      if (std::filesystem::is_directory(file, ignored))
+        throw Error(file, "is a folder", rule, "name a file in it");
+      if (std::filesystem::is_character_file(file, ignored))
+        throw Error(file, "is a device", rule, "name a file");
+      errno = 0;
+      std::ifstream      in(file, std::ios::binary);
+      std::ostringstream text;
+      if (!in || (in.peek() != EOF && !(text << in.rdbuf())))
+        throw Error(file, std::string("cannot be read: ") + std::strerror(errno), rule, remedy);
+      return text.str();
+    }
+
     /// Reads parameter files line by line; knows in which section it is.
-    class FileReader
+    class LineReader
     {
     public:
-      explicit FileReader(const KnownParameters &known) : known_(known) {}
+      std::vector<ParameterLine> lines;
 
-      void read(const std::string &file)
+      void read(const std::string &file) { read(file, text_of(file)); }
+
+      void read(const std::string &file, const std::string &text)
       {
-        std::ifstream in = open(file);
-
-        const std::size_t                   outer_depth = open_sections_.size();
-        std::map<std::string, unsigned int> line_of; // parameters this file sets
-
-        std::swap(line_of, line_of_);
-        std::string  line;
-        unsigned int number = 0;
+        std::istringstream in(with_plain_lines(text));
+        const std::size_t  outer_depth = open_sections_.size();
+        const unsigned int outer_file  = std::exchange(file_, ++n_files_);
+        std::string        line;
+        unsigned int       number = 0;
         while (next_line(in, line, number))
           interpret(file, number, line, outer_depth);
         if (open_sections_.size() > outer_depth)
@@ -68,10 +100,8 @@ namespace retroforge
                       "subsection '" + parameter_path(sections()) + "' is not closed",
                       "each 'subsection' needs its 'end'",
                       "add 'end' after the last parameter of the subsection");
-        std::swap(line_of, line_of_);
+        file_ = outer_file;
       }
-
-      const std::vector<Assignment> &assignments() const { return assignments_; }
 
     private:
       struct OpenSection
@@ -79,11 +109,8 @@ namespace retroforge
         std::string name, where;
       };
 
-      const KnownParameters              &known_;
-      std::vector<OpenSection>            open_sections_;
-      std::vector<Assignment>             assignments_;
-      std::map<std::string, unsigned int> line_of_;
-      unsigned int                        include_depth_ = 0;
+      std::vector<OpenSection> open_sections_;
+      unsigned int             file_ = 0, n_files_ = 0, include_depth_ = 0;
 
       Names sections() const
       {
@@ -91,20 +118,6 @@ namespace retroforge
         for (const OpenSection &section : open_sections_)
           names.push_back(section.name);
         return names;
-      }
-
-      static std::ifstream open(const std::string &file)
-      {
-        const std::string rule   = "parameters are read from a text file",
-                          remedy = "check its name and permissions";
-        std::error_code ignored;
-        if (std::filesystem::is_directory(file, ignored))
-          throw Error(file, "is a folder", rule, "name a file in it");
-        errno = 0;
-        std::ifstream in(file);
-        if (!in)
-          throw Error(file, std::string("cannot be opened: ") + std::strerror(errno), rule, remedy);
-        return in;
       }
 
       /// The next line that says something: continued lines joined, comments removed. `number` is that of its
@@ -117,10 +130,10 @@ namespace retroforge
         {
           ++number;
           part                 = part.substr(0, part.find('#'));
-          const bool continued = !part.empty() && part.find_last_not_of(" \t\r") != std::string::npos &&
-                                 part[part.find_last_not_of(" \t\r")] == '\\';
+          const bool continued = !part.empty() && part.find_last_not_of(" \t") != std::string::npos &&
+                                 part[part.find_last_not_of(" \t")] == '\\';
           if (continued)
-            part.erase(part.find_last_not_of(" \t\r"));
+            part.erase(part.find_last_not_of(" \t"));
           line += part;
           if (continued)
             continue;
@@ -140,15 +153,15 @@ namespace retroforge
         const std::string where = file + ", line " + std::to_string(number);
         check_text(where, line);
         const std::size_t space   = line.find(' ');
-        const std::string keyword = line.substr(0, space);
+        const std::string keyword = lower_case(line.substr(0, space));
         const std::string rest    = space == std::string::npos ? "" : line.substr(space + 1);
-        if (keyword == "set" || keyword == "SET")
+        if (keyword == "set")
           interpret_set(where, number, rest);
-        else if (keyword == "subsection" || keyword == "SUBSECTION")
-          interpret_subsection(where, rest);
-        else if (line == "end" || line == "END")
+        else if (keyword == "subsection")
+          interpret_subsection(where, number, rest);
+        else if (keyword == "end" && rest.empty())
           interpret_end(where, outer_depth);
-        else if (keyword == "include" || keyword == "INCLUDE")
+        else if (keyword == "include")
           interpret_include(where, file, rest);
         else
           throw Error(where,
@@ -166,22 +179,16 @@ namespace retroforge
                       "'set " + text + "' is not an assignment",
                       "it must read 'set NAME = VALUE'",
                       "write name, '=' and value on one line");
-        const std::string path     = known_.entry(parameter_path(sections(), name), where).path();
-        const auto [first, is_new] = line_of_.emplace(path, number);
-        if (!is_new)
-          throw Error(where,
-                      path + " is set again",
-                      "line " + std::to_string(first->second) + " sets it already",
-                      "keep one of the two lines");
-        assignments_.push_back({where, path, single_spaced(text.substr(equals + 1))});
+        lines.push_back(
+          {where, parameter_path(sections(), name), single_spaced(text.substr(equals + 1)), file_, number});
       }
 
-      void interpret_subsection(const std::string &where, const std::string &name)
+      void interpret_subsection(const std::string &where, const unsigned int number, const std::string &name)
       {
         if (name.empty())
           throw Error(where, "'subsection' has no name", "it must read 'subsection NAME'", "add the name");
         open_sections_.push_back({name, where});
-        known_.check_section(parameter_path(sections()), where);
+        lines.push_back({where, parameter_path(sections()), {}, file_, number});
       }
 
       void interpret_end(const std::string &where, const std::size_t outer_depth)
@@ -211,24 +218,44 @@ namespace retroforge
       }
     };
 
-    void assign(dealii::ParameterHandler &prm, const KnownParameters &known, const Assignment &assignment)
+    void check_known(const KnownParameters &known, const std::vector<ParameterLine> &lines)
     {
-      const ParameterEntry &entry = known.entry(assignment.path, assignment.where);
+      std::map<std::pair<unsigned int, std::string>, unsigned int> line_of; // of file and path
+      for (const ParameterLine &line : lines)
+      {
+        if (!line.value)
+        {
+          known.check_section(line.path, line.where);
+          continue;
+        }
+        const std::string path     = known.entry(line.path, line.where).path();
+        const auto [first, is_new] = line_of.emplace(std::make_pair(line.file, path), line.line);
+        if (!is_new && line.file > 0)
+          throw Error(line.where,
+                      path + " is set again",
+                      "line " + std::to_string(first->second) + " sets it already",
+                      "keep one of the two lines");
+      }
+    }
+
+    void assign(dealii::ParameterHandler &prm, const KnownParameters &known, const ParameterLine &line)
+    {
+      const ParameterEntry &entry = known.entry(line.path, line.where);
       for (const std::string &section : entry.sections)
         prm.enter_subsection(section);
       std::string problem;
       try
       {
-        prm.set(entry.name, assignment.value);
+        prm.set(entry.name, *line.value);
       }
       catch (const dealii::ExceptionBase &)
       {
-        problem = assignment.value.empty() ? "empty" : "'" + assignment.value + "'";
+        problem = line.value->empty() ? "empty" : "'" + *line.value + "'";
       }
       for (std::size_t i = 0; i < entry.sections.size(); ++i)
         prm.leave_subsection();
       if (!problem.empty())
-        throw Error(assignment.where,
+        throw Error(line.where,
                     entry.path() + " is " + problem,
                     "it must be " + entry.allowed,
                     "correct the value (default: " + entry.default_value +
@@ -251,39 +278,66 @@ namespace retroforge
       return path;
     }
 
-    void
-    check_required(const dealii::ParameterHandler &prm, const KnownParameters &known, const std::string &file)
+    void check_required(const dealii::ParameterHandler &prm, const KnownParameters &known)
     {
       const std::set<std::string> missing = prm.get_entries_wrongly_not_set();
       if (missing.empty())
         return;
-      const ParameterEntry &entry = known.entry(readable_path(*missing.begin()), file);
-      throw Error(file,
-                  entry.path() + " is not set",
+      const ParameterEntry &entry = known.entry(readable_path(*missing.begin()), "");
+      throw Error(entry.path(),
+                  "is not set",
                   "it has no default and must be " + entry.allowed,
                   "set it (meaning: " + entry.documentation + ")");
     }
 
   } // namespace
 
-  void read_parameters(dealii::ParameterHandler                               &prm,
-                       const std::string                                      &file,
+  std::vector<ParameterLine>
+  read_parameter_lines(const std::string                                      &file,
                        const std::vector<std::pair<std::string, std::string>> &overrides)
   {
-    const KnownParameters known(prm);
-    FileReader            reader(known);
+    LineReader reader;
     reader.read(file);
-
-    std::vector<Assignment> assignments = reader.assignments();
     for (const auto &[path, value] : overrides)
     {
       const std::string where = "--set " + path + "=" + value;
       check_text(where, path + value);
-      assignments.push_back({where, known.entry(single_spaced(path), where).path(), single_spaced(value)});
+      reader.lines.push_back({where, single_spaced(path), single_spaced(value)});
     }
-    for (const Assignment &assignment : assignments)
-      assign(prm, known, assignment);
-    check_required(prm, known, file);
+    return reader.lines;
+  }
+
+  std::vector<ParameterLine> parameter_lines_of(const std::string &text, const std::string &name)
+  {
+    LineReader reader;
+    reader.read(name, text);
+    return reader.lines;
+  }
+
+  std::map<std::string, std::string> parameter_values(const std::vector<ParameterLine> &lines)
+  {
+    std::map<std::string, std::string> values;
+    for (const ParameterLine &line : lines)
+      if (line.value)
+        values[line.path] = *line.value;
+    return values;
+  }
+
+  void set_parameters(dealii::ParameterHandler &prm, const std::vector<ParameterLine> &lines)
+  {
+    const KnownParameters known(prm);
+    check_known(known, lines);
+    for (const ParameterLine &line : lines)
+      if (line.value)
+        assign(prm, known, line);
+    check_required(prm, known);
+  }
+
+  void read_parameters(dealii::ParameterHandler                               &prm,
+                       const std::string                                      &file,
+                       const std::vector<std::pair<std::string, std::string>> &overrides)
+  {
+    set_parameters(prm, read_parameter_lines(file, overrides));
   }
 
 } // namespace retroforge

@@ -24,6 +24,12 @@ namespace retroforge
         dual.push_back(with_direction(mu[i], i == j ? 1. : 0.));
       return dual;
     }
+
+    double extent_in_x(const TetMesh &mesh)
+    {
+      const auto [low, high] = bounding_box(mesh.X);
+      return high[0] - low[0];
+    }
   } // namespace
 
   Design::Design(const std::vector<std::string>   &names,
@@ -34,7 +40,7 @@ namespace retroforge
       : dies_(dies)
       , process_(nominal_process)
       , billet_map_(billet, nominal_billet)
-      , width_(billet.whole_width())
+      , width_(billet.shape == "file" ? extent_in_x(nominal_billet) : billet.whole_width())
   {
     for (const std::string &name : names)
     {
@@ -75,17 +81,21 @@ namespace retroforge
     return names;
   }
 
-  DesignParameter Design::make(const std::string &name) const
+  void Design::check_offered(const std::string &name, const std::string &where) const
   {
     const auto known = available();
-    if (std::find(known.begin(), known.end(), name) == known.end())
-    {
-      const std::string near = nearest_name(name, known, 6);
-      throw Error("Design/parameters",
-                  "'" + name + "' is not a parameter of this scene",
-                  "it offers " + join(known),
-                  near.empty() ? "name some of these" : "did you mean '" + near + "'?");
-    }
+    if (std::find(known.begin(), known.end(), name) != known.end())
+      return;
+    const std::string near = nearest_name(name, known, 6);
+    throw Error(where,
+                "'" + name + "' is not a parameter of this scene",
+                "it offers " + join(known),
+                near.empty() ? "name some of these" : "did you mean '" + near + "'?");
+  }
+
+  DesignParameter Design::make(const std::string &name) const
+  {
+    check_offered(name, "Design/parameters");
     if (name == "material/K")
       return {name, "MPa s^m", Kind::consistency, invalid_index, process_.law.K, process_.law.K};
     if (name == "material/m")
@@ -155,11 +165,11 @@ namespace retroforge
                             (parameter.kind != Kind::sensitivity || value <= 1.);
       if (!is_sound)
         throw Error("Design/at",
-                    "gives " + parameter.name + " the value " + std::to_string(value),
+                    "gives " + parameter.name + " the value " + as_text(value),
                     parameter.kind == Kind::sensitivity ? "it lies above 0 and up to 1"
                     : may_vanish                        ? "it is not negative"
                                                         : "it is positive",
-                    "stay closer to the nominal value, " + std::to_string(parameter.nominal));
+                    "stay closer to the nominal value, " + as_text(parameter.nominal));
     }
   } // namespace
 

@@ -111,10 +111,10 @@ namespace retroforge
       "file", file, "STL file, ASCII or binary, from the folder the program is started in. Units: none.");
     prm.add_parameter("scale", scale, "Factor to mm of the file's lengths. Units: none.", Double(1e-300));
     prm.add_parameter("rotation axis", axis, "Of an STL surface, through its origin. Units: none.");
-    prm.add_parameter(
-      "rotation angle",
-      angle,
-      "Of an STL surface about that axis, of a tripod or bell about its own. Units: degrees.");
+    prm.add_parameter("rotation angle",
+                      angle,
+                      "Of an STL surface about that axis, of a tripod or bell about its own. Units: degrees.",
+                      Double(-360., 360.));
     prm.add_parameter("chord error",
                       chord_error,
                       "Largest distance of a tripod's or bell's facets from its smooth shape. Units: mm.",
@@ -124,11 +124,23 @@ namespace retroforge
     prm.leave_subsection();
   }
 
+  ReadBy DieParameters::read_by_shape()
+  {
+    const auto surface = [](std::vector<std::string> own) {
+      own.insert(own.end(),
+                 {"rotation angle", "depth of contact", "surface", "feature angle", "largest sagitta"});
+      return own;
+    };
+    return {{"stl", surface({"file", "scale", "rotation axis"})},
+            {"tripod", surface({"Tripod", "chord error"})},
+            {"bell", surface({"Bell", "chord error"})}};
+  }
+
   void DieParameters::check()
   {
-    if (!(facing.norm() > 0.))
+    if (!(facing.norm() > 0. && std::isfinite(facing.norm())))
       throw Error(section() + "/facing",
-                  "is the zero vector",
+                  facing.norm() > 0. ? "is infinite" : "is the zero vector",
                   "it must point from the die to the workpiece",
                   "use for instance 0, 0, 1 for a lower die");
     facing /= facing.norm();
@@ -142,9 +154,9 @@ namespace retroforge
                   "is '" + file + "', but the shape is " + shape,
                   "only a die of shape stl is read from a file",
                   "set shape = stl, or leave the file out");
-    if (!(axis.norm() > 0.))
+    if (!(axis.norm() > 0. && std::isfinite(axis.norm())))
       throw Error(
-        section() + "/rotation axis", "is the zero vector", "it must have a direction", "use 0, 0, 1");
+        section() + "/rotation axis", "is zero or infinite", "it must have a direction", "use 0, 0, 1");
   }
 
   namespace

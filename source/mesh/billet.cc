@@ -12,24 +12,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace retroforge
 {
   namespace
   {
-    std::string in_words(const double value)
-    {
-      std::ostringstream out;
-      out << value;
-      return out.str();
-    }
-
     void check_positive(const std::string &name, const double value)
     {
       if (!(value > 0) || !std::isfinite(value))
         throw Error("Billet/" + name,
-                    "is " + in_words(value) + " but must be > 0",
+                    "is " + as_text(value) + " but must be > 0",
                     "lengths are positive",
                     "give the length in the unit of the case, mm as a rule");
     }
@@ -50,7 +42,7 @@ namespace retroforge
                       "write for example `20, 0; 26, 15; 26, 30; 20, 45'");
       if (p.shape == "profile" && p.profile.control_points.front()[1] != 0.)
         throw Error("Billet/control points",
-                    "the first has z = " + in_words(p.profile.control_points.front()[1]),
+                    "the first has z = " + as_text(p.profile.control_points.front()[1]),
                     "z counts from the base, where the contour begins",
                     "shift all z by the same amount, and the body by `base centre'");
     }
@@ -112,18 +104,18 @@ namespace retroforge
                     "name its planes in `symmetry patches'");
       if (p.shape != "cylinder" && !p.is_revolved() && is_sector(p))
         throw Error("Billet/sector angle",
-                    "is " + in_words(p.sector_angle) + ", and the shape is `" + p.shape + "'",
+                    "is " + as_text(p.sector_angle) + ", and the shape is `" + p.shape + "'",
                     "only bodies of revolution have sectors",
                     "set it to 0, or use symmetry planes");
       if (is_sector(p) && !(p.sector_angle > 0 && p.sector_angle <= 180))
         throw Error("Billet/sector angle",
-                    "is " + in_words(p.sector_angle),
+                    "is " + as_text(p.sector_angle),
                     "it must be in (0, 180], or 0 or 360 for the whole body",
                     "choose the smallest sector that symmetry allows");
       for (const Vec3 &normal : p.symmetry_planes)
         if (!(normal.norm() > 0) || !std::isfinite(normal.norm()))
           throw Error("Billet/symmetry planes",
-                      "a normal has length " + in_words(normal.norm()),
+                      "a normal has length " + as_text(normal.norm()),
                       "outward normals need a direction",
                       "write for example `-1, 0, 0; 0, -1, 0' to keep x >= 0, y >= 0");
       const auto planes = p.symmetry_cuts();
@@ -146,7 +138,7 @@ namespace retroforge
       const double n_cells = 8 * body / std::pow(p.element_size, 3);
       if (n_cells > 1e9)
         throw Error("Billet/element size",
-                    "is " + in_words(p.element_size) + ", which makes about " + in_words(n_cells) +
+                    "is " + as_text(p.element_size) + ", which makes about " + as_text(n_cells) +
                       " tetrahedra",
                     "a mesh may have 1e9",
                     "choose a larger element size");
@@ -305,9 +297,20 @@ namespace retroforge
           patch.symmetry->point = moved(patch.symmetry->point);
     }
 
+    TetMesh read_file(const BilletParameters &p)
+    {
+      TetMesh mesh = read_msh(p.file_name, p.symmetry_patches);
+      for (Vec3 &x : mesh.X)
+        x *= p.scale;
+      for (Patch &patch : mesh.patches)
+        if (patch.symmetry)
+          patch.symmetry->point *= p.scale;
+      return mesh;
+    }
+
     TetMesh make_on_one_rank(const BilletParameters &p)
     {
-      TetMesh           mesh  = p.shape == "file" ? read_msh(p.file_name, p.symmetry_patches) : mesh_solid(p);
+      TetMesh           mesh  = p.shape == "file" ? read_file(p) : mesh_solid(p);
       const std::string where = p.shape == "file" ? p.file_name : "Billet";
       check_mesh(mesh, where);
       move(mesh, p);
@@ -330,7 +333,8 @@ namespace retroforge
     return shape == "cylinder"  ? 2 * radius
            : shape == "ring"    ? 2 * ring.mu[3]
            : shape == "profile" ? profile.width()
-                                : size[0];
+           : shape == "box"     ? size[0]
+                                : 0.;
   }
 
   std::vector<Plane> BilletParameters::symmetry_cuts() const
@@ -388,6 +392,7 @@ namespace retroforge
       file_name,
       "Gmsh file (.msh, versions 2 and 4) for the shape `file'. Its physical surfaces become the "
       "patches. Units: none.");
+    prm.add_parameter("scale", scale, "Factor to mm of the file's lengths. Units: none.", Double(1e-300));
     prm.add_parameter(
       "symmetry patches",
       symmetry_patches,
@@ -397,7 +402,8 @@ namespace retroforge
                       "Axis through the origin about which the finished mesh is rotated. Units: none.");
     prm.add_parameter("rotation angle",
                       rotation_angle,
-                      "Angle of this rotation, counter-clockwise seen against the axis. Units: degrees.");
+                      "Angle of this rotation, counter-clockwise seen against the axis. Units: degrees.",
+                      Double(-360, 360));
     prm.add_parameter(
       "translation", translation, "Displacement of the finished mesh, after the rotation. Units: mm.");
     prm.add_parameter("volume held by",
@@ -406,6 +412,27 @@ namespace retroforge
                       "that the volume of the mesh stays: for example mu4 for a ring, radius for a cylinder, "
                       "`control point 2 r' for a profile. Empty for none. Units: none.");
     prm.leave_subsection();
+  }
+
+  ReadBy BilletParameters::read_by_shape()
+  {
+    return {{"box", {"base centre", "size", "element size", "symmetry point"}},
+            {"cylinder", {"base centre", "radius", "height", "element size", "symmetry point"}},
+            {"ring",
+             {"base centre",
+              "mu1",
+              "mu2",
+              "mu3",
+              "mu4",
+              "bore radius",
+              "base inner radius",
+              "base outer radius",
+              "inner edge height",
+              "outer edge height",
+              "element size",
+              "symmetry point"}},
+            {"profile", {"base centre", "control points", "inner radius", "element size", "symmetry point"}},
+            {"file", {"file name", "scale", "symmetry patches"}}};
   }
 
   void BilletParameters::check() const

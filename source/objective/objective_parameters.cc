@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
 #include <retroforge/core/text.h>
 #include <retroforge/geometry/stl_file.h>
 #include <retroforge/objective/contact_pressure.h>
@@ -17,14 +18,41 @@ namespace retroforge
 {
   namespace
   {
-    const std::string types =
+    const std::string known_types =
       "energy|mean effort|maximum effort|fold|dimensionless fold|contact pressure|filling|unfilled volume|"
       "shape distance|cylinder distance|mean strain|strain variance|maximum strain|volume";
   }
 
+  std::vector<std::string> ObjectiveParameters::types()
+  {
+    return dealii::Utilities::split_string_list(known_types, '|');
+  }
+
+  ReadBy ObjectiveParameters::read_by_type()
+  {
+    const std::vector<std::string> effort  = {"die", "by", "window over", "window begin", "window end"};
+    const std::vector<std::string> maximum = {"smooth maximum", "sharpness"};
+    const std::vector<std::string> fold    = {"exponent", "region from", "region to", "region edge"};
+    const std::vector<std::string> target  = {"target", "region from", "region to"};
+    const auto and_of = [](std::vector<std::string> a, const std::vector<std::string> &b) {
+      a.insert(a.end(), b.begin(), b.end());
+      return a;
+    };
+    return {{"mean effort", effort},
+            {"maximum effort", and_of(effort, maximum)},
+            {"fold", fold},
+            {"dimensionless fold", fold},
+            {"contact pressure", {"die", "sharpness"}},
+            {"maximum strain", maximum},
+            {"filling", and_of(target, {"rounding"})},
+            {"unfilled volume", and_of(target, {"samples", "layer"})},
+            {"shape distance", target},
+            {"cylinder distance", {"patches", "axis point", "axis"}}};
+  }
+
   ObjectiveParameters::ObjectiveParameters(std::string made_name) : name(std::move(made_name))
   {
-    const auto known = dealii::Utilities::split_string_list(types, '|');
+    const auto known = types();
     if (std::find(known.begin(), known.end(), name) != known.end())
       type = name;
   }
@@ -36,7 +64,7 @@ namespace retroforge
     prm.add_parameter("type",
                       type,
                       "What is measured; doc/objectives.md has a section on each. Units: none.",
-                      Selection(types));
+                      Selection(known_types));
     prm.add_parameter("weight", weight, "In the sum of all objectives. Units: 1/(that of the objective).");
     prm.add_parameter("die", die, "Of an effort or contact pressure; empty: the leading die. Units: none.");
     prm.add_parameter("by",
@@ -79,11 +107,14 @@ namespace retroforge
                       "Of the distance |d| where the surfaces meet, in `filling'. Units: mm.",
                       Double(0.));
     prm.add_parameter(
-      "samples", samples, "Of an unfilled volume, along the longest edge. Units: none.", Integer(3));
+      "samples", samples, "Of an unfilled volume, along the longest edge. Units: none.", Integer(3, 1000));
     prm.add_parameter(
       "layer", layer, "Over which its samples fade out. Units: spacings of the samples.", Double(1.));
     prm.add_parameter(
-      "patches", patches, "Of the billet, compared with a cylinder: `side' of a cylinder. Units: none.");
+      "patches",
+      patches,
+      "Of the billet, compared with a cylinder: `side' of a cylinder, `side outer' of a ring or profile. "
+      "Units: none.");
     prm.add_parameter("axis point", axis_point, "Of the cylinder. Units: mm.");
     prm.add_parameter("axis", axis, "Direction of the cylinder. Units: none.");
     prm.leave_subsection();
@@ -200,6 +231,29 @@ namespace retroforge
     return TargetSurface(std::make_shared<TriangleSurface>(*context.dies[d].surface()), d, box());
   }
 
+  void ObjectiveParameters::check_names(const ObjectiveContext &context) const
+  {
+    if (!die.empty())
+      find_die(context, die);
+    if (target_is_die())
+      find_die(context, target.substr(4));
+    std::vector<std::string> known;
+    for (const Patch &patch : context.billet.patches)
+      if (!patch.symmetry)
+        known.push_back(patch.name);
+    for (const std::string &patch : patches)
+      if (std::find(known.begin(), known.end(), patch) == known.end())
+        throw Error(section() + "/patches",
+                    "there is no patch '" + patch + "'",
+                    "the patches of this billet are: " + join(known),
+                    "name some of these");
+    if (type == "cylinder distance" && patches.empty())
+      throw Error(section() + "/patches",
+                  "names no patch",
+                  "a part of the surface must be compared",
+                  "name the free side; the patches of this billet are: " + join(known));
+  }
+
   std::unique_ptr<PathObjective> ObjectiveParameters::make_path(const ObjectiveContext &context) const
   {
     if (type == "energy")
@@ -250,6 +304,7 @@ namespace retroforge
 
   NamedObjective ObjectiveParameters::make(const ObjectiveContext &context) const
   {
+    check_names(context);
     NamedObjective objective;
     objective.name   = name;
     objective.weight = weight;

@@ -71,15 +71,8 @@ namespace retroforge
   void CylinderDistance::decide(const FinalView<double> &view)
   {
     const TetMesh &mesh = view.scene.mesh;
-    for (const std::string &name : patches_)
-      if (std::none_of(
-            mesh.patches.begin(), mesh.patches.end(), [&](const Patch &p) { return p.name == name; }))
-        throw Error("Cylinder distance",
-                    "there is no patch '" + name + "'",
-                    "patches are those of the billet",
-                    "see the names in the manual's section on billets");
-    const auto S   = lumped_areas(triangles(mesh), view.X);
-    double     sum = 0., total = 0.;
+    const auto     S    = lumped_areas(triangles(mesh), view.X);
+    double         sum = 0., total = 0.;
     for (NodeIndex k = 0; k < S.size(); ++k)
     {
       sum += S[k] * from_axis(view.X[k]).norm();

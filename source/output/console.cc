@@ -66,12 +66,18 @@ namespace retroforge
                 "value",
                 "derivative");
     for (const std::size_t j : order)
-      std::printf("  %-24s %14.8g   %18.12g   %+.4g%s\n",
-                  design.parameters()[j].name.c_str(),
+    {
+      const DesignParameter &parameter = design.parameters()[j];
+      std::printf("  %-24s %14.8g   %18.12g   %+.4g%s",
+                  parameter.name.c_str(),
                   mu[j],
                   objective.gradient[j],
                   effect(j),
                   unit.c_str());
+      if (mu[j] == 0.)
+        std::printf(" (of %.4g %s)", parameter.scale, parameter.unit.c_str());
+      std::printf("\n");
+    }
   }
 
   void print_check_begin(const unsigned int n_directions, const unsigned int n_runs, const double seconds)
@@ -142,7 +148,10 @@ namespace retroforge
     }
   } // namespace
 
-  void print_results(const Summary &summary, const double largest_depth, const std::string &directory)
+  void print_results(const Summary                  &summary,
+                     const double                    largest_depth,
+                     const std::vector<std::string> &untouched,
+                     const std::string              &directory)
   {
     std::printf("\n");
     for (const Summary::Objective &objective : summary.objectives)
@@ -153,6 +162,8 @@ namespace retroforge
       std::printf("  the surface crossed itself in places thinner than an element: %.3g mm^3 were taken away "
                   "there, and put back elsewhere\n",
                   summary.volume_repaired);
+    for (const std::string &die : untouched)
+      std::printf("  warning: no node touched die %s\n", die.c_str());
     const auto total = summary.wall_seconds.find("total");
     std::printf("  volume change %.3g, %.1f s\n  results in %s\n",
                 summary.volume_final / summary.volume_initial - 1.,

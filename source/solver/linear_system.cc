@@ -33,7 +33,7 @@ namespace retroforge
                       max_iterations,
                       "Krylov iterations after which the direct solver takes over. Units: none.",
                       Patterns::Integer(1));
-    prm.add_parameter("restart", restart, "Krylov vectors kept. Units: none.", Patterns::Integer(5));
+    prm.add_parameter("restart", restart, "Krylov vectors kept. Units: none.", Patterns::Integer(5, 1000));
     prm.leave_subsection();
   }
 

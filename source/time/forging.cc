@@ -40,7 +40,7 @@ namespace retroforge
       largest_move,
       "An increment is halved when two nodes of an edge would move, relative to each other, by more than "
       "this part of its length. Units: none.",
-      Double(1e-6));
+      Double(1e-3));
     prm.add_parameter(
       "largest slip",
       largest_slip,

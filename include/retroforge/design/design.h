@@ -66,6 +66,8 @@ namespace retroforge
 
     /// All names this scene offers.
     std::vector<std::string> available() const;
+    /// @param where  the name stands, for the message     @throws Error  for a name that is not among them
+    void check_offered(const std::string &name, const std::string &where) const;
 
   private:
     /// Values of the billet map's parameters.
@@ -76,7 +78,7 @@ namespace retroforge
     std::vector<DieParameters>   dies_;
     Process<double>              process_;
     BilletMap                    billet_map_;
-    double                       width_; ///< the billet's extent in x before cuts
+    double                       width_; ///< the billet's extent in x, before cuts; of a file, its mesh's
     std::vector<DesignParameter> parameters_;
   };
 } // namespace retroforge

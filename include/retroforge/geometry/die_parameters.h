@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/core/choice.h>
 #include <retroforge/geometry/die.h>
 #include <retroforge/geometry/die_shapes.h>
 
@@ -46,7 +47,8 @@ namespace retroforge
 
     void add_parameters(dealii::ParameterHandler &prm);
     /// Normalises `facing`.
-    void check();
+    void          check();
+    static ReadBy read_by_shape();
 
     /// Names of the measures of a tripod or bell, as in its section; empty for other shapes.
     std::vector<std::string> measures() const;

@@ -4,6 +4,7 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <retroforge/core/choice.h>
 #include <retroforge/mesh/ring_profile.h>
 #include <retroforge/mesh/spline_profile.h>
 #include <retroforge/mesh/tet_mesh.h>
@@ -34,6 +35,7 @@ namespace retroforge
     double            sector_angle   = 0;
 
     std::string              file_name;
+    double                   scale = 1; ///< of the file's lengths to mm
     std::vector<std::string> symmetry_patches;
 
     Vec3   rotation_axis  = Vec3({0, 0, 1});
@@ -42,12 +44,13 @@ namespace retroforge
 
     std::string volume_held_by; ///< name of a parameter of the shape, without `billet/`; none if empty
 
-    void add_parameters(dealii::ParameterHandler &prm);
-    void check() const;
+    void          add_parameters(dealii::ParameterHandler &prm);
+    void          check() const;
+    static ReadBy read_by_shape();
 
     bool   is_revolved() const { return shape == "ring" || shape == "profile"; }
     double whole_height() const; ///< before cuts; 0 for a mesh from a file
-    double whole_width() const;  ///< along x, before cuts; that of the box for a mesh from a file
+    double whole_width() const;  ///< along x, before cuts; 0 for a mesh from a file
     /// Planes of the cuts before rotation and translation: those of the sector, then those listed.
     std::vector<Plane> symmetry_cuts() const;
   };

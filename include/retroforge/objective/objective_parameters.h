@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/core/choice.h>
 #include <retroforge/objective/box.h>
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/objectives.h>
@@ -21,6 +22,7 @@ namespace retroforge
     unsigned int                         leading_die; ///< taken where no die is named
     double                               stroke;      ///< [mm]
     double                               consistency; ///< K, a stress of the size to expect [MPa]
+    const TetMesh                       &billet;
   };
 
   /// What a parameter file says about one objective: the section `Objective NAME`. Each type reads what it
@@ -53,9 +55,12 @@ namespace retroforge
     /// A name that is one of the types' is of that type unless said otherwise.
     explicit ObjectiveParameters(std::string name);
 
+    static std::vector<std::string> types();
+    static ReadBy                   read_by_type();
+
     void add_parameters(dealii::ParameterHandler &prm);
 
-    /// @throws Error  for a die or target that is not there, an empty window, exponents out of range
+    /// @throws Error  for a die, target or patch that is not there, an empty window, exponents out of range
     NamedObjective make(const ObjectiveContext &context) const;
 
   private:
@@ -68,6 +73,7 @@ namespace retroforge
     SmoothMaximum smooth_maximum() const;
     TargetSurface target_surface(const ObjectiveContext &context) const;
     bool          target_is_die() const;
+    void          check_names(const ObjectiveContext &context) const;
 
     std::optional<Box>          box() const;
     std::optional<SmoothRegion> region() const;

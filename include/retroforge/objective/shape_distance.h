@@ -47,14 +47,14 @@ namespace retroforge
   class CylinderDistance : public FinalObjectiveOf<CylinderDistance>
   {
   public:
-    /// @param axis  direction, of any length  @throws Error  for no axis or no patches
+    /// @param patches  of the workpiece     @param axis  direction, of any length  @throws Error  for no axis
+    /// or no patches
     CylinderDistance(std::vector<std::string> patches, const Vec3 &point, const Vec3 &axis);
 
     std::string name() const override { return "cylinder distance"; }
     std::string unit() const override { return "mm^2"; }
 
     /// The radius from which others are measured, to keep digits: Phi does not depend on it.
-    /// @throws Error  when a patch is not there
     void decide(const FinalView<double> &view) override;
 
     std::map<std::string, double> details(const std::vector<double> &integrals) const override

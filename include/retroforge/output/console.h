@@ -37,5 +37,9 @@ namespace retroforge
                             double                       seconds);
 
   /// The objectives, and what a user must know to trust them.
-  void print_results(const Summary &summary, double largest_depth, const std::string &directory);
+  /// @param untouched  dies that pressed no node
+  void print_results(const Summary                  &summary,
+                     double                          largest_depth,
+                     const std::vector<std::string> &untouched,
+                     const std::string              &directory);
 } // namespace retroforge

@@ -6,8 +6,10 @@
 
 and what was computed before the trouble can still be read. Usage: bad_input.py RETROFORGE"""
 import csv
+import itertools
 import os
 import re
+import struct
 import subprocess
 import sys
 import tempfile
@@ -65,13 +67,37 @@ def msh(nodes, cells, kind=4):
 
 
 CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, -1, -1)]
+
+
+def cube(side):
+    """Eight cubes of six tetrahedra each, on z = 0."""
+    def corner(i, j, k):
+        return 9 * i + 3 * j + k
+
+    cells = []
+    for i, j, k in itertools.product(range(2), repeat=3):
+        for order in itertools.permutations(range(3)):
+            at, cell = [i, j, k], [corner(i, j, k)]
+            for axis in order:
+                at[axis] += 1
+                cell.append(corner(*at))
+            odd = order in ((0, 2, 1), (1, 0, 2), (2, 1, 0))
+            cells.append([cell[0], cell[2], cell[1], cell[3]] if odd else cell)
+    return msh([tuple(side / 2 * x for x in node) for node in itertools.product(range(3), repeat=3)], cells)
+
+
 # Flattening or inverting a tetrahedron between two others cannot be told from a matter of orientation alone: the first
 # two overlap on the same side of their common face.
 MESHES = {
+    "two_bodies": msh(CORNERS[:4] + [(x + 100, y, z) for x, y, z in CORNERS[:4]], [(0, 1, 2, 3), (4, 5, 6, 7)]),
+    "twice": msh(CORNERS[:4] * 2, [(0, 1, 2, 3), (4, 5, 6, 7)]),
+    "small": msh(CORNERS[:4], [(0, 1, 2, 3)]),
     "overlapping": msh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0.2, 0.2, 2)], [(0, 1, 2, 3), (0, 1, 2, 4)]),
     "flat": msh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 1, 2, 3)]),
     "non_manifold": msh(CORNERS, [(0, 1, 2, 3), (0, 1, 2, 4), (0, 1, 5, 2)]),
     "no_tets": msh(CORNERS[:3], [(0, 1, 2)], kind=2),
+    "cube": cube(10),
+    "cube_in_metres": cube(0.01),
     "garbage": "this is not a mesh\n",
 }
 
@@ -93,6 +119,25 @@ def file_mesh(name):
 
 def objective(name, *pairs):
     return settings(f"Objectives/names={name}", *(f"Objective {name}/{pair}" for pair in pairs))
+
+
+def binary_stl(*facets, announced):
+    """Facets of nine coordinates."""
+    return b" " * 80 + struct.pack("<I", announced) + b"".join(struct.pack("<12fH", 0, 0, 0, *facet, 0) for facet in facets)
+
+
+def square(side):
+    """Two facets that face upwards, centred on the z axis."""
+    a = side / 2
+    return (-a, -a, 0, a, -a, 0, a, a, 0), (-a, -a, 0, a, a, 0, -a, a, 0)
+
+
+STLS = {
+    "open.stl": OPEN_STL.encode(),
+    "half_dropped.stl": binary_stl(*square(30), announced=1),
+    "in_metres.stl": binary_stl(*square(0.03), announced=2),
+    "in_nanometres.stl": binary_stl(*square(3e7), announced=2),
+}
 
 
 def settings(*pairs):
@@ -148,6 +193,34 @@ MISTAKES = {
     "exponent below one": (objective("fold", "exponent=0.5"), r"exponent.*0\.5"),
     "maximum without sharpness": (objective("maximum strain", "sharpness=0"), r"Objective maximum strain/sharpness"),
     "cylinder without patches": (objective("cylinder distance"), r"patch"),
+    "misspelt objective": (settings("Objectives/names=maximum efort"), r"Objectives/names.*maximum efort.*did you mean 'maximum effort'"),
+    "objective of unknown kind": (settings("Objectives/names=nice shape"), r"nice shape.*Objective nice shape.*filling"),
+    "energy of a die that does not exist": (objective("energy", "die=foo"), r"Objective energy.*foo.*lower, upper"),
+    "patch that does not exist": (objective("cylinder distance", "patches=side"),
+                                  r"Objective cylinder distance/patches.*'side'.*bottom, top, side \+x, side \+y"),
+    "symmetry plane for a patch": (objective("cylinder distance", "patches=symmetry 1"), r"patches.*symmetry 1"),
+    "scan of a parameter that does not exist": (settings("Scan/parameter=billet/radus"), r"Scan/parameter.*billet/radus.*billet/height"),
+    "die that moves away": (settings("Die upper/velocity=0, 0, 100"), r"Die upper.*does not come against the billet.*velocity"),
+    "leading die out of reach": (settings("Die upper/point=0, 0, 12"), r"Die upper.*starts 2 mm away.*stroke is 1 mm"),
+    "curved die out of reach": (settings("Die upper/shape=bell", "Die upper/point=0, 0, 80"), r"Die upper.*does not come against"),
+    "stroke as long as the dies are apart": (settings("Press/stroke=10"), r"Press/stroke.*die upper.*die lower.*less than 10 mm"),
+    "stroke longer than that": (settings("Press/stroke=12"), r"Press/stroke.*2 mm beyond.*less than 10 mm"),
+    "stroke up to a plane of symmetry": (settings(
+        "Billet/symmetry planes=-1, 0, 0; 0, -1, 0; 0, 0, -1", "Billet/symmetry point=centre", "Die lower/point=0, 0, -9",
+        "Press/stroke=5"), r"Press/stroke.*symmetry plane.*less than 5 mm"),
+    "binary STL with more facets than it announces": (settings("Die lower/shape=stl", "Die lower/file=half_dropped.stl"),
+                                                      r"half_dropped\.stl.*184 bytes.*1 facets.*134"),
+    "die in metres": (settings("Die lower/shape=stl", "Die lower/file=in_metres.stl"), r"Die lower.*0\.0424264 mm.*scale"),
+    "die in nanometres": (settings("Die lower/shape=stl", "Die lower/file=in_nanometres.stl"), r"Die lower.*4\.24264e\+07 mm.*scale"),
+    "device for a die": (settings("Die lower/shape=stl", "Die lower/file=/dev/zero"), r"/dev/zero.*device"),
+    "billet in metres": (file_mesh("small") + settings("Billet/scale=0.001"), r"Die upper.*does not come against the billet.*scale"),
+    "two bodies": (file_mesh("two_bodies"), r"two_bodies\.msh.*bodies that no face connects"),
+    "a mesh that is there twice": (file_mesh("twice"), r"twice\.msh.*bodies that no face connects"),
+    "a layer felt too far": (settings("Contact/layer=1e-3"), r"Contact/layer.*0\.001.*0\.1"),
+    "rotation of many turns": (settings("Billet/rotation angle=1e308"), r"Billet/rotation angle.*1e308.*360"),
+    "moves that no increment makes": (settings("Press/largest move=1e-6"), r"Press/largest move.*1e-6.*0\.001"),
+    "facets without number": (settings("Die upper/shape=tripod", "Die upper/chord error=1e-6"), r"Die upper/Tripod.*facets.*1e6"),
+    "restart without bound": (settings("Linear solver/restart=2000000000"), r"Linear solver/restart.*1000"),
     "too few Newton steps": (settings("Newton/max iterations=1"), r"Newton"),
 }
 
@@ -278,7 +351,75 @@ def full_disk(folder):
             whole_history(f"what was computed before is kept ({name})", history, 1)
 
 
+def any_line_ends(folder):
+    """Files as other systems write them, names in an included file, continued lines, any case: all are read alike."""
+    def energy_and_volume(name, text):
+        with open(os.path.join(folder, "variant.prm"), "wb") as file:
+            file.write(text.encode())
+        done = run(["variant.prm", "--output", "variant", "--overwrite"], folder, command="simulate")
+        found = re.findall(r"^  (energy|volume) [0-9]", done.stdout, re.MULTILINE)
+        judge_that(name, done.returncode == 0 and found == ["energy", "volume"], done.stderr + str(found))
+
+    with open(os.path.join(folder, "names.prm"), "w", encoding="utf-8") as file:
+        file.write("subsection Objectives\nset names = energy, volume\nend\n")
+    case = CASE.replace("stroke     = 1", "stroke     = 0.1").replace("increments = 3", "increments = 1")
+    both = case + "subsection Objectives\n  set names = energy, volume\nend\n"
+    energy_and_volume("plain file", both)
+    energy_and_volume("lines that end as on Windows", both.replace("\n", "\r\n"))
+    energy_and_volume("lines that end as on old systems", both.replace("\n", "\r"))
+    energy_and_volume("byte order mark", "\ufeff" + both)
+    energy_and_volume("names without blanks", both.replace("names = energy, volume", "names=energy,volume"))
+    energy_and_volume("keywords in any case", re.sub("subsection|set |end\n", lambda m: m[0].upper(), both))
+    energy_and_volume("names on two lines", both.replace("energy, ", "energy, \\\n"))
+    energy_and_volume("names in another file", case + "include names.prm\n")
+
+
+def template(folder):
+    """What --print-parameters writes is a case, and is the manual's page."""
+    printed = subprocess.run([PROGRAM, "--print-parameters"], env=ENVIRONMENT, capture_output=True, text=True, check=False).stdout
+    with open(os.path.join(folder, "template.prm"), "w", encoding="utf-8") as file:
+        file.write(printed)
+    done = run(["template.prm", "--output", "template"] + settings("Press/stroke=0.1", "Billet/element size=20"), folder, command="simulate")
+    judge_that("the printed parameters are a case", done.returncode == 0, done.stderr)
+    page = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../doc/parameters/parameters.prm")
+    with open(page, encoding="utf-8") as file:
+        judge_that("doc/parameters/parameters.prm is up to date", file.read() == printed,
+                   "write it anew: retroforge --print-parameters > doc/parameters/parameters.prm")
+
+
+def told(folder):
+    """What is accepted and does not do what one may think is said."""
+    short = settings("Press/stroke=0.1", "Press/increments=1")
+    for name, more, pattern in (
+            ("radius of a box", settings("Billet/radius=20"), r"note: Billet/radius = 20 has no effect: shape = box reads .*size"),
+            ("scale of a plane", settings("Die lower/scale=2"), r"note: Die lower/scale = 2 has no effect: shape = plane"),
+            ("measure of another die", settings("Die lower/Bell/depth=3"), r"note: Die lower/Bell/depth = 3 has no effect"),
+            ("die of the energy", objective("energy", "die=upper"), r"note: Objective energy/die = upper has no effect"),
+            ("die that nothing touches", settings("Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0"),
+             r"warning: no node touched die side")):
+        done = run(["case.prm", "--output", "told", "--overwrite"] + short + more, folder, command="simulate")
+        judge_that(name, done.returncode == 0 and re.search(pattern, done.stdout), done.stdout + done.stderr)
+    done = run(["case.prm", "--output", "told", "--overwrite"] + short, folder, command="simulate")
+    judge_that("nothing to tell", not re.search("note|warning", done.stdout), done.stdout)
+
+
+def scaled_mesh(folder):
+    """A mesh in metres and its scale are the mesh in millimetres."""
+    results = []
+    for mesh, more in (("cube", []), ("cube_in_metres", settings("Billet/scale=1000"))):
+        done = run(["case.prm", "--output", mesh] + file_mesh(mesh) + settings("Press/stroke=0.1", "Press/increments=1") + more,
+                   folder, "simulate")
+        results.append(re.search(r"energy (\d+\.\d{6})", done.stdout))
+    judge_that("scale of a billet's file", all(results) and results[0][1] == results[1][1], done.stdout + done.stderr)
+
+
 def forbidden_output(folder):
+    for file in ("summary.json", "sensitivity.vtu"):
+        os.makedirs(os.path.join(folder, "taken", file))
+        done = run(["case.prm", "--output", "taken"], folder)
+        judge(f"{file} is a folder", done, re.escape(file))
+        judge_that("and that is found before the run", "  1 " not in done.stdout, done.stdout)
+        os.rmdir(os.path.join(folder, "taken", file))
     with open(os.path.join(folder, "a_file"), "w", encoding="utf-8") as file:
         file.write("in the way\n")
     judge("output below a file", run(["case.prm", "--output", "a_file/results"], folder), "a_file")
@@ -292,8 +433,9 @@ def main():
         for name, content in MESHES.items():
             with open(os.path.join(folder, f"{name}.msh"), "w", encoding="utf-8") as file:
                 file.write(content)
-        with open(os.path.join(folder, "open.stl"), "w", encoding="utf-8") as file:
-            file.write(OPEN_STL)
+        for name, content in STLS.items():
+            with open(os.path.join(folder, name), "wb") as file:
+                file.write(content)
         judge("missing parameter file", run(["absent.prm"], folder), "absent.prm")
         judge("unknown command", run(["case.prm"], folder, command="forge"), "forge")
         for name, (arguments, pattern) in MISTAKES.items():
@@ -301,6 +443,10 @@ def main():
         with open(os.path.join(folder, "unclosed.prm"), "w", encoding="utf-8") as file:
             file.write(CASE.rstrip()[:-3])
         judge("section not closed", run(["unclosed.prm"], folder), "unclosed.prm")
+        any_line_ends(folder)
+        template(folder)
+        told(folder)
+        scaled_mesh(folder)
         forbidden_output(folder)
         interrupted(folder)
         resumed(folder)

@@ -49,7 +49,7 @@ namespace retroforge
                    MPI_COMM_WORLD)
         , forging(model, parameters.press, remesher, timings)
         , forged(forging.start(leg, scene.mesh.X))
-        , objectives(judged.empty() ? all.make_objectives(model.dies) : std::move(judged))
+        , objectives(judged.empty() ? all.make_objectives(model.dies, scene.mesh) : std::move(judged))
         , trace(objectives, model, process)
     {
       forging.run(process, forged, [&](const IncrementEvent &event) {

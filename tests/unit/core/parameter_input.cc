@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-// Proves: values of a parameter file reach the variables they are bound to, overrides come after it, and each
-// mistake is reported once, with its line, the rule and the nearest known name.
+// Proves: values of a parameter file reach the variables they are bound to, however its lines end and its
+// keywords are written, overrides come after it, and each mistake is reported once, with its line, the rule
+// and the nearest known name.
 #include <retroforge/core/error.h>
 #include <retroforge/core/parameter_input.h>
 
@@ -67,8 +68,21 @@ void accepted()
   show(friction("set alpha = 0.2")); // an old name
   show(friction("set coefficient = 0.3"),
        {{"Contact/Friction/coefficient", "0.4"}, {"Contact/Friction/coefficient", "0.5"}, {"steps", "3"}});
+  show("\xef\xbb\xbfSubsection Upper die\r\nSet velocity = 0, \\\r\n  0, -3\r\nEnd\r\n"); // as on Windows
+  show("subsection Upper die\rset velocity = 0, 0, -4\rend\r");
   std::ofstream("included.prm") << friction("set law = tresca");
   show("include included.prm\n" + friction("set smooth ramp = false"));
+}
+
+void lines()
+{
+  std::ofstream("included.prm") << friction("set law = tresca");
+  std::ofstream("case.prm") << "Include included.prm\n" + friction("set coefficient=0.3") +
+                                 "set names = a, \\\n b";
+  for (const auto &[path, value] : parameter_values(read_parameter_lines("case.prm", {{"names", "c, d"}})))
+    std::cout << path << " = " << value << '\n';
+  for (const ParameterLine &line : parameter_lines_of("subsection A\n  set b = 1 # one\nend\n", "text"))
+    std::cout << line.where << ": " << line.path << (line.value ? " = " + *line.value : "") << '\n';
 }
 
 void unknown_names()
@@ -154,6 +168,8 @@ void required_parameter()
 int main()
 {
   accepted();
+  std::cout << "-- lines, of whatever names\n";
+  lines();
   std::cout << "-- unknown names\n";
   unknown_names();
   std::cout << "-- wrong values\n";

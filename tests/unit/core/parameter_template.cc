@@ -3,6 +3,7 @@
 // Proves: the printed parameters name every entry with meaning, allowed values and default, in the order of
 // their declaration, and read back as the same values.
 #include <retroforge/core/parameter_input.h>
+#include <retroforge/core/parameter_list.h>
 
 #include <fstream>
 #include <iostream>

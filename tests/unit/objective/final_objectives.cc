@@ -357,10 +357,5 @@ int main(int argc, char **argv)
   });
   refused([] { CylinderDistance({}, Vec3(), Vec3({0., 0., 1.})); });
   refused([] { CylinderDistance({"side"}, Vec3(), Vec3()); });
-  refused([] {
-    FinalProblem     problem(box(Vec3(), Vec3({1., 1., 1.}), 1.), {});
-    CylinderDistance distance({"rim"}, Vec3(), Vec3({0., 0., 1.}));
-    problem.value(distance);
-  });
   std::cout << "FIGURE final_objective_derivative_error " << worst << std::endl;
 }

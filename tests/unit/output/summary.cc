@@ -15,22 +15,22 @@ using namespace retroforge;
 Summary filled()
 {
   Summary s;
-  s.command               = "check";
-  s.version               = "0.1.0";
-  s.commit                = "";
-  s.blas                  = "reference";
-  s.ranks                 = 2;
-  s.n_nodes               = 1331;
-  s.n_cells               = 6000;
-  s.objectives            = {{"energy", 1.5, "mJ", {{"deformation", 1.25}, {"friction", 0.25}}, {}, 6.},
-                             {"maximum effort", 8., "N", {}, {{"true maximum", 9.}}}};
-  s.whole                 = {4., Summary::unknown};
-  s.parameters            = {{"material/K", 1., "MPa s^m", {{"energy", 1.5}, {"volume", Summary::unknown}}, 2.}};
-  s.increments            = 20;
-  s.cuts                  = 0;
-  s.remeshings            = 3;
-  s.newton_iterations     = 71;
-  s.krylov_iterations     = 900;
+  s.command           = "check";
+  s.version           = "0.1.0";
+  s.commit            = "";
+  s.blas              = "reference";
+  s.ranks             = 2;
+  s.n_nodes           = 1331;
+  s.n_cells           = 6000;
+  s.objectives        = {{"energy", 1.5, "mJ", {{"deformation", 1.25}, {"friction", 0.25}}, {}, 6.},
+                         {"maximum effort", 8., "N", {}, {{"true maximum", 9.}}}};
+  s.whole             = {4., Summary::unknown};
+  s.parameters        = {{"material/K", 1., "MPa s^m", {{"energy", 1.5}, {"volume", Summary::unknown}}, 2.}};
+  s.increments        = 20;
+  s.cuts              = 0;
+  s.remeshings        = 3;
+  s.newton_iterations = 71;
+  s.krylov_iterations = 900;
   s.linear_solves_forward = 71;
   s.linear_solves_adjoint = 40;
   s.volume_initial        = 8.;

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/parameters.h>
+
+namespace retroforge
+{
+  /// Whether a forging can come of billet and dies as they stand, before the first increment: sizes that fit
+  /// each other, a billet outside of all dies, a die that comes against it, a stroke that ends before planes
+  /// meet, and no rigid motion left free.
+  /// @param X  positions of the billet's nodes     @throws Error
+  void check_scene(const Parameters           &parameters,
+                   const Scene                &scene,
+                   const Process<double>      &process,
+                   const NodalVectors<double> &X);
+} // namespace retroforge

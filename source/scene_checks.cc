@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/scene_checks.h>
+#include <retroforge/solver/rigid_modes.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace retroforge
+{
+  namespace
+  {
+    /// Extents of a die over that of the billet: a punch may be small and a bed large, but not by what metres
+    /// differ from millimetres.
+    constexpr double smallest_die = 1e-2, largest_die = 1e3;
+
+    /// What lies nearer than this part of the billet's size touches.
+    constexpr double touching = 1e-3;
+
+    std::string how_to_scale(const Parameters &parameters)
+    {
+      return parameters.billet.shape == "file" ? "set `scale' of the billet or of the die: a mesh in metres "
+                                                 "needs 1000 where lengths are in mm"
+                                               : "set the die's `scale', or correct the billet's measures";
+    }
+
+    double extent(const NodalVectors<double> &X)
+    {
+      const auto [low, high] = bounding_box(X);
+      return (high - low).norm();
+    }
+
+    void check_sizes(const Parameters &parameters, const Scene &scene, const NodalVectors<double> &X)
+    {
+      for (const Die &die : scene.dies)
+        if (die.surface())
+          if (const double ratio = die.surface()->diagonal() / extent(X);
+              !(ratio >= smallest_die && ratio <= largest_die))
+            throw Error("Die " + die.name,
+                        "its extent is " + as_text(die.surface()->diagonal()) + " mm, that of the billet " +
+                          as_text(extent(X)) + " mm",
+                        "a die is a hundredth of the billet at least, and a thousand times as large at most",
+                        how_to_scale(parameters));
+    }
+
+    void check_depths(const Parameters &parameters, const Scene &scene)
+    {
+      const double least = 0.1 * parameters.edge_length(scene.mesh);
+      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+        if (const double depth = parameters.dies[d].depth;
+            scene.dies[d].surface() && depth > 0. && depth < least)
+          throw Error(
+            "Die " + parameters.dies[d].name + "/depth of contact",
+            "is " + as_text(depth) + " mm",
+            "nodes deeper are lost to the die, so it must be a tenth of the element size at least, " +
+              as_text(least) + " mm",
+            "leave it out, which takes a tenth of the die's extent");
+    }
+
+    /// Signed distance of each surface node from a die.
+    std::vector<double>
+    distances(const Scene &scene, const Die &die, const Vec3 &displacement, const NodalVectors<double> &X)
+    {
+      std::vector<double> delta;
+      for (NodeIndex k = 0; k < X.size(); ++k)
+        if (scene.topology.is_on_surface(k))
+          delta.push_back(die.signed_distance(X[k], displacement));
+      return delta;
+    }
+
+    void check_outside(const Parameters           &parameters,
+                       const Scene                &scene,
+                       const Process<double>      &process,
+                       const NodalVectors<double> &X)
+    {
+      // A neighbour of a sound design may begin a little inside a die: contact pushes it out as the run
+      // begins.
+      const double allowed =
+        (parameters.design.at.empty() ? 1e-3 : 0.05) * std::cbrt(volume(scene.mesh.cells, X));
+      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      {
+        const auto   delta   = distances(scene, scene.dies[d], process.dies[d].displacement, X);
+        const double deepest = -*std::min_element(delta.begin(), delta.end());
+        if (deepest > allowed)
+          throw Error(
+            "Die " + scene.dies[d].name,
+            "the billet stands " + as_text(deepest) + " mm inside it",
+            "a billet starts outside of all dies",
+            "move the die's point, or the billet (Billet/translation), or turn the die's facing round; " +
+              how_to_scale(parameters));
+      }
+    }
+
+    /// Whether a die touches the billet, where it stands, from some point of its path on, and does not move
+    /// away from it there.
+    bool comes_against(const Scene                &scene,
+                       const unsigned int          d,
+                       const Process<double>      &process,
+                       const double                stroke,
+                       const NodalVectors<double> &X)
+    {
+      const double       near    = touching * std::cbrt(volume(scene.mesh.cells, X));
+      const auto         path    = process.dies[d].velocity / process.speed() * stroke;
+      const double       wanted  = scene.dies[d].surface() ? std::ceil(path.norm() / (50. * near)) : 1.;
+      const unsigned int n_steps = std::clamp(wanted, 1., 200.);
+      const auto         start   = distances(scene, scene.dies[d], process.dies[d].displacement, X);
+      for (unsigned int i = 1; i <= n_steps; ++i)
+      {
+        const auto delta = distances(
+          scene, scene.dies[d], process.dies[d].displacement + path * (static_cast<double>(i) / n_steps), X);
+        for (std::size_t k = 0; k < delta.size(); ++k)
+          if (delta[k] <= near && delta[k] <= start[k] + 1e-9 * near)
+            return true;
+      }
+      return false;
+    }
+
+    /// The first die to touch the billet is one that moves.
+    void check_reach(const Parameters           &parameters,
+                     const Scene                &scene,
+                     const Process<double>      &process,
+                     const NodalVectors<double> &X)
+    {
+      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+        if (process.dies[d].velocity.norm() > 0. &&
+            comes_against(scene, d, process, parameters.press.stroke, X))
+          return;
+      const unsigned int lead    = process.leading_die;
+      const auto         delta   = distances(scene, scene.dies[lead], process.dies[lead].displacement, X);
+      const double       nearest = *std::min_element(delta.begin(), delta.end()), size = extent(X);
+      throw Error("Die " + scene.dies[lead].name,
+                  "does not come against the billet, whose extent is " + as_text(size) + " mm: it starts " +
+                    as_text(nearest) + " mm away, and the stroke is " + as_text(parameters.press.stroke) +
+                    " mm along its velocity",
+                  "a die that moves must reach the billet within the stroke",
+                  "turn the velocity round, move the die's point or the billet, or lengthen Press/stroke; " +
+                    how_to_scale(parameters));
+    }
+
+    /// A plane that the workpiece cannot cross, at the end of the stroke.
+    struct Wall
+    {
+      std::string name;
+      Vec3        point, facing;
+    };
+
+    std::vector<Wall> walls(const Parameters &parameters, const Scene &scene, const Process<double> &process)
+    {
+      std::vector<Wall> walls;
+      const auto        dies = process.at_stroke(parameters.press.stroke).dies;
+      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+        if (!scene.dies[d].surface())
+          walls.push_back({"die " + scene.dies[d].name,
+                           parameters.dies[d].point + dies[d].displacement,
+                           parameters.dies[d].facing});
+      for (const Patch &patch : scene.mesh.patches)
+        if (patch.symmetry)
+          walls.push_back(
+            {"the symmetry plane " + patch.name, patch.symmetry->point, -patch.symmetry->normal});
+      return walls;
+    }
+
+    void check_stroke(const Parameters &parameters, const Scene &scene, const Process<double> &process)
+    {
+      const auto planes = walls(parameters, scene, process);
+      for (std::size_t i = 0; i < planes.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+          if ((planes[i].facing + planes[j].facing).norm() < 1e-6)
+            if (const double gap = (planes[i].point - planes[j].point) * planes[j].facing; !(gap > 0.))
+              throw Error("Press/stroke",
+                          "is " + as_text(parameters.press.stroke) + " mm, after which " + planes[i].name +
+                            " is " + as_text(-gap) + " mm beyond " + planes[j].name,
+                          "the workpiece stays between the dies, and needs room there",
+                          "shorten the stroke to less than " + as_text(parameters.press.stroke + gap) +
+                            " mm, or move the dies' points");
+    }
+  } // namespace
+
+  void check_scene(const Parameters           &parameters,
+                   const Scene                &scene,
+                   const Process<double>      &process,
+                   const NodalVectors<double> &X)
+  {
+    check_sizes(parameters, scene, X);
+    check_depths(parameters, scene);
+    check_outside(parameters, scene, process, X);
+    check_reach(parameters, scene, process, X);
+    check_stroke(parameters, scene, process);
+    if (const unsigned int n = n_free_rigid_modes(scene, process.at_stroke(0.), X); n > 0)
+      throw Error("Dies",
+                  "the billet can slide or spin freely in " + std::to_string(n) + " rigid motion(s)",
+                  "its velocity must be unique",
+                  "cut it by symmetry planes, or give a die some friction");
+  }
+} // namespace retroforge
