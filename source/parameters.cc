@@ -14,6 +14,12 @@ namespace retroforge
 {
   using namespace dealii::Patterns;
 
+  namespace
+  {
+    /// Below it the friction of a sticking node is infinitely stiff, in the leading die's speed.
+    constexpr double least_slip = 1e-20;
+  } // namespace
+
   void ContactParameters::add_parameters(dealii::ParameterHandler &prm)
   {
     prm.enter_subsection("Contact");
@@ -47,7 +53,7 @@ namespace retroforge
       approach,
       "Approach time in increments: a gap closes within this many. 1 closes it in one, larger values "
       "smooth the objective and bias the energy. Units: none.",
-      Double(1.));
+      Double(1., 100.));
     prm.add_parameter(
       "layer",
       layer,
@@ -59,7 +65,7 @@ namespace retroforge
       "ramp width",
       ramp_width,
       "Gap over which friction sets in, in units of approach times the increment's stroke. Units: none.",
-      Double(1e-6));
+      Double(1e-6, 100.));
     prm.add_parameter(
       "penetration",
       penetration,
@@ -351,9 +357,10 @@ end
     for (unsigned int d = 0; d < dies.size(); ++d)
     {
       dies[d].check();
-      if (dies[d].friction > 0. && material.sensitivity < 1. && contact.slip_fraction == 0.)
+      if (dies[d].friction > 0. && material.sensitivity < 1. && contact.slip_fraction < least_slip)
         throw Error("Contact/slip regularisation",
-                    "is 0 with friction and a strain rate sensitivity below 1",
+                    "is " + as_text(contact.slip_fraction) +
+                      " with friction and a strain rate sensitivity below 1",
                     "the friction of a sticking node would be infinitely stiff",
                     "use 1e-2, or 1e-3 for a sharper law");
     }
@@ -390,12 +397,12 @@ end
 
   void Parameters::check_derived(const double size) const
   {
-    const auto is_sound = [](const double x) { return std::isfinite(x) && x > 0.; };
+    const auto is_sound = [](const double x) { return x > 1e-50 && x < 1e50; };
     const auto require  = [](const bool sound, const std::string &where, const std::string &what) {
       if (!sound)
         throw Error(where,
                     "makes " + what + " zero or infinite",
-                    "what follows from the parameters must be positive finite numbers",
+                    "what follows from the parameters must be between 1e-50 and 1e50",
                     "use values of the usual size: lengths in mm, speeds in mm/s, stresses in MPa");
     };
     const StepModel model = step_model();
@@ -405,7 +412,23 @@ end
             "the reach of contact (approach, layer, ramp width)");
     const Process<double> made = process(size);
     require(is_sound(made.speed()), "Dies", "the speed of the leading die");
+    require(is_sound(mean_pressure(size)), "Material", "the flow stress");
     require(is_sound(made.contact.rho), "Contact", "the penalty (with the speed and the material)");
+    // In words of Contact/penetration, and within its bounds.
+    const double penetration = mean_pressure(size) / (made.contact.rho * made.speed());
+    if (contact.penalty > 0. && !(penetration >= 1e-14 && penetration <= 1.))
+      throw Error("Contact/penalty",
+                  "is " + as_text(contact.penalty) + " MPa s/mm, with which nodes sink in at " +
+                    as_text(penetration) + " times the leading die's speed",
+                  "as for Contact/penetration that must be from 1e-14 to 1",
+                  "leave it 0 and set Contact/penetration");
+    const double n_cells = remeshing.element_size > 0. ? 8. * std::pow(size / remeshing.element_size, 3) : 0.;
+    if (!(n_cells <= 1e9))
+      throw Error("Remeshing/element size",
+                  "is " + as_text(remeshing.element_size) + ", which makes about " + as_text(n_cells) +
+                    " tetrahedra",
+                  "a mesh may have 1e9",
+                  "choose a larger element size, or 0 for that of the billet");
   }
 
   Parameters &Parameters::settle(const double size)

@@ -7,6 +7,8 @@
 #include <retroforge/geometry/die_parameters.h>
 #include <retroforge/geometry/stl_file.h>
 
+#include <cmath>
+
 namespace retroforge
 {
   using dealii::Patterns::Double;

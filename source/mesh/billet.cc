@@ -4,6 +4,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <retroforge/core/error.h>
+#include <retroforge/geometry/triangle_surface.h>
 #include <retroforge/mesh/billet.h>
 #include <retroforge/mesh/broadcast.h>
 #include <retroforge/mesh/gmsh_mesher.h>
@@ -297,6 +298,19 @@ namespace retroforge
           patch.symmetry->point = moved(patch.symmetry->point);
     }
 
+    /// Far from the origin no digits are left for the shape.
+    void check_place(const TetMesh &mesh)
+    {
+      const auto [low, high] = bounding_box(mesh.X);
+      const double away      = std::max(low.norm(), high.norm());
+      if (!(away <= 1e6 * (high - low).norm()))
+        throw Error("Billet/translation",
+                    "brings the billet, of an extent of " + as_text((high - low).norm()) + " mm, " +
+                      as_text(away) + " mm away from the origin",
+                    "it stands within a million times its extent",
+                    "move billet and dies nearer to the origin (base centre, translation)");
+    }
+
     TetMesh read_file(const BilletParameters &p)
     {
       TetMesh mesh = read_msh(p.file_name, p.symmetry_patches);
@@ -314,6 +328,7 @@ namespace retroforge
       const std::string where = p.shape == "file" ? p.file_name : "Billet";
       check_mesh(mesh, where);
       move(mesh, p);
+      check_place(mesh);
       renumber(mesh);
       return mesh;
     }
@@ -465,9 +480,11 @@ namespace retroforge
                   "are given, and the shape is `" + shape + "'",
                   "symmetry patches are for meshes from a file",
                   "use symmetry planes");
-    if (rotation_angle != 0 && !(rotation_axis.norm() > 0))
-      throw Error(
-        "Billet/rotation axis", "has no length", "a rotation needs an axis", "write for example `0, 0, 1'");
+    if (rotation_angle != 0 && !(rotation_axis.norm() > 0 && std::isfinite(rotation_axis.norm())))
+      throw Error("Billet/rotation axis",
+                  "has length " + as_text(rotation_axis.norm()),
+                  "a rotation needs an axis",
+                  "write for example `0, 0, 1'");
   }
 
   TetMesh make_billet(const BilletParameters &parameters, MPI_Comm communicator)

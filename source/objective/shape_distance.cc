@@ -5,6 +5,7 @@
 #include <retroforge/objective/surface_areas.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace retroforge
 {
@@ -50,8 +51,11 @@ namespace retroforge
   CylinderDistance::CylinderDistance(std::vector<std::string> patches, const Vec3 &point, const Vec3 &axis)
       : patches_(std::move(patches)), point_(point), axis_(axis / axis.norm())
   {
-    if (!(axis.norm() > 0.))
-      throw Error("Cylinder distance", "the axis has no length", "it is a direction", "use 0, 0, 1");
+    if (!(axis.norm() > 0. && std::isfinite(axis.norm())))
+      throw Error("Cylinder distance",
+                  "the axis has length " + as_text(axis.norm()),
+                  "it is a direction",
+                  "use 0, 0, 1");
     if (patches_.empty())
       throw Error("Cylinder distance",
                   "no patch is named",
