@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace retroforge
 {
@@ -132,8 +133,8 @@ namespace retroforge
       const double       nearest = *std::min_element(delta.begin(), delta.end()), size = extent(X);
       throw Error("Die " + scene.dies[lead].name,
                   "does not come against the billet, whose extent is " + as_text(size) + " mm: it starts " +
-                    as_text(nearest) + " mm away, and the stroke is " + as_text(parameters.press.stroke) +
-                    " mm along its velocity",
+                    as_text(std::max(0., nearest)) + " mm away, and the stroke is " +
+                    as_text(parameters.press.stroke) + " mm along its velocity",
                   "a die that moves must reach the billet within the stroke",
                   "turn the velocity round, move the die's point or the billet, or lengthen Press/stroke; " +
                     how_to_scale(parameters));
@@ -162,19 +163,68 @@ namespace retroforge
       return walls;
     }
 
-    void check_stroke(const Parameters &parameters, const Scene &scene, const Process<double> &process)
+    [[noreturn]] void throw_too_long(const double       stroke,
+                                     const std::string &name,
+                                     const double       beyond,
+                                     const std::string &other)
+    {
+      throw Error("Press/stroke",
+                  "is " + as_text(stroke) + " mm, after which " + name + " is " + as_text(beyond) +
+                    " mm beyond " + other,
+                  "the workpiece stays between the dies, and needs room there",
+                  "shorten the stroke to less than " + as_text(stroke - beyond) +
+                    " mm, or move the dies' points");
+    }
+
+    void check_planes(const Parameters &parameters, const Scene &scene, const Process<double> &process)
     {
       const auto planes = walls(parameters, scene, process);
       for (std::size_t i = 0; i < planes.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
           if ((planes[i].facing + planes[j].facing).norm() < 1e-6)
             if (const double gap = (planes[i].point - planes[j].point) * planes[j].facing; !(gap > 0.))
-              throw Error("Press/stroke",
-                          "is " + as_text(parameters.press.stroke) + " mm, after which " + planes[i].name +
-                            " is " + as_text(-gap) + " mm beyond " + planes[j].name,
-                          "the workpiece stays between the dies, and needs room there",
-                          "shorten the stroke to less than " + as_text(parameters.press.stroke + gap) +
-                            " mm, or move the dies' points");
+              throw_too_long(parameters.press.stroke, planes[i].name, -gap, planes[j].name);
+    }
+
+    /// A box around the billet that is open along a direction.
+    std::function<bool(const Vec3 &)> beside(const NodalVectors<double> &X, const Vec3 &direction)
+    {
+      const Vec3 n      = direction / direction.norm();
+      const Vec3 first  = cross_product_3d(n, std::abs(n[0]) < 0.5 ? Vec3({1., 0., 0.}) : Vec3({0., 1., 0.}));
+      const Vec3 second = cross_product_3d(n, first);
+      const auto place  = [=](const Vec3 &x) { return Vec3({first * x, second * x, 0.}); };
+      NodalVectors<double> flat;
+      for (const Vec3 &x : X)
+        flat.push_back(place(x));
+      return [place, box = bounding_box(flat)](const Vec3 &x) { return is_inside(box, place(x)); };
+    }
+
+    /// The part of a curved die that faces the billet must not end inside of another die. (What is beside the
+    /// billet, as a guide of the dies, may.)
+    void check_surfaces(const Parameters           &parameters,
+                        const Scene                &scene,
+                        const Process<double>      &process,
+                        const NodalVectors<double> &X)
+    {
+      const auto   faces_billet = beside(X, process.dies[process.leading_die].velocity);
+      const auto   dies         = process.at_stroke(parameters.press.stroke).dies;
+      const double allowed      = touching * std::cbrt(volume(scene.mesh.cells, X));
+      for (unsigned int a = 0; a < dies.size(); ++a)
+        for (unsigned int b = 0; b < dies.size(); ++b)
+          if (const TriangleSurface *surface = scene.dies[a].surface();
+              a != b && surface && (dies[a].velocity - dies[b].velocity).norm() > 0.)
+          {
+            double nearest = allowed;
+            for (const Vec3 &x : surface->vertices())
+              if (faces_billet(x + dies[a].displacement))
+                nearest = std::min(
+                  nearest, scene.dies[b].signed_distance(x + dies[a].displacement, dies[b].displacement));
+            if (nearest < -allowed)
+              throw_too_long(parameters.press.stroke,
+                             "a part of die " + scene.dies[a].name,
+                             -nearest,
+                             "die " + scene.dies[b].name);
+          }
     }
   } // namespace
 
@@ -187,7 +237,8 @@ namespace retroforge
     check_depths(parameters, scene);
     check_outside(parameters, scene, process, X);
     check_reach(parameters, scene, process, X);
-    check_stroke(parameters, scene, process);
+    check_planes(parameters, scene, process);
+    check_surfaces(parameters, scene, process, X);
     if (const unsigned int n = n_free_rigid_modes(scene, process.at_stroke(0.), X); n > 0)
       throw Error("Dies",
                   "the billet can slide or spin freely in " + std::to_string(n) + " rigid motion(s)",

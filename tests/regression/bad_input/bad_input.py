@@ -208,6 +208,9 @@ MISTAKES = {
     "stroke up to a plane of symmetry": (settings(
         "Billet/symmetry planes=-1, 0, 0; 0, -1, 0; 0, 0, -1", "Billet/symmetry point=centre", "Die lower/point=0, 0, -9",
         "Press/stroke=5"), r"Press/stroke.*symmetry plane.*less than 5 mm"),
+    "curved die into a plane": (settings("Die upper/shape=bell", "Die upper/Bell/mouth radius=3", "Die upper/Bell/depth=2",
+                                         "Die upper/Bell/draft angle=10", "Die upper/Bell/edge radius=0.5", "Die upper/Bell/fillet radius=0.5",
+                                         "Press/stroke=12.5"), r"Press/stroke.*part of die upper.*beyond die lower.*less than 10 mm"),
     "binary STL with more facets than it announces": (settings("Die lower/shape=stl", "Die lower/file=half_dropped.stl"),
                                                       r"half_dropped\.stl.*184 bytes.*1 facets.*134"),
     "die in metres": (settings("Die lower/shape=stl", "Die lower/file=in_metres.stl"), r"Die lower.*0\.0424264 mm.*scale"),
