@@ -154,6 +154,8 @@ class Report(ScratchTest):
         np.testing.assert_allclose([value for _, value in relative], [-2.0, 0.5, 0.3])
         self.assertEqual(effects.relative_gradient({"name": "energy", "value": 0.0}, parameters), [])
         self.assertEqual(effects.effects({"name": "volume", "value": 1.0}, parameters), [])
+        offset = {"name": "f", "value": 0.0, "scale": 20.0, "unit": "mm", "gradient": {"energy": 3.0}}
+        self.assertAlmostEqual(effects.effects({"name": "energy", "value": 1.0}, [offset])[0].for_one_percent, 0.6)
 
     def test_objectives_over_the_stroke(self):
         self.write("summary.json", '{"schema": 1, "objectives": [{"name": "a"}, {"name": "a: b"}]}')

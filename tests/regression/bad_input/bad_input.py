@@ -7,6 +7,7 @@
 and what was computed before the trouble can still be read. Usage: bad_input.py RETROFORGE"""
 import csv
 import itertools
+import json
 import os
 import re
 import struct
@@ -425,6 +426,16 @@ def scaled_mesh(folder):
     judge_that("scale of a billet's file", all(results) and results[0][1] == results[1][1], done.stdout + done.stderr)
 
 
+def per_cent_of_zero(folder):
+    """Where a parameter is 0, its per cent are of a length that is told: the width of the billet, from a file too."""
+    offset = settings("Press/stroke=0.1", "Press/increments=1", "Design/parameters=die upper/offset")
+    for name, more in (("box", []), ("file", file_mesh("cube"))):
+        done = run(["case.prm", "--output", "width", "--overwrite"] + offset + more, folder)
+        with open(os.path.join(folder, "width", "summary.json"), encoding="utf-8") as file:
+            scale = json.load(file)["parameters"][0].get("scale")
+        judge_that(f"per cent of an offset, billet of shape {name}", scale == 10 and "(of 10 mm)" in done.stdout, done.stdout + done.stderr)
+
+
 def forbidden_output(folder):
     for file in ("summary.json", "sensitivity.vtu"):
         os.makedirs(os.path.join(folder, "taken", file))
@@ -459,6 +470,7 @@ def main():
         template(folder)
         told(folder)
         scaled_mesh(folder)
+        per_cent_of_zero(folder)
         forbidden_output(folder)
         interrupted(folder)
         resumed(folder)
