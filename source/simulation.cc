@@ -182,6 +182,8 @@ namespace retroforge
        "parameters.prm", "history.csv", "objectives.csv", "fields.pvd", "summary.json"};
     if (command_.command != "simulate")
       files.push_back("sensitivity.vtu");
+    if (parameters_.output.record)
+      files.push_back("record.h5");
     for (const Die &die : model_.dies)
       if (die.surface())
       {

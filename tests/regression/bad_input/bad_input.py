@@ -437,7 +437,7 @@ def per_cent_of_zero(folder):
 
 
 def forbidden_output(folder):
-    for file in ("summary.json", "sensitivity.vtu"):
+    for file in ("summary.json", "sensitivity.vtu", "record.h5"):
         os.makedirs(os.path.join(folder, "taken", file))
         done = run(["case.prm", "--output", "taken"], folder)
         judge(f"{file} is a folder", done, re.escape(file))
