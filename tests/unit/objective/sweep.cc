@@ -26,12 +26,20 @@ Objectives all_objectives(const unsigned int upper)
 {
   Objectives objectives;
   const auto path = [&](const std::string &name, auto &&objective) {
-    objectives.push_back(
-      {name, 1., std::make_unique<std::decay_t<decltype(objective)>>(std::move(objective)), nullptr});
+    objectives.push_back({name,
+                          1.,
+                          Extent::none,
+                          invalid_index,
+                          std::make_unique<std::decay_t<decltype(objective)>>(std::move(objective)),
+                          nullptr});
   };
   const auto at_end = [&](const std::string &name, auto &&objective) {
-    objectives.push_back(
-      {name, 1., nullptr, std::make_unique<std::decay_t<decltype(objective)>>(std::move(objective))});
+    objectives.push_back({name,
+                          1.,
+                          Extent::none,
+                          invalid_index,
+                          nullptr,
+                          std::make_unique<std::decay_t<decltype(objective)>>(std::move(objective))});
   };
   const PathWindow late{PathWindow::Over::stroke, 1.1, 3.}, early{PathWindow::Over::time, 0.002, 0.019};
   path("energy", EnergyObjective());
