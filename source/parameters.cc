@@ -337,6 +337,14 @@ end
       add("Die " + die.name + "/shape", DieParameters::read_by_shape());
     for (const ObjectiveParameters &objective : objectives.all)
       add("Objective " + objective.name + "/type", ObjectiveParameters::read_by_type());
+    add("Remeshing/when", {{"increments", {"every"}}});
+    add("Adjoint/derivatives",
+        {{"semi-analytic", {"perturbation"}}, {"semi-analytic central", {"perturbation"}}});
+    if (objectives.gradients == "each")
+      for (const ParameterEntry &entry : entries)
+        if (entry.name == "weight" && entry.value != entry.default_value)
+          without_effect.push_back(entry.path() + " = " + entry.value +
+                                   " has no effect: Objectives/gradients = each makes no weighted sum");
   }
 
   void Parameters::check_all()

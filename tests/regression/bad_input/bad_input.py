@@ -408,6 +408,11 @@ def told(folder):
             ("scale of a plane", settings("Die lower/scale=2"), r"note: Die lower/scale = 2 has no effect: shape = plane"),
             ("measure of another die", settings("Die lower/Bell/depth=3"), r"note: Die lower/Bell/depth = 3 has no effect"),
             ("die of the energy", objective("energy", "die=upper"), r"note: Objective energy/die = upper has no effect"),
+            ("increments between remeshings by quality", settings("Remeshing/every=3"),
+             r"note: Remeshing/every = 3 has no effect: when = quality reads"),
+            ("step of exact derivatives", settings("Adjoint/perturbation=1e-5"),
+             r"note: Adjoint/perturbation = 1e-5 has no effect: derivatives = exact reads"),
+            ("weight in no sum", objective("energy", "weight=2"), r"note: Objective energy/weight = 2 has no effect: .*gradients = each"),
             ("die that nothing touches", settings("Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0"),
              r"warning: no node touched die side")):
         done = run(["case.prm", "--output", "told", "--overwrite"] + short + more, folder, command="simulate")
