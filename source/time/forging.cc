@@ -248,14 +248,18 @@ namespace retroforge
     what.precision(5);
     what << "stops at stroke " << record.stroke << " mm, where even an increment of "
          << whole * std::ldexp(1., -static_cast<int>(press_.max_cuts)) << " mm is too long: " << reason;
+    const char *remedy =
+      record.stroke == 0. ? "nothing moved yet, so the stroke is not what is wrong: use values of the usual "
+                            "size, penalty and friction above all, more increments, or a better mesh"
+      : remesher_.enabled()
+        ? "if the dies nearly close or the cavity is full there, shorten the stroke; else use more "
+          "increments or a finer mesh"
+        : "the mesh may be too distorted to go on: set Remeshing/when = quality";
     throw Error("Press/stroke",
                 what.str(),
                 "an increment may be halved " + std::to_string(press_.max_cuts) +
                   " times (Press/max cuts), and elements must stay sound",
-                remesher_.enabled()
-                  ? "if the dies nearly close or the cavity is full there, shorten the stroke; else use more "
-                    "increments or a finer mesh"
-                  : "the mesh may be too distorted to go on: set Remeshing/when = quality");
+                remedy);
   }
 
   void Forging::check_progress(const ForgingState &state) const
