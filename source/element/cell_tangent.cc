@@ -237,6 +237,7 @@ namespace retroforge
   void compute_cell_tangents(const std::array<CellGeometry<double>, n_lanes>        &geometry,
                              const std::array<CellValues<double>, n_lanes>          &w,
                              const NortonHoff<double>                               &law,
+                             const Linearisation                                     linearisation,
                              TangentPack                                            &tangent,
                              const std::array<BubbleElimination<double> *, n_lanes> &elimination)
   {
@@ -247,7 +248,7 @@ namespace retroforge
       fill(geometry[lane], w[lane].V.data(), w[lane].beta, law, input);
       for_each_entry(pack, input, [lane](double &p, const double &x) { (&p)[lane] = x; });
     }
-    tangent_pack(pack, law.m == 1., tangent);
+    tangent_pack(pack, law.m == 1. || linearisation == Linearisation::picard, tangent);
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
       for_each_entry(static_cast<BubbleElimination<Pack> &>(tangent),
                      *elimination[lane],

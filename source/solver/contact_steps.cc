@@ -9,8 +9,17 @@ namespace retroforge
     /// Nodes that two dies hold need more than one sweep over the pairs.
     constexpr unsigned int sweeps = 3;
 
-    /// Beyond the die, of the node's speed: enough to count as active, too little for a force.
+    /// Beyond the die, of the fastest die's speed: enough to count as active, too little for a force. (A node
+    /// may stick to its die, so that its own speed against it is no measure.)
     constexpr double beyond = 1e-8;
+
+    double fastest(const std::vector<DieState<double>> &dies)
+    {
+      double speed = 0.;
+      for (const auto &die : dies)
+        speed = std::max(speed, die.velocity.norm());
+      return speed;
+    }
 
     /// By a correction along the die's normal, as far as the symmetry planes let the node go that way.
     void put_onto_die(const Stage<double> &stage, const unsigned int p, Field<double> &W)
@@ -22,7 +31,7 @@ namespace retroforge
         free -= (fixed * free) * fixed;
       constexpr double held = 1e-3; // of the normal: symmetry holds the node, not the die
       if (const double part = free * node.n; part > held)
-        W.V[k] -= (approach_excess(node) - beyond * node.u.norm()) / part * free;
+        W.V[k] -= (approach_excess(node) - beyond * fastest(stage.physics.dies)) / part * free;
     }
 
     /// Whether a node is at its die: what it may approach at is little of its speed.

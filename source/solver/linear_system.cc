@@ -311,7 +311,10 @@ namespace retroforge
       }
   }
 
-  void LinearSystem::assemble(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
+  void LinearSystem::assemble(const Stage<double> &stage,
+                              const Field<double> &W,
+                              const ActiveSet     &active,
+                              const Linearisation  linearisation)
   {
     const auto timing = timings_.scope("assembly");
     const auto clear  = [](const Block &block, const unsigned int n_rows) {
@@ -345,7 +348,7 @@ namespace retroforge
         w[lane]           = W.on_cell(scene_.mesh, c);
         elimination[lane] = lane < n ? &eliminations_[begin + lane] : &unused;
       }
-      compute_cell_tangents(geometry, w, stage.physics.law, tangent, elimination);
+      compute_cell_tangents(geometry, w, stage.physics.law, linearisation, tangent, elimination);
       for (unsigned int lane = 0; lane < n; ++lane)
       {
         const CellIndex c = partition.visited_cells[begin + lane];

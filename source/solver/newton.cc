@@ -188,34 +188,57 @@ namespace retroforge
   /// Steps within which contacts are to be found at once.
   constexpr unsigned int contacts_settle = 20;
 
-  NewtonStatistics Newton::solve(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen)
+  /// Steps at constant viscosity that a start from another mesh begins with.
+  constexpr unsigned int picard_steps = 2;
+
+  /// Where less of a step is taken, the next is at constant viscosity.
+  constexpr double short_step = 0.6;
+
+  /// Residual below which a whole step should leave less than poor_fall of it.
+  constexpr double close = 1e-3, poor_fall = 0.2;
+
+  /// Linear systems are not solved better than this only because steps are poor.
+  constexpr double least_forcing = 1e-6;
+
+  NewtonStatistics
+  Newton::solve(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen, const Start start)
   {
     NewtonStatistics statistics;
+    const bool       linear = stage.physics.law.m == 1.;
     const bool       from_rest =
       std::all_of(W.V.begin(), W.V.end(), [](const Vec3 &v) { return v.norm_square() == 0.; });
-    if (from_rest && stage.physics.law.m != 1.)
+    if (from_rest && !linear)
       initial_guess(stage, W, frozen, statistics);
     // A recorded active set comes with its solution.
-    const bool decides = frozen.empty() && stage.physics.law.m != 1.;
+    const bool decides = frozen.empty() && !linear;
     if (decides && !from_rest)
       hold_on_dies(stage, W);
+    unsigned int  picard = decides && start == Start::far ? picard_steps : 0;
     Field<double> r, step;
     double        last = 1., largest_forcing = parameters_.forcing;
+    bool          whole = false; // the step before
     for (unsigned int iteration = 0; iteration < parameters_.max_iterations; ++iteration)
     {
-      ActiveSet start = frozen;
-      if (from_rest && iteration == 0 && frozen.empty() && stage.physics.law.m == 1.)
+      ActiveSet first_active = frozen;
+      if (from_rest && iteration == 0 && frozen.empty() && linear)
         for (const auto &projection : stage.contact.projections)
-          start.push_back(projection.delta <= 0.);
+          first_active.push_back(projection.delta <= 0.);
+      const auto assemble = [&]() {
+        system_.assemble(stage, W, first_active, picard > 0 ? Linearisation::picard : Linearisation::newton);
+      };
       // The first matrix makes the frames and scales that residuals are measured in.
       if (iteration == 0)
-        system_.assemble(stage, W, start);
-      statistics.residual = relative_residual(stage, W, start, r);
-      if (start == frozen && statistics.residual <= parameters_.tolerance)
+        assemble();
+      statistics.residual = relative_residual(stage, W, first_active, r);
+      if (first_active == frozen && statistics.residual <= parameters_.tolerance)
         return statistics;
       if (iteration > 0)
-        system_.assemble(stage, W, start);
-      const bool   linear = stage.physics.law.m == 1.;
+        assemble();
+      picard -= picard > 0;
+      // Close to the solution, Newton's steps fall short because their systems are solved too roughly:
+      // squashed elements weigh less in the solver's norm than in the residual's.
+      if (whole && statistics.residual < close && statistics.residual > poor_fall * last)
+        largest_forcing = std::max(least_forcing, 0.1 * largest_forcing);
       const double goal = 0.1 * parameters_.tolerance / std::max(statistics.residual, parameters_.tolerance);
       // As good as the quadratic convergence that the residual's fall, or its size, promises.
       const double promise = std::max(0.1 * statistics.residual, std::pow(statistics.residual / last, 2));
@@ -225,22 +248,26 @@ namespace retroforge
       rhs.add(-1., r);
       statistics.krylov += system_.solve(rhs, forcing, step);
       ++statistics.iterations;
-      if (start == frozen && statistics.residual > 1e-6)
+      if (first_active == frozen && statistics.residual > 1e-6)
       {
+        double taken;
         if (decides && iteration < contacts_settle)
         {
           const ActiveSet active = stage.decide_active(W);
-          line_search(stage, W, step, active);
+          taken                  = line_search(stage, W, step, active);
           stop_at_dies(stage, active, W);
         }
         else
         {
           // A step that had to be cut was a poor direction: where dies are stiff, the next one is solved for
           // better.
-          const bool whole = line_search(stage, W, step, frozen) == 1.;
-          largest_forcing  = whole ? std::min(parameters_.forcing, 10. * largest_forcing)
-                                   : std::max(1e-6, 0.1 * largest_forcing);
+          taken           = line_search(stage, W, step, frozen);
+          largest_forcing = taken == 1. ? std::min(parameters_.forcing, 10. * largest_forcing)
+                                        : std::max(least_forcing, 0.1 * largest_forcing);
         }
+        whole = taken == 1.;
+        if (!linear && taken < short_step)
+          picard = std::max(picard, 1u);
       }
       else
         W.add(1., step);

@@ -210,7 +210,8 @@ namespace retroforge
         if (s == 1)
           position = advanced(X, 0.5 * dt, trial.V);
         const Stage<double>    stage(scene_, physics, contact, position);
-        const NewtonStatistics statistics = newton_.solve(stage, trial, frozen(s));
+        const Start            start      = record.remesh && s == 0 ? Start::far : Start::near;
+        const NewtonStatistics statistics = newton_.solve(stage, trial, frozen(s), start);
         record.newton += statistics.iterations;
         record.krylov += statistics.krylov;
         const ActiveSet active = replay ? frozen(s) : stage.decide_active(trial);

@@ -11,7 +11,7 @@ namespace retroforge
   {
     std::vector<double> steps           = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
     bool                free            = true;
-    double              taylor_start    = 1e-2;
+    double              taylor_start    = 1e-3;
     unsigned int        taylor_halvings = 4;
     double              replayed_bar    = 1e-6;
     double              tangent_bar     = 1e-10;

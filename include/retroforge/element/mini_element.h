@@ -130,11 +130,20 @@ namespace retroforge
   inline constexpr unsigned int n_lanes = 4;
   using TangentPack                     = TangentBlocks<Pack>;
 
+  /// What stands for the derivative of the stresses: the derivative, or (Picard) the viscosity at the strain
+  /// rates of w alone. Both leave the solution where it is; Newton is the faster one close to it.
+  enum class Linearisation
+  {
+    newton,
+    picard
+  };
+
   /// As compute_cell_tangent, for n_lanes cells.
   /// @param elimination  where each lane's part that must be kept goes
   void compute_cell_tangents(const std::array<CellGeometry<double>, n_lanes>        &geometry,
                              const std::array<CellValues<double>, n_lanes>          &w,
                              const NortonHoff<double>                               &law,
+                             Linearisation                                           linearisation,
                              TangentPack                                            &tangent,
                              const std::array<BubbleElimination<double> *, n_lanes> &elimination);
 

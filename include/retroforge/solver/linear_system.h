@@ -53,7 +53,10 @@ namespace retroforge
     ~LinearSystem();
 
     /// Matrix of `stage` at W; velocities fixed by symmetry are eliminated.
-    void assemble(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
+    void assemble(const Stage<double> &stage,
+                  const Field<double> &W,
+                  const ActiveSet     &active,
+                  Linearisation        linearisation = Linearisation::newton);
 
     /// Solution of the uncondensed system for the right-hand side rhs (owned entries), to `tolerance`
     /// relative to the scaled right-hand side. Returns the number of Krylov iterations (0 for a direct

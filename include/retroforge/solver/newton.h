@@ -29,10 +29,20 @@ namespace retroforge
     double       residual   = 0.; ///< relative, at the end
   };
 
+  /// How well the start of Newton's method is known.
+  enum class Start
+  {
+    near, ///< the solution of the increment before, on the same mesh
+    far   ///< interpolated from another mesh: strain rates are wrong here and there
+  };
+
   /// Solves the equilibrium of a stage for W by Newton's method, with a line search on the power functional:
   /// the step length is a root of its slope along the step, monotone because the functional is convex in V.
-  /// At first the slope is that of the functional with the contacts of the step, and nodes that arrive do so
-  /// at once (contact_steps.h); where that does not converge, of the functional itself, which always does.
+  /// A step that must be cut tells that the power law bends more than its tangent knows. Steps at constant
+  /// viscosity (Picard) are short of no length: one follows each that was cut, and a start from afar begins
+  /// with them. At first the slope is that of the functional with the contacts of the step, and nodes that
+  /// arrive do so at once (contact_steps.h); where that does not converge, of the functional itself, which
+  /// always does.
   class Newton
   {
   public:
@@ -40,7 +50,8 @@ namespace retroforge
 
     /// @param W       in: initial guess; out: the solution
     /// @param frozen  empty, or the recorded active set of a replay
-    NewtonStatistics solve(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen);
+    NewtonStatistics
+    solve(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen, Start start = Start::near);
 
     /// The velocity field of a Newtonian metal under the same dies, as a start from nothing.
     void initial_guess(const Stage<double> &stage,

@@ -6,6 +6,7 @@
 // - afterwards no node goes through its die by more than 1e-7 of its speed, nodes between two dies too, and
 //   those corrected at one die count as active;
 // - what the plane of symmetry fixes stays fixed, nodes that no die holds keep their velocity;
+// - also where they stick to a die they touch, which leaves them no speed of their own;
 // - nodes that were active in a step are left alone by what follows the step;
 // - a node that leaves its die, but that the metal presses against it, is held.
 
@@ -83,6 +84,38 @@ int main(int argc, char **argv)
   Field<double> stopped = corner.W;
   stop_at_dies(corner.stage(), ActiveSet(pairs.size(), 0), stopped);
   compare("after a step without contact", corner, corner.W, stopped);
+
+  // Nodes that touch a die, straight into it.
+  Random      again;
+  CornerStage touching(again, 10.);
+  for (unsigned int p = 0; p < pairs.size(); ++p)
+    if (pairs[p].point.is_node())
+    {
+      touching.contact.projections[p].delta = 0.;
+      touching.W.V[pairs[p].point.nodes[0]] =
+        touching.physics.dies[pairs[p].die].velocity + touching.contact.projections[p].n;
+      for (const Vec3 &n : touching.scene.topology.fixed_directions[pairs[p].point.nodes[0]])
+        touching.W.V[pairs[p].point.nodes[0]] -= (touching.W.V[pairs[p].point.nodes[0]] * n) * n;
+    }
+  Field<double> sticking = touching.W;
+  stop_at_dies(touching.stage(), ActiveSet(pairs.size(), 0), sticking);
+  std::vector<unsigned int> dies_of(sticking.V.size(), 0);
+  for (const ContactPair &pair : pairs)
+    dies_of[pair.point.nodes[0]] += pair.point.is_node();
+  unsigned int straight = 0, at_rest = 0, count = 0;
+  for (unsigned int p = 0; p < pairs.size(); ++p)
+    if (const NodeIndex k = pairs[p].point.nodes[0]; pairs[p].point.is_node() && dies_of[k] == 1 &&
+                                                     touching.scene.topology.fixed_directions[k].size() == 0)
+    {
+      const auto node = touching.stage().contact_node(p, sticking, {});
+      ++straight;
+      at_rest += node.u.norm() < 1e-6;
+      count += node.active;
+    }
+  std::printf("straight into a die they touch: some: %s, at rest: %s, count as active: %s\n",
+              yes(straight > 3),
+              yes(at_rest == straight),
+              yes(count == straight));
 
   Field<double> same = corner.W;
   stop_at_dies(corner.stage(), corner.active, same);
