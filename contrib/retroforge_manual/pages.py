@@ -12,8 +12,12 @@ CASES = "Cases"  # the chapter of all README.md below prm/
 
 FENCE = re.compile(r"^\s*```")
 CODE = re.compile(r"(`[^`]*`)")
+HEADING = re.compile(r"^#.*`.*$", re.M)
+CLASS = re.compile(r"(?<!\[)`(?P<name>[A-Z]\w+)`")
+DECLARATION = re.compile(r"^  (?:class|struct) (\w+)(?: : .*)?\s*(?:\{.*)?$", re.M)
+CODE_PAGES = ("doc/theory/", "doc/manual/tour", "doc/manual/extending")  # where a name in capitals is a class
 LINK = re.compile(r"(?P<image>!?)\[(?P<text>[^\]]*)\]\((?P<target>[^)\s]+)\)")
-ITEM = re.compile(r"- \[(?P<text>[^\]]*)\]\((?P<target>[^)]*)\)")
+ITEM = re.compile(r"- \[[^\]]*\]\((?P<target>[^)]*)\): (?P<note>.*)")
 
 
 class PageError(Exception):
@@ -49,17 +53,20 @@ class Book:
         paths = [root / "README.md", root / "CONTRIBUTING.md", *root.glob("doc/**/*.md"), *root.glob("prm/**/README.md")]
         self.texts = {str(path.relative_to(root)): path.read_text(encoding="utf-8") for path in sorted(paths)}
         self.texts.update(generated)
+        headers = [path.read_text(encoding="utf-8") for path in root.glob("include/**/*.h")]
+        self.classes = set(DECLARATION.findall("\n".join(headers)))
 
     def title(self, page):
-        return self.texts[page].split("\n", 1)[0].lstrip("# ")
+        """Without code: the tree and headings show it as plain text."""
+        return self.texts[page].split("\n", 1)[0].lstrip("# ").replace("`", "")
 
     def chapters(self):
-        """Titles of the chapters, and the pages of each, in order."""
+        """Titles of the chapters, and of each the pages in order, with a note on each."""
         chapters = {}
         for part in self.texts[CONTENTS].split("\n## ")[1:]:
             title, _, rest = part.partition("\n")
-            chapters[title] = [resolve(CONTENTS, item["target"]) for item in ITEM.finditer(rest)]
-        chapters[CASES] = [page for page in self.texts if page.startswith("prm/")]
+            chapters[title] = {resolve(CONTENTS, item["target"]): item["note"] for item in ITEM.finditer(rest)}
+        chapters[CASES] = {page: f"`{page.rpartition('/')[0]}`" for page in self.texts if page.startswith("prm/")}
         listed = [page for pages in chapters.values() for page in pages]
         for page in listed:
             if page not in self.texts:
@@ -84,7 +91,8 @@ class Book:
                 raise PageError(f"{page}: the picture {path} cannot be read") from error
             return f"![{text}]({name})"
         if path in self.texts:
-            return f"[{text}](@ref {identifier(path)})"
+            shown = self.title(path) if re.fullmatch(r"[\w/.]+\.md", text) else text
+            return f"[{shown}](@ref {identifier(path)})"
         if not (self.root / path).exists():
             raise PageError(f"{page}: the link to {target} leads nowhere")
         if path.endswith(".dot"):
@@ -92,12 +100,19 @@ class Book:
         plain = text.strip("`")
         return f"`{plain}`" if plain.rstrip("/").endswith(pathlib.Path(path).name) else f"{plain} (`{path}`)"
 
+    def link_to_class(self, match):
+        name = match["name"]
+        return f"[{name}](@ref retroforge::{name})" if name in self.classes else match[0]
+
     def for_doxygen(self, page, images):
         title, _, rest = self.texts[page].partition("\n")
         if not title.startswith("# "):
             raise PageError(f"{page}: the first line is no title")
         rest = outside_code(rest, lambda part: LINK.sub(lambda match: self.link(page, match, images), part))
-        return f"{title} {{#{identifier(page)}}}\n{rest}"
+        rest = HEADING.sub(lambda match: match[0].replace("`", ""), rest)
+        if page.startswith(CODE_PAGES):
+            rest = CLASS.sub(self.link_to_class, rest)
+        return f"# {self.title(page)} {{#{identifier(page)}}}\n{rest}"
 
 
 def write(root, source, images, generated):
@@ -109,7 +124,7 @@ def write(root, source, images, generated):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(book.for_doxygen(page, images), encoding="utf-8")
     for number, (title, pages) in enumerate(chapters.items(), 1):  # Doxygen orders chapters by the names of their files
-        tree = "".join(f"- @subpage {identifier(page)} (`{page}`)\n" for page in pages)
+        tree = "".join(f"- @subpage {identifier(page)} – {note}\n" for page, note in pages.items())
         (source / f"chapter_{number}.md").write_text(f"# {title} {{#chapter_{number}}}\n\n{tree}", encoding="utf-8")
 
 
