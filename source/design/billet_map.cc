@@ -41,7 +41,7 @@ namespace retroforge
                                           : BilletShapes();
     }
 
-    // Whether no node of a symmetry plane leaves it.
+    // Every node of a symmetry plane stays on it.
     bool keeps_symmetry(const ShapeParameter &parameter, const TetMesh &mesh)
     {
       for (const BoundaryFace &face : mesh.faces)
