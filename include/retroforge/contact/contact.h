@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 
+/// @file
 /// Unilateral contact at points of the surface, and Norton friction lumped at its nodes.
 ///
 /// For a point against a die, its position and velocity means of its nodes' (ContactPoint):  u = V_k - v_die,

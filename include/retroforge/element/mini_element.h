@@ -7,6 +7,7 @@
 
 #include <array>
 
+/// @file
 /// The tetrahedron with P1 + hat bubble velocity and P1 pressure, integrated in closed form.
 ///
 /// The bubble is 4 lambda_a on the sub-tetrahedron w_a spanned by the barycentre and the face opposite node

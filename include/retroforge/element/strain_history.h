@@ -6,6 +6,7 @@
 
 #include <vector>
 
+/// @file
 /// The accumulated equivalent strain  q(t) = int_0^t e dt,  e = sqrt(2/3 eps:eps),  of each piece of
 /// material.
 ///

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+/// @file
 /// Dies made from a few numbers: a flat face z = 0 with a cavity below it, open towards +z, where the
 /// workpiece is. Templated on the number type, so that vertices come with their derivatives in the shape's
 /// parameters; how many vertices there are follows from the values alone.

@@ -5,6 +5,7 @@
 #include <retroforge/geometry/corner_normals.h>
 #include <retroforge/geometry/feature_projection.h>
 
+/// @file
 /// Distance and normal of a triangulated surface that stands for a smooth one.
 ///
 /// With barycentric coordinates l_a over a facet of corners x_a and corner normals n_a (CornerNormals), the

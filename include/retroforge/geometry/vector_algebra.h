@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+/// @file
 /// Products and directions of three vectors' components, for numbers of any type, with their reverse.
 namespace retroforge
 {

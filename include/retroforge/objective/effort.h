@@ -7,6 +7,7 @@
 
 #include <limits>
 
+/// @file
 /// The force that the press must bring up, averaged over a window of the run or its maximum there.
 namespace retroforge
 {

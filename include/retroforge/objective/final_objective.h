@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+/// @file
 /// Objectives of the workpiece at the end:  Phi = F(b(X_N, q_N, ...)),  with a few integrals b over the
 /// workpiece and F a function of these numbers, differentiated by dual numbers. The reverse of b is written
 /// by each objective in closed form, and starts the backward sweep: G = dPhi/dX_N.

@@ -7,6 +7,7 @@
 
 #include <optional>
 
+/// @file
 /// Folds announce themselves by strain rates that are far higher on a small part of the free surface than
 /// elsewhere.
 namespace retroforge

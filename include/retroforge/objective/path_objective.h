@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+/// @file
 /// Objectives of what happens during a forging, in two levels:
 ///   a_ik = integrals of increment i over the workpiece, at its last stage,
 ///   Phi  = F( sum_i g(a_i, dt_i, t_i) ).

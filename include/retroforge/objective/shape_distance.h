@@ -4,6 +4,7 @@
 
 #include <retroforge/objective/target_surface.h>
 
+/// @file
 /// How far the final surface is from the one wanted, as a mean square weighted with the surface.
 namespace retroforge
 {

@@ -5,6 +5,7 @@
 #include <retroforge/objective/final_objective.h>
 #include <retroforge/objective/smooth_maximum.h>
 
+/// @file
 /// How much, how evenly and how locally the workpiece was deformed: statistics of the accumulated equivalent
 /// strain q_N over the final volume, each cell weighted with its volume at X_N. Dimensionless.
 namespace retroforge

@@ -7,6 +7,7 @@
 #include <retroforge/output/history.h>
 #include <retroforge/output/summary.h>
 
+/// @file
 /// What a user reads while a run goes on.
 namespace retroforge
 {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+/// @file
 /// HDF5 with every return code checked. (deal.II's wrapper drops errors in Release builds.)
 ///
 /// Every byte of these files is under a checksum of HDF5's own: metadata by the file format of HDF5 1.10,

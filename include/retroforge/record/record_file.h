@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 
+/// @file
 /// The record of a run on disk: all that a replay and the backward pass need.
 ///
 ///     DIR/record/header.h5                 while the run goes on, and when it was stopped

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 
+/// @file
 /// What is in a record, object by object. Little endian; arrays in C order; n_* are counts.
 ///
 ///     /header                 attributes: format, n_patches

@@ -4,6 +4,7 @@
 
 #include <retroforge/solver/stage.h>
 
+/// @file
 /// What Newton's method does about contact besides its steps, for a stage whose active set is not recorded.
 ///
 /// The penalty of nodes is stiff. A search for the minimum of the functional along a step therefore ends

@@ -147,6 +147,15 @@ class Names(unittest.TestCase):
         self.assertEqual([], [(page, word) for page, word in named if not set(re.findall(r"\w+", word)) <= self.code])
 
 
+class Headers(unittest.TestCase):
+    def test_comments_on_files(self):
+        """A comment before the namespace is of the file (@file), or Doxygen takes it for the namespace's own."""
+        wrong = [path.name for path in (ROOT / "include").rglob("*.h")
+                 for match in [re.search(r"((?:^///.*\n)+)namespace retroforge", path.read_text(encoding="utf-8"), re.M)]
+                 if match and not match[1].startswith("/// @file")]
+        self.assertEqual(["types.h"], wrong)
+
+
 class Materials(unittest.TestCase):
     page = PAGES["doc/manual/materials.md"]
 
