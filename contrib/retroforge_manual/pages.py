@@ -2,6 +2,7 @@
 # Copyright (C) 2026 The Retroforge authors
 """The Markdown pages as Doxygen wants them: each with an identifier, links between them as references, pictures in one
 folder, and the chapters of the contents as a tree."""
+import html
 import os
 import pathlib
 import re
@@ -129,11 +130,18 @@ def write(root, source, images, generated):
 
 
 HREF = re.compile(r'(?:href|src|data)="([^"#?:]+)["#?]')  # no address with a scheme
+SHOWN_AS_IT_IS = re.compile(r"<(pre|script|code|tt)\b.*?</\1>|<div class=\"fragment\">.*?</div><!-- fragment -->", re.S)
+MARKUP = re.compile(r".{0,40}(?:\*\*|`|<tt>|\]\(#|\]\(\w+\.\w|@ref|@cite).{0,40}")
 
 
-def dead_links(html):
-    """Links of the pages to files that are not there."""
-    names = {path.name for path in html.iterdir()}
-    return sorted({f"{page.name}: the link to {target} leads nowhere"
-                   for page in html.glob("*.html") for target in HREF.findall(page.read_text(encoding="utf-8"))
-                   if target not in names and not (html / target).exists()})
+def complaints(folder):
+    """Links of the website to files that are not there, and markup that its pages show."""
+    names = {path.name for path in folder.iterdir()}
+    found = set()
+    for page in folder.glob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        found |= {f"{page.name}: the link to {target} leads nowhere" for target in HREF.findall(text)
+                  if target not in names and not (folder / target).exists()}
+        plain = html.unescape(re.sub(r"<[^>]*>", "", SHOWN_AS_IT_IS.sub("", text)))
+        found |= {f"{page.name}: shows markup: {shown.strip()}" for shown in MARKUP.findall(plain)}
+    return sorted(found)
