@@ -70,7 +70,7 @@ class Scenes(unittest.TestCase):
                 if language == "prm" or (not language and block.startswith("subsection") and not is_scene(block)):
                     found += 1
                     self.assertTrue(any(normal(block) in case for case in cases), f"{page}: no case has\n{block}")
-        self.assertGreater(found, 2)
+        self.assertGreater(found, 1)
 
     def test_whole_scenes_run(self):
         scenes = [(page, block) for page, text in PAGES.items() for _, block in BLOCK.findall(text) if is_scene(block)]
