@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <sstream>
 
 namespace retroforge
@@ -282,6 +283,27 @@ namespace retroforge
         }
       return names;
     }
+
+    /// A relative name of a file that stands beside the case's parameter file is that file, wherever the
+    /// program is started; others are left as they are.
+    void look_beside(const std::string &case_file, dealii::ParameterHandler &prm, const std::string &entry)
+    {
+      const std::filesystem::path name   = prm.get(entry),
+                                  beside = std::filesystem::path(case_file).parent_path() / name;
+      std::error_code ignored;
+      if (!name.empty() && name.is_relative() && std::filesystem::is_regular_file(beside, ignored))
+        prm.set(entry, beside.lexically_normal().string());
+    }
+
+    void look_beside(const std::string        &case_file,
+                     dealii::ParameterHandler &prm,
+                     const std::string        &section,
+                     const std::string        &entry)
+    {
+      prm.enter_subsection(section);
+      look_beside(case_file, prm, entry);
+      prm.leave_subsection();
+    }
   } // namespace
 
   void Parameters::print_template(std::ostream &out)
@@ -318,6 +340,11 @@ end
     dealii::ParameterHandler         prm;
     parameters.add_parameters(prm, names_in(values, "Dies/names", ""), objective_names(values));
     set_parameters(prm, lines);
+    look_beside(file, prm, "Billet", "file name");
+    for (const DieParameters &die : parameters.dies)
+      look_beside(file, prm, "Die " + die.name, "file");
+    for (const ObjectiveParameters &objective : parameters.objectives.all)
+      look_beside(file, prm, "Objective " + objective.name, "target");
     parameters.check_all();
     parameters.find_without_effect(declared_parameters(prm));
     std::ostringstream text;

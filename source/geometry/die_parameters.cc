@@ -110,7 +110,10 @@ namespace retroforge
       "die's extent: folds between large faces. Raise it for coarse facets. Units: none.",
       Double(0.));
     prm.add_parameter(
-      "file", file, "STL file, ASCII or binary, from the folder the program is started in. Units: none.");
+      "file",
+      file,
+      "STL file, ASCII or binary; a relative name is looked for beside the parameter file, then in the "
+      "folder the program is started in. Units: none.");
     prm.add_parameter("scale", scale, "Factor to mm of the file's lengths. Units: none.", Double(1e-300));
     prm.add_parameter("rotation axis", axis, "Of an STL surface, through its origin. Units: none.");
     prm.add_parameter("rotation angle",

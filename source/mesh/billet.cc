@@ -405,8 +405,8 @@ namespace retroforge
     prm.add_parameter(
       "file name",
       file_name,
-      "Gmsh file (.msh, versions 2 and 4) for the shape `file'. Its physical surfaces become the "
-      "patches. Units: none.");
+      "Gmsh file (.msh, versions 2 and 4) for the shape `file', found as STL files of dies are. Its physical "
+      "surfaces become the patches. Units: none.");
     prm.add_parameter("scale", scale, "Factor to mm of the file's lengths. Units: none.", Double(1e-300));
     prm.add_parameter(
       "symmetry patches",

@@ -98,10 +98,11 @@ namespace retroforge
                       region_edge,
                       "Width over which what folds outside of the box ceases to count. Units: mm.",
                       Double(1e-300));
-    prm.add_parameter("target",
-                      target,
-                      "`die NAME', whose cavity is to be filled, or the STL file of the shape desired, its "
-                      "normals outwards. Units: none.");
+    prm.add_parameter(
+      "target",
+      target,
+      "`die NAME', whose cavity is to be filled, or the STL file of the shape desired, found as "
+      "that of a die is, its normals outwards. Units: none.");
     prm.add_parameter("rounding",
                       rounding,
                       "Of the distance |d| where the surfaces meet, in `filling'. Units: mm.",
