@@ -88,7 +88,8 @@ namespace retroforge
     std::vector<std::string> names   = parameters_.design.all_names();
     if (!chosen.empty() && std::find(names.begin(), names.end(), chosen) == names.end())
       names.push_back(chosen);
-    const Design              design(names, parameters_.billet, parameters_.dies, nominal, billet);
+    const Design design(
+      names, parameters_.billet, parameters_.dies, nominal, billet, parameters_.press.stroke);
     const std::vector<double> mu     = design.at(parameters_.design.at);
     const auto               &listed = parameters_.design.names;
     std::set<std::string>     folders;

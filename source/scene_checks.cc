@@ -27,6 +27,17 @@ namespace retroforge
                                                : "set the die's `scale', or correct the billet's measures";
     }
 
+    std::string how_to_stand_outside(const Parameters &parameters, const DieParameters &die)
+    {
+      if (!parameters.design.at.empty() && !die.follows_billet)
+        return "set Die " + die.name +
+               "/follows billet = true where a billet that grows lifts the die and ends at the same gap, or "
+               "stay closer "
+               "to the nominal design";
+      return "move the die's point, or the billet (Billet/translation), or turn the die's facing round; " +
+             how_to_scale(parameters);
+    }
+
     double extent(const NodalVectors<double> &X)
     {
       const auto [low, high] = bounding_box(X);
@@ -85,12 +96,10 @@ namespace retroforge
         const auto   delta   = distances(scene, scene.dies[d], process.dies[d].displacement, X);
         const double deepest = -*std::min_element(delta.begin(), delta.end());
         if (deepest > allowed)
-          throw Error(
-            "Die " + scene.dies[d].name,
-            "the billet stands " + as_text(deepest) + " mm inside it",
-            "a billet starts outside of all dies",
-            "move the die's point, or the billet (Billet/translation), or turn the die's facing round; " +
-              how_to_scale(parameters));
+          throw Error("Die " + scene.dies[d].name,
+                      "the billet stands " + as_text(deepest) + " mm inside it",
+                      "a billet starts outside of all dies",
+                      how_to_stand_outside(parameters, parameters.dies[d]));
       }
     }
 
@@ -103,7 +112,7 @@ namespace retroforge
                        const NodalVectors<double> &X)
     {
       const double       near    = touching * std::cbrt(volume(scene.mesh.cells, X));
-      const auto         path    = process.dies[d].velocity / process.speed() * stroke;
+      const auto         path    = process.dies[d].velocity * process.time(stroke);
       const double       wanted  = scene.dies[d].surface() ? std::ceil(path.norm() / (50. * near)) : 1.;
       const unsigned int n_steps = std::clamp(wanted, 1., 200.);
       const auto         start   = distances(scene, scene.dies[d], process.dies[d].displacement, X);

@@ -147,7 +147,12 @@ namespace retroforge
       , parameters_(read(command, echo_))
       , billet_(make_first_mesh(parameters_, timings_, comm))
       , nominal_(parameters_.settle(billet_size()).process(billet_size()))
-      , design_(parameters_.design.all_names(), parameters_.billet, parameters_.dies, nominal_, billet_)
+      , design_(parameters_.design.all_names(),
+                parameters_.billet,
+                parameters_.dies,
+                nominal_,
+                billet_,
+                parameters_.press.stroke)
       , mu_(design_.at(parameters_.design.at))
       , process_(design_.process(mu_))
       , X_0_(design_.positions(mu_))
@@ -212,6 +217,10 @@ namespace retroforge
                 << note_on_load(ranks, load, std::thread::hardware_concurrency());
       for (const std::string &sentence : parameters_.without_effect)
         std::cout << "  note: " << sentence << '\n';
+      if (process_.stretch != 1.)
+        std::cout << "  note: die " << parameters_.dies[process_.leading_die].name
+                  << " follows the billet: its path is " << process_.stretch * parameters_.press.stroke
+                  << " mm, told as the nominal design's " << parameters_.press.stroke << " mm\n";
       std::cout << std::flush;
     }
     write_dies();

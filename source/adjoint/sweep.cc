@@ -141,7 +141,7 @@ namespace retroforge
     {
       const IncrementRecord &record = run.source(i);
       const unsigned int     before = leg->system.n_solves;
-      add(-record.step / run.process.speed(), record.solves.back().V, X);
+      add(-run.process.time(record.step), record.solves.back().V, X);
       leg->increment.reverse(
         run.process, X, record, source_of(run, rows, rows_bar, combinations, i), costates);
       sweep.linear_solves += leg->system.n_solves - before;
@@ -185,7 +185,7 @@ namespace retroforge
       }
       end = record.stroke + record.step;
       X   = leg->increment.tangent(process, X, record, [&](const StageView<Dual> &view, const Dual &dt) {
-        const Dual time = record.stroke / process.speed();
+        const Dual time = process.time(record.stroke);
         for (std::size_t o = 0; o < run.objectives.size(); ++o)
           if (const auto &objective = run.objectives[o].path)
             rows[o].push_back({sum_over_ranks(objective->integrals(view), run.model.comm),

@@ -25,6 +25,15 @@ namespace retroforge
       return dual;
     }
 
+    /// The node that is farthest against the facing of a die that follows the billet; else invalid_index.
+    NodeIndex followed_node(const DieParameters &die, const NodalVectors<double> &X)
+    {
+      if (!die.follows_billet)
+        return invalid_index;
+      const auto lower = [&](const Vec3 &a, const Vec3 &b) { return a * die.facing < b * die.facing; };
+      return std::min_element(X.begin(), X.end(), lower) - X.begin();
+    }
+
     double extent_in_x(const TetMesh &mesh)
     {
       const auto [low, high] = bounding_box(mesh.X);
@@ -36,12 +45,17 @@ namespace retroforge
                  const BilletParameters           &billet,
                  const std::vector<DieParameters> &dies,
                  const Process<double>            &nominal_process,
-                 const TetMesh                    &nominal_billet)
+                 const TetMesh                    &nominal_billet,
+                 const double                      stroke)
       : dies_(dies)
       , process_(nominal_process)
+      , nominal_X_(nominal_billet.X)
+      , stroke_(stroke)
       , billet_map_(billet, nominal_billet)
       , width_(billet.shape == "file" ? extent_in_x(nominal_billet) : billet.whole_width())
   {
+    for (const DieParameters &die : dies_)
+      followed_.push_back(followed_node(die, nominal_X_));
     for (const std::string &name : names)
     {
       const DesignParameter parameter = make(name);
@@ -272,7 +286,29 @@ namespace retroforge
       if (!measures[d].empty())
         process.dies[d].vertices =
           std::make_shared<const NodalVectors<Number>>(dies_[d].vertices(measures[d]));
+    follow_billet(mu, process);
     return process;
+  }
+
+  template <typename Number>
+  void Design::follow_billet(const std::vector<Number> &mu, Process<Number> &process) const
+  {
+    if (std::all_of(followed_.begin(), followed_.end(), [](const NodeIndex k) { return k == invalid_index; }))
+      return;
+    const NodalVectors<Number> X = positions(mu);
+    for (unsigned int d = 0; d < dies_.size(); ++d)
+      if (const NodeIndex k = followed_[d]; k != invalid_index)
+      {
+        const Vec3 &facing = dies_[d].facing;
+        Number      shift(0.);
+        for (unsigned int i = 0; i < 3; ++i)
+          shift += facing[i] * (X[k][i] - nominal_X_[k][i]);
+        for (unsigned int i = 0; i < 3; ++i)
+          process.dies[d].displacement[i] += facing[i] * shift;
+        // Along its facing it goes stroke v·facing/|v|, and now -shift more.
+        if (d == process_.leading_die)
+          process.stretch -= shift / (stroke_ * (dies_[d].velocity * facing) / dies_[d].velocity.norm());
+      }
   }
 
   template NodalVectors<double> Design::positions(const std::vector<double> &) const;
@@ -288,14 +324,9 @@ namespace retroforge
     std::vector<double>       gradient;
     for (unsigned int j = 0; j < parameters_.size(); ++j)
     {
-      if (parameters_[j].kind == Kind::billet)
-      {
-        gradient.push_back(billet[parameters_[j].die]);
-        continue;
-      }
       const auto p   = process(along(mu, j));
-      double     sum = bar.K * p.law.K.dx(0) + bar.m * p.law.m.dx(0) + bar.e0 * p.law.e0.dx(0) +
-                   bar.rho * p.contact.rho.dx(0) + bar.v0 * p.contact.v0.dx(0);
+      double     sum = bar.stretch * p.stretch.dx(0) + bar.K * p.law.K.dx(0) + bar.m * p.law.m.dx(0) +
+                   bar.e0 * p.law.e0.dx(0) + bar.rho * p.contact.rho.dx(0) + bar.v0 * p.contact.v0.dx(0);
       for (unsigned int d = 0; d < p.dies.size(); ++d)
       {
         sum += bar.dies[d].friction * p.dies[d].friction.dx(0);
@@ -307,6 +338,8 @@ namespace retroforge
           sum += bar.dies[d].velocity[i] * p.dies[d].velocity[i].dx(0) +
                  bar.dies[d].displacement[i] * p.dies[d].displacement[i].dx(0);
       }
+      if (parameters_[j].kind == Kind::billet)
+        sum += billet[parameters_[j].die];
       gradient.push_back(sum);
     }
     return gradient;

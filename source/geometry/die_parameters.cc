@@ -88,6 +88,15 @@ namespace retroforge
       "alpha of the Norton friction law tau = -alpha K |dv|^(m-1) dv; 0 is a frictionless die. "
       "Units: mm^(-m).",
       Double(0.));
+    prm.add_parameter("follows billet",
+                      follows_billet,
+                      "Where the design makes the billet higher or lower, the die starts as far from it as "
+                      "in the nominal design, "
+                      "and ends, if it is the leading one, where it ends there: the stroke changes with the "
+                      "height, the final gap "
+                      "does not. Strokes are told as those of the nominal design. The gradient by the "
+                      "billet's nodes is that with "
+                      "the dies held. Units: none.");
     prm.add_parameter("depth of contact",
                       depth,
                       "Nodes deeper than this behind a surface are not in contact with it; 0 for a tenth of "
@@ -149,6 +158,11 @@ namespace retroforge
                   "it must point from the die to the workpiece",
                   "use for instance 0, 0, 1 for a lower die");
     facing /= facing.norm();
+    if (follows_billet && velocity.norm() > 0. && !(velocity * facing > 0.))
+      throw Error(section() + "/follows billet",
+                  "is true, but the die does not move along its facing",
+                  "its path is lengthened by what the billet grows, towards the workpiece",
+                  "correct the velocity or the facing, or leave it out");
     if (shape == "stl" && file.empty())
       throw Error(section() + "/file",
                   "is empty",

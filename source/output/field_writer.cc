@@ -117,7 +117,7 @@ namespace retroforge
     std::vector<PvdWriter::Part> parts = {{"workpiece", file}};
     for (unsigned int d = 0; d < model_.dies.size(); ++d)
       parts.push_back(write_die(d, stroke, suffix, X));
-    pvd_.add(stroke / process_.speed(), parts);
+    pvd_.add(process_.time(stroke), parts);
   }
 
   void FieldWriter::add_billet()

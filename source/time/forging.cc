@@ -138,7 +138,7 @@ namespace retroforge
       return "";
     const auto      dies = process.at_stroke(record.stroke).dies;
     const SizeField size = remesher_.size_field(dies);
-    const double    time = record.step / process.speed();
+    const double    time = process.time(record.step);
     for (const ContactPair &pair : record.pairs)
       if (pair.point.is_node() && model_.dies[pair.die].surface())
       {
@@ -221,8 +221,8 @@ namespace retroforge
                                  ForgingState          &state) const
   {
     const NodalVectors<double> position = state.leg->increment.stage_positions(process, state.X, record);
-    state.strain                        = accumulate_strain(
-      state.leg->scene.mesh, position, state.W, record.step / process.speed(), state.strain);
+    state.strain =
+      accumulate_strain(state.leg->scene.mesh, position, state.W, process.time(record.step), state.strain);
     state.X = std::move(X_next);
     state.stroke += record.step;
     state.energy.deformation += record.deformation_energy;
@@ -347,7 +347,7 @@ namespace retroforge
       state.W                             = std::move(solution);
       finish_increment(process, record, std::move(X_next), state);
       if (watch)
-        watch({record, X_before, state, state.stroke / process.speed()});
+        watch({record, X_before, state, process.time(state.stroke)});
       check_progress(state);
       // With remeshing, the next increment begins with a repair.
       const bool last = state.stroke >= press_.stroke - 1e-9 * whole;
@@ -376,7 +376,7 @@ namespace retroforge
       state.W                             = state.leg->increment.last_field(process, state.X, record);
       finish_increment(process, record, state.leg->increment.advance(process, state.X, record), state);
       if (watch)
-        watch({record, X_before, state, state.stroke / process.speed()});
+        watch({record, X_before, state, process.time(state.stroke)});
     }
   }
 
@@ -399,7 +399,7 @@ namespace retroforge
       const NodalVectors<double> X_before = state.X;
       finish_increment(process, record, std::move(X_next), state);
       if (watch)
-        watch({record, X_before, state, state.stroke / process.speed()});
+        watch({record, X_before, state, process.time(state.stroke)});
     }
   }
 } // namespace retroforge

@@ -107,7 +107,7 @@ namespace retroforge
                        const NodalVectors<double> &X_before,
                        const IncrementRecord      &record)
       : physics_(process.at_stroke(record.stroke))
-      , dt_(record.step / process.speed())
+      , dt_(process.time(record.step))
       , contact_(make_contact_set(scene.mesh,
                                   scene.topology,
                                   scene.dies,
@@ -181,7 +181,7 @@ namespace retroforge
                                           Field<double>              &W)
   {
     const Physics<double> physics = process.at_stroke(record.stroke);
-    const double          dt      = record.step / process.speed();
+    const double          dt      = process.time(record.step);
     const bool            two     = model_.scheme == Scheme::midpoint;
     const auto frozen = [&](const unsigned int s) { return replay ? record.solves[s].active : ActiveSet(); };
     std::vector<SolveRecord> solves(two ? 2 : 1);
@@ -240,7 +240,7 @@ namespace retroforge
                                           const NodalVectors<double> &X,
                                           const IncrementRecord      &record) const
   {
-    return advanced(X, record.step / process.speed(), record.solves.back().V);
+    return advanced(X, process.time(record.step), record.solves.back().V);
   }
 
   Field<double> Increment::last_field(const Process<double>      &process,
@@ -273,9 +273,8 @@ namespace retroforge
                                                   const NodalVectors<double> &X,
                                                   const IncrementRecord      &record) const
   {
-    return model_.scheme == Scheme::euler
-             ? X
-             : advanced(X, 0.5 * record.step / process.speed(), record.solves[0].V);
+    return model_.scheme == Scheme::euler ? X
+                                          : advanced(X, 0.5 * process.time(record.step), record.solves[0].V);
   }
 
   namespace
@@ -307,7 +306,7 @@ namespace retroforge
     const MPI_Comm            comm    = scene_.partition.comm;
     const bool                first   = dealii::Utilities::MPI::this_mpi_process(comm) == 0;
     const Physics<double>     physics = process.at_stroke(record.stroke);
-    const double              dt      = record.step / process.speed();
+    const double              dt      = process.time(record.step);
     const ContactSet<double>  contact = contact_set(physics, X, record, dt);
     std::vector<IncrementBar> bars(costates.size(),
                                    {ContactSetBar(record.pairs.size()), PhysicsBar(scene_.dies), {}});
@@ -398,7 +397,7 @@ namespace retroforge
                                         const TangentWatch       &watch)
   {
     const Physics<Dual>      physics       = process.at_stroke(record.stroke);
-    const Dual               dt            = record.step / process.speed();
+    const Dual               dt            = process.time(record.step);
     const ContactSet<Dual>   contact       = make_contact_set(scene_.mesh,
                                                       scene_.topology,
                                                       scene_.dies,

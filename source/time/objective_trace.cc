@@ -38,12 +38,12 @@ namespace retroforge
   {
     const LastStage         last(event.state.leg->scene, model_.step, process_, event.X_before, event.record);
     const StageView<double> view{last.stage, event.state.W, event.record.solves.back().active};
-    const double            dt = event.record.step / process_.speed();
+    const double            dt = process_.time(event.record.step);
     for (std::size_t j = 0; j < objectives_.size(); ++j)
       if (const auto &objective = objectives_[j].path)
         rows_[j].push_back({sum_over_ranks(objective->integrals(view), model_.comm),
                             dt,
-                            event.record.stroke / process_.speed(),
+                            process_.time(event.record.stroke),
                             event.record.stroke,
                             event.record.step});
   }

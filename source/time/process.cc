@@ -15,12 +15,18 @@ namespace retroforge
   }
 
   template <typename Number>
+  Number Process<Number>::time(const double stroke) const
+  {
+    return stretch * stroke / speed();
+  }
+
+  template <typename Number>
   Physics<Number> Process<Number>::at_stroke(const double stroke) const
   {
     Physics<Number> physics{law, contact, dies};
-    const Number    time = stroke / speed();
+    const Number    passed = time(stroke);
     for (auto &die : physics.dies)
-      die.displacement += die.velocity * time;
+      die.displacement += die.velocity * passed;
     return physics;
   }
 
@@ -44,22 +50,25 @@ namespace retroforge
       for (std::size_t k = 0; k < die_vertices[d].size(); ++k)
         die_vertices[d][k] += bar.contact.die_vertices[d][k];
     }
-    const double speed     = process.speed();
-    double       speed_bar = -(bar.dt + approach * bar.contact.tau) * step.step / (speed * speed);
+    const double speed = process.speed();
+    // In stretch/speed, by which all times are made of strokes.
+    double pace_bar = (bar.dt + approach * bar.contact.tau) * step.step;
     for (unsigned int d = 0; d < dies.size(); ++d)
     {
       const DieState<double> &die = bar.contact.dies[d];
-      dies[d].velocity += die.velocity + step.stroke / speed * die.displacement;
+      dies[d].velocity += die.velocity + process.time(step.stroke) * die.displacement;
       dies[d].displacement += die.displacement;
       dies[d].friction += die.friction;
-      speed_bar -= die.displacement * process.dies[d].velocity * step.stroke / (speed * speed);
+      pace_bar += die.displacement * process.dies[d].velocity * step.stroke;
     }
-    dies[process.leading_die].velocity += speed_bar / speed * process.dies[process.leading_die].velocity;
+    stretch += pace_bar / speed;
+    dies[process.leading_die].velocity -=
+      pace_bar * process.stretch / std::pow(speed, 3) * process.dies[process.leading_die].velocity;
   }
 
   void ProcessBar::sum(MPI_Comm comm)
   {
-    std::vector<double> all = {K, m, e0, rho, v0};
+    std::vector<double> all = {K, m, e0, rho, v0, stretch};
     for (const auto &die : dies)
     {
       for (unsigned int i = 0; i < 3; ++i)
@@ -72,7 +81,7 @@ namespace retroforge
           MPI_IN_PLACE, vertices.data()->begin_raw(), 3 * vertices.size(), MPI_DOUBLE, MPI_SUM, comm);
     dealii::Utilities::MPI::sum(all, comm, all);
     auto next = all.begin();
-    for (double *x : {&K, &m, &e0, &rho, &v0})
+    for (double *x : {&K, &m, &e0, &rho, &v0, &stretch})
       *x = *next++;
     for (auto &die : dies)
     {

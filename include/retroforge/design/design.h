@@ -39,12 +39,14 @@ namespace retroforge
   class Design
   {
   public:
-    /// @param names  as in `material/K`, `die upper/friction`, `billet/stretch`; unknown ones throw Error
+    /// @param names   as in `material/K`, `die upper/friction`, `billet/stretch`; unknown ones throw Error
+    /// @param stroke  of the leading die in the nominal design [mm]
     Design(const std::vector<std::string>   &names,
            const BilletParameters           &billet,
            const std::vector<DieParameters> &dies,
            const Process<double>            &nominal_process,
-           const TetMesh                    &nominal_billet);
+           const TetMesh                    &nominal_billet,
+           double                            stroke);
 
     const std::vector<DesignParameter> &parameters() const { return parameters_; }
     std::vector<double>                 nominal() const;
@@ -75,8 +77,16 @@ namespace retroforge
     std::vector<Number> shape_of(const std::vector<Number> &mu) const;
     DesignParameter     make(const std::string &name) const;
 
+    /// Dies that follow the billet start as far from it as in the nominal design; the leading one ends where
+    /// it does there.
+    template <typename Number>
+    void follow_billet(const std::vector<Number> &mu, Process<Number> &process) const;
+
     std::vector<DieParameters>   dies_;
     Process<double>              process_;
+    NodalVectors<double>         nominal_X_;
+    double                       stroke_;
+    std::vector<NodeIndex>       followed_; ///< by each die: the billet's first node in its way; or none
     BilletMap                    billet_map_;
     double                       width_; ///< the billet's extent in x, before cuts; of a file, its mesh's
     std::vector<DesignParameter> parameters_;

@@ -27,8 +27,9 @@ namespace retroforge
     Vec3        point;
     Vec3        facing;
     Vec3        velocity;
-    double      friction = 0.;
-    double      depth    = 0.; ///< 0: a tenth of the surface's diagonal [mm]
+    double      friction       = 0.;
+    bool        follows_billet = false;
+    double      depth          = 0.; ///< 0: a tenth of the surface's diagonal [mm]
 
     std::string surface_law     = "smooth";
     double      feature_angle   = 25.;  ///< [degrees]

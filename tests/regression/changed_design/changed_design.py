@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
 """A design changed by --at: at the nominal values it is the nominal run to the last bit; differences of changed runs are
-the free differences of `check`, of billet, process and the shape of a die; a run is not resumed with another design.
+the free differences of `check`, of billet, process and the shape of a die; a die that follows the billet starts on it and ends at the
+same gap; a run is not resumed with another design.
 Usage: changed_design.py RETROFORGE"""
 import json
 import os
@@ -89,6 +90,9 @@ subsection Output
 end
 """
 
+FOLLOWED = CYLINDER.replace("set point    = 0, 0, 15\n", "set point    = 0, 0, 15\n  set follows billet = true\n").replace(
+    "set parameters = billet/radius, ", "set parameters = ")
+
 failures = []
 
 
@@ -148,6 +152,20 @@ def differences_are_those_of_check(case):
         judge(f"{name}: free difference", error < 1e-9, f"{error:.1e}")
 
 
+def die_follows_billet():
+    """A billet 1 mm higher, under a die that starts 1 mm higher and ends where it did, is one pressed 1 mm farther."""
+    higher, farther = [("billet/height", 16.0)], ["--set", "Die upper/point=0, 0, 16", "--set", "Press/stroke=4"]
+    followed = energy("simulate", "followed.prm", "followed", at=higher)
+    pressed = energy("simulate", "cylinder.prm", "pressed", at=higher, more=farther)
+    judge("a die that follows goes the longer way", abs(followed / pressed - 1.0) < 1e-6, f"{followed / pressed - 1.0:.1e}")
+    with open("followed/history.csv", encoding="utf-8") as file:
+        last = file.read().splitlines()[-1].split(",")
+    judge("and takes the time for it", abs(float(last[1]) - 0.04) < 1e-12, last[1])
+    quick = ["--set", "Check/steps=1e-3, 1e-5", "--set", "Check/taylor halvings=2", "--set", "Check/free differences=false"]
+    done = run("check", "followed.prm", "check_followed", more=quick)
+    judge("adjoint, tangent and replayed differences agree", done.returncode == 0, done.stderr + done.stdout[-1500:] if done.returncode else "")
+
+
 def another_design_is_refused():
     done = run("simulate", "cylinder.prm", "plain", at=[("billet/radius", 10.1)], more=["--resume"])
     judge("resumed with another design", done.returncode != 0 and "Design/at" in done.stderr, done.stderr.strip())
@@ -157,6 +175,7 @@ def mistakes():
     for what, at, expected in (("unknown name", ("billet/raduis", 10.0), "did you mean 'billet/radius'"),
                                ("impossible value", ("material/m", 1.5), "up to 1"),
                                ("inside the die", ("die upper/offset", 3.0), "inside it"),
+                               ("grown into the die", ("billet/height", 17.0), "set Die upper/follows billet = true"),
                                ("no billet", ("billet/radius", -1.0), "radius = -1")):
         done = run("simulate", "cylinder.prm", "wrong", at=[at])
         judge(what, done.returncode == 1 and done.stderr.count("\n") == 1 and expected in done.stderr, done.stderr.strip())
@@ -165,12 +184,13 @@ def mistakes():
 def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        for name, text in (("cylinder.prm", CYLINDER), ("bell.prm", BELL)):
+        for name, text in (("cylinder.prm", CYLINDER), ("followed.prm", FOLLOWED), ("bell.prm", BELL)):
             with open(name, "w", encoding="utf-8") as file:
                 file.write(text)
         nominal_is_nominal()
         differences_are_those_of_check("cylinder.prm")
         differences_are_those_of_check("bell.prm")
+        die_follows_billet()
         another_design_is_refused()
         mistakes()
     print(f"{len(failures)} failed")
