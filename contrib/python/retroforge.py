@@ -3,7 +3,7 @@
 """Run Retroforge from Python: a forging and its gradients as a function of settings and design parameters.
 
     import retroforge
-    forging = retroforge.run("prm/tutorial/upsetting.prm", at={"billet/radius": 20.2})
+    forging = retroforge.run("prm/tutorial/upsetting/upsetting.prm", at={"billet/radius": 20.2})
     forging.objectives["energy"]                   # 20255.9 mJ
     forging.gradients["energy"]["billet/radius"]   # d energy / d radius
 

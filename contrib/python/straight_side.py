@@ -4,7 +4,7 @@
 """Which billet is forged to a straight side? An example of optimization with exact gradients, by scipy.
 
 Under friction a cylinder barrels. Two radii of the billet's contour are free, the third keeps the volume, and the mean square
-distance of the forged side from a cylinder is minimised: prm/tutorial/preform.prm. A few runs of a second each.
+distance of the forged side from a cylinder is minimised: prm/tutorial/preform/preform.prm. A few runs of a second each.
 """
 import pathlib
 import sys
@@ -13,7 +13,7 @@ from scipy.optimize import minimize
 
 import retroforge
 
-CASE = pathlib.Path(__file__).resolve().parents[2] / "prm" / "tutorial" / "preform.prm"
+CASE = pathlib.Path(__file__).resolve().parents[2] / "prm" / "tutorial" / "preform" / "preform.prm"
 RADII = ["billet/control point 1 r", "billet/control point 2 r"]
 
 

@@ -6,4 +6,5 @@ data     reads a run directory         curves  draws what depends on stroke, par
 vtu      reads one VTU file            shapes  draws billet and dies, render  their surfaces
 effects  ranks parameters              units   as the page shows them
 document headings, tables, pictures    page    the sections of the page
+screen   a virtual one for VTK         gallery the page of the tutorial's scenes
 """

@@ -16,8 +16,8 @@ div.tables{display:flex;flex-wrap:wrap;column-gap:3rem}p.note{color:#666}.bad{co
 
 
 class Document:
-    def __init__(self, directory):
-        self.directory, self.body = directory, []
+    def __init__(self, directory, name="report.html"):
+        self.directory, self.name, self.body = directory, name, []
         self.pictures = directory / "pictures"
         self.pictures.mkdir(exist_ok=True)
         for old in self.pictures.glob("*.png"):
@@ -25,7 +25,7 @@ class Document:
 
     def save(self, title):
         """Returns the path of the page."""
-        path = self.directory / "report.html"
+        path = self.directory / self.name
         path.write_text(f'<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8"><title>{html.escape(title)}</title>'
                         f"<style>{STYLE}</style><h1>{html.escape(title)}</h1>\n" + "\n".join(self.body) + "</html>\n",
                         encoding="utf-8")
@@ -38,9 +38,9 @@ class Document:
         if text:
             self.body.append(f'<p class="note">{escaped(text)}</p>')
 
-    def picture(self, name, figure):
+    def picture(self, name, figure, dpi="figure"):
         buffer = io.BytesIO()
-        figure.savefig(buffer, format="png")
+        figure.savefig(buffer, format="png", dpi=dpi)
         plt.close(figure)
         (self.pictures / f"{name}.png").write_bytes(buffer.getvalue())
         encoded = base64.b64encode(buffer.getvalue()).decode()

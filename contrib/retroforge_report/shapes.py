@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
 """Pictures of the billet, and of sensitivities on surfaces."""
+import dataclasses
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib import cm, colors
 
 from retroforge_report.refine import refined
-from retroforge_report.render import FROM_THE_SIDE, METAL, Scene, view_onto
+from retroforge_report.render import FROM_THE_SIDE, METAL, Scene, View, view_onto
 from retroforge_report.units import per_volume
+from retroforge_report.vtu import Surface
 from retroforge_report.whole import clipped, cut_open, whole, whole_vectors
 
 MOST_ARROWS = 250
 MOVED_BY_MORE = 1e-3  # of the strongest: what counts when the eye looks for the place that matters
+CLOSE = 0.05  # the same where a small picture shows the strongest place only
 SHARPEST = 0.1  # at edges sharper than this, normals cancel and the part along them fades
 
 
@@ -55,31 +59,72 @@ def _dies(step):
     return [whole(clipped(die.surface(), planes), planes) for die in step.dies]
 
 
-def billet_sensitivity(mesh, field, objective, use_vtk):
+def overview(run, shows, use_vtk):
+    """Three pictures of a run: before, after, and what it `shows`: a field of the last shape (as in CELL_FIELDS), `billet` or
+    `die NAME`, the sensitivity of the first objective to that surface."""
+    first, last = (whole(step.workpiece.surface(), step.workpiece.symmetry_planes) for step in (run.initial, run.final))
+    scene = Scene(np.concatenate([first.points, last.points]), use_vtk, margin=1.2)
+    figure = plt.figure(figsize=(13, 4), layout="constrained")
+    for place, (title, surface, step) in enumerate((("before", first, run.initial), ("after", last, run.final)), 1):
+        scene.draw(figure, (1, 3, place), surface, np.tile(METAL, (len(surface.triangles), 1)), dies=_dies(step)).set_title(title)
+    labels = {label.split(" [")[0]: (field, label) for field, label in CELL_FIELDS}
+    if shows in labels:
+        mesh, (field, label) = run.final.workpiece, labels[shows]
+        opened = cut_open(mesh.surface(), mesh.symmetry_planes, FROM_THE_SIDE.eye)
+        values = mesh.cell_data[field][opened.cell]
+        norm = colors.Normalize(min(0, values.min()), np.percentile(values, 99))
+        _coloured(scene, figure, (1, 3, 3), opened, values, norm, "viridis", label).set_title(shows)
+        return figure
+    mesh, variable = (run.sensitivity, "X0") if shows == "billet" else (run.die_sensitivities[shows[len("die "):]], "Xdie")
+    objective, field = run.sensitivities(mesh, variable)[0]
+    seen = _of_billet(mesh, field) if shows == "billet" else _of_die(mesh, field, CLOSE)
+    axes = _along_normal(Scene(seen.points, use_vtk, seen.view), figure, (1, 3, 3), seen, objective, variable)
+    axes.set_title(f"{objective['name']} by the shape of {'the billet' if shows == 'billet' else shows}", fontsize=11)
+    return figure
+
+
+@dataclasses.dataclass
+class Sensitivity:
+    """Per area of a surface: the vectors `density`, and their normal parts as `values` of the triangles of `coloured`, which may be
+    a finer surface; `points` are what the picture shows."""
+    surface: Surface
+    density: np.ndarray
+    coloured: Surface
+    values: np.ndarray
+    points: np.ndarray
+    view: View = FROM_THE_SIDE
+    motion: str = "moving the surface outward"
+    edges: bool = True
+
+
+def _of_billet(mesh, field):
     """Of the whole part, whose nodes all move as the model's. None when the objective does not depend on the shape."""
     surface = whole(mesh.surface(), mesh.symmetry_planes)
     density, normal = _per_area(surface, whole_vectors(mesh.point_data[field], mesh.surface(), mesh.symmetry_planes))
-    if not density.any():
-        return None
-    scenes = Scene(surface.points, use_vtk), Scene(surface.points, use_vtk, margin=1.5)
-    coloured = surface, surface.to_triangles(normal)
-    return _sensitivity(coloured, (surface, density), scenes, objective, "X0", "moving the surface outward")
+    return Sensitivity(surface, density, surface, surface.to_triangles(normal), surface.points) if density.any() else None
 
 
-def die_sensitivity(mesh, field, objective, use_vtk):
-    """Seen from the workpiece, and around the part that matters: dies may be much larger. None when nothing matters."""
+def _of_die(mesh, field, matters_from=MOVED_BY_MORE):
+    """Seen from the workpiece, and around the part that matters (from which part of the strongest on): dies may be much larger.
+    None when nothing matters."""
     surface = mesh.surface()
     density, normal = _per_area(surface, mesh.point_data[field][surface.node])
     if not density.any():
         return None
     length = np.linalg.norm(density, axis=1)
-    matters = length > MOVED_BY_MORE * length.max()
+    matters = length > matters_from * length.max()
     view = view_onto(surface.nodal_area_vectors()[matters].sum(axis=0))
     points = _neighbourhood(surface.points, matters)
-    scenes = Scene(points, use_vtk, view), Scene(points, use_vtk, view, margin=1.25)
-    coloured = refined(surface, normal, _strong(np.abs(normal)) / 10, scenes[0].radius / 100)
-    return _sensitivity(coloured, (surface, density), scenes, objective, "Xdie", "moving the die towards the workpiece",
-                        edges=False)
+    fine, values = refined(surface, normal, _strong(np.abs(normal)) / 10, Scene(points, False, view).radius / 100)
+    return Sensitivity(surface, density, fine, values, points, view, "moving the die towards the workpiece", edges=False)
+
+
+def billet_sensitivity(mesh, field, objective, use_vtk):
+    return _sensitivity(_of_billet(mesh, field), objective, "X0", use_vtk, margin=1.5)
+
+
+def die_sensitivity(mesh, field, objective, use_vtk):
+    return _sensitivity(_of_die(mesh, field), objective, "Xdie", use_vtk, margin=1.25)
 
 
 def _per_area(surface, gradient):
@@ -104,20 +149,29 @@ def _neighbourhood(points, chosen):
                      for corner in np.ndindex(2, 2, 2)])
 
 
-def _sensitivity(coloured, arrowed, scenes, objective, variable, motion, edges=True):
-    """Along the normal as colour (surface, value per triangle), whole as arrows (surface, vector per point)."""
-    limit = _strong(np.abs(coloured[1]))
-    unit = per_volume(objective.get("unit"))
-    derivative = f"d {objective['name']} / d {variable}"
+def _sensitivity(seen, objective, variable, use_vtk, margin):
+    """Along the normal as colour, whole as arrows, for which there is more room; None when there is nothing."""
+    if seen is None:
+        return None
     figure = plt.figure(figsize=(11, 5.2), layout="constrained")
-    axes = _coloured(scenes[0], figure, (1, 2, 1), *coloured, colors.Normalize(-limit, limit), "RdBu_r",
-                     f"{derivative} · n [{unit}]", edges)
-    axes.set_title(f"{motion}: red raises, blue lowers", fontsize=11)
-    surface, density = arrowed
-    axes = scenes[1].draw(figure, (1, 2, 2), surface, np.tile(METAL, (len(surface.triangles), 1)),
-                          _arrows(scenes[1], surface, density), edges)
-    axes.set_title(f"{derivative}, longest arrow {_longest(density):.3g} {unit}", fontsize=11)
+    axes = _along_normal(Scene(seen.points, use_vtk, seen.view), figure, (1, 2, 1), seen, objective, variable)
+    axes.set_title(f"{seen.motion}: red raises, blue lowers", fontsize=11)
+    scene = Scene(seen.points, use_vtk, seen.view, margin)
+    axes = scene.draw(figure, (1, 2, 2), seen.surface, np.tile(METAL, (len(seen.surface.triangles), 1)),
+                      _arrows(scene, seen.surface, seen.density), seen.edges)
+    axes.set_title(f"{_derivative(objective, variable)}, longest arrow {_longest(seen.density):.3g} "
+                   f"{per_volume(objective.get('unit'))}", fontsize=11)
     return figure
+
+
+def _along_normal(scene, figure, position, seen, objective, variable):
+    limit = _strong(np.abs(seen.values))
+    return _coloured(scene, figure, position, seen.coloured, seen.values, colors.Normalize(-limit, limit), "RdBu_r",
+                     f"{_derivative(objective, variable)} · n [{per_volume(objective.get('unit'))}]", seen.edges)
+
+
+def _derivative(objective, variable):
+    return f"d {objective['name']} / d {variable}"
 
 
 def _coloured(scene, figure, position, surface, values, norm, cmap, label, edges=True):

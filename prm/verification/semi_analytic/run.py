@@ -9,7 +9,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", ".."))
 import case_tools  # noqa: E402
 
-CASE = os.path.join(HERE, "..", "..", "tutorial", "upsetting.prm")
+CASE = os.path.join(HERE, "..", "..", "tutorial", "upsetting", "upsetting.prm")
 SETTINGS = {"Billet/element size": 5, "Press/stroke": 2, "Press/increments": 3, "Output/fields every": 0,
             "Design/parameters": "billet/radius", "Adjoint/tolerance": 1e-10}
 PERTURBATIONS = ("1e-2", "1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10")
