@@ -334,10 +334,20 @@ end
                               const std::vector<std::pair<std::string, std::string>> &overrides,
                               std::string                                            &echo)
   {
-    const std::vector<ParameterLine> lines  = read_parameter_lines(file, overrides);
-    const auto                       values = parameter_values(lines);
-    Parameters                       parameters;
-    dealii::ParameterHandler         prm;
+    return read(read_parameter_lines(file, overrides), echo);
+  }
+
+  Parameters Parameters::of_record(const std::string &text)
+  {
+    std::string ignored;
+    return read(parameter_lines_of(text, "parameters of the record"), ignored);
+  }
+
+  Parameters Parameters::read(const std::vector<ParameterLine> &lines, std::string &echo)
+  {
+    const auto               values = parameter_values(lines);
+    Parameters               parameters;
+    dealii::ParameterHandler prm;
     parameters.add_parameters(prm, names_in(values, "Dies/names", ""), objective_names(values));
     set_parameters(prm, lines);
     look_beside(file, prm, "Billet", "file name");
@@ -442,7 +452,7 @@ end
     };
     const StepModel model = step_model();
     require(is_sound(press.stroke / press.increments), "Press/stroke", "the increments of stroke");
-    require(is_sound(model.reach) && is_sound(model.ramp.width),
+    require(is_sound(model.reach) && is_sound(model.contact.ramp.width),
             "Contact",
             "the reach of contact (approach, layer, ramp width)");
     const Process<double> made = process(size);
@@ -529,16 +539,16 @@ end
   StepModel Parameters::step_model() const
   {
     StepModel    model;
-    const double step    = press.stroke / press.increments;
-    model.scheme         = press.scheme == "euler" ? Scheme::euler : Scheme::midpoint;
-    model.approach       = contact.approach;
-    model.ramp.sharp     = contact.law == "sharp";
-    model.edges_touch    = contact.points == "nodes and edges";
-    model.edge_stiffness = edge_stiffness_;
-    model.ramp.width     = contact.ramp_width * contact.approach * step;
-    const double layer   = model.ramp.sharp ? 0. : contact.layer;
-    model.layer          = layer * contact.approach * step;
-    model.step           = step;
+    const double step            = press.stroke / press.increments;
+    model.scheme                 = press.scheme == "euler" ? Scheme::euler : Scheme::midpoint;
+    model.edges_touch            = contact.points == "nodes and edges";
+    model.contact.approach       = contact.approach;
+    model.contact.ramp.sharp     = contact.law == "sharp";
+    model.contact.edge_stiffness = edge_stiffness_;
+    model.contact.ramp.width     = contact.ramp_width * contact.approach * step;
+    const double layer           = model.contact.ramp.sharp ? 0. : contact.layer;
+    model.contact.layer          = layer * contact.approach * step;
+    model.contact.step           = step;
     // Where a node at rest meets the approach speed.
     const double arrival = layer == 0. ? 1. : layer * std::sinh(1. / layer);
     model.reach          = std::max({3., 3. * contact.ramp_width, 1.5 * arrival}) * contact.approach * step;

@@ -10,12 +10,12 @@
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/objective/surface_areas.h>
 #include <retroforge/output/blas.h>
+#include <retroforge/output/check_file.h>
 #include <retroforge/output/console.h>
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/output/vtu_writer.h>
 #include <retroforge/record/record_file.h>
-#include <retroforge/resume.h>
 #include <retroforge/scene_checks.h>
 #include <retroforge/simulation.h>
 
@@ -32,6 +32,9 @@ namespace retroforge
 {
   namespace
   {
+    /// That makes a check's numbers.
+    const std::string program = std::string(version) + " " + commit;
+
     std::vector<Die> make_dies(const std::vector<DieParameters> &parameters)
     {
       std::vector<Die> dies;
@@ -49,14 +52,6 @@ namespace retroforge
           if (process.dies[d].vertices)
             dies[d] = dies[d].moved(*process.dies[d].vertices);
       return dies;
-    }
-
-    std::vector<unsigned int> facets(const std::vector<Die> &dies)
-    {
-      std::vector<unsigned int> n;
-      for (const Die &die : dies)
-        n.push_back(die.n_facets());
-      return n;
     }
 
     /// For names of fields.
@@ -128,15 +123,33 @@ namespace retroforge
     }
 
     /// "check" solves all systems as well as they can be, or differences would measure the solvers.
-    Parameters read(const CommandLine &command, std::string &echo)
+    Parameters as_solved(Parameters parameters, const CommandLine &command)
     {
-      Parameters parameters = Parameters::read(command.case_file, command.settings(), echo);
       if (command.command == "check")
       {
         parameters.newton.tolerance  = std::min(parameters.newton.tolerance, 1e-12);
         parameters.adjoint.tolerance = std::min(parameters.adjoint.tolerance, 1e-14);
       }
       return parameters;
+    }
+
+    Parameters read(const CommandLine &command, std::string &echo)
+    {
+      return as_solved(Parameters::read(command.case_file, command.settings(), echo), command);
+    }
+
+    std::optional<Resumption>
+    resumption(const CommandLine &command, const std::string &echo, const Parameters &parameters)
+    {
+      if (!command.resume)
+        return {};
+      return Resumption(command.output_directory, echo, parameters.press.stroke);
+    }
+
+    /// Those the run began with: what made the billet may have changed since.
+    Parameters first_parameters(const Parameters &parameters, const std::optional<Resumption> &resumption)
+    {
+      return resumption ? Parameters::of_record(resumption->header.parameters) : parameters;
     }
   } // namespace
 
@@ -145,7 +158,8 @@ namespace retroforge
       , comm_(comm)
       , root_(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
       , parameters_(read(command, echo_))
-      , billet_(make_first_mesh(parameters_, timings_, comm))
+      , resumption_(resumption(command, echo_, parameters_))
+      , billet_(make_first_mesh(first_parameters(parameters_, resumption_), timings_, comm))
       , nominal_(parameters_.settle(billet_size()).process(billet_size()))
       , design_(parameters_.design.all_names(),
                 parameters_.billet,
@@ -167,6 +181,7 @@ namespace retroforge
       , remesher_(parameters_.remeshing, parameters_.edge_length(billet_), model_.dies, billet_.patches, comm)
       , forging_(model_, parameters_.press, remesher_, timings_)
       , trace_(objectives_, model_, process_)
+      , stretches_(make_stretches())
   {
     check_scene(parameters_, first_leg_->scene, process_, X_0_);
     if (!parameters_.scan.parameter.empty())
@@ -266,10 +281,11 @@ namespace retroforge
   void Simulation::prepare_folder() const
   {
     const std::string &folder = command_.output_directory;
-    if (command_.resume)
-      check_resumable(RecordReader(folder).header(), echo_, billet_, X_0_, model_.dies, folder);
+    if (resumption_)
+      resumption_->check_start(billet_, X_0_, model_.dies);
+    MPI_Barrier(comm_); // all have read before anything changes
     if (root_ && command_.resume)
-      remove_all_but_record(folder);
+      remove_all_but_record(folder, command_.command == "check");
     else if (root_)
       make_results_folder(folder, command_.overwrite);
   }
@@ -298,17 +314,11 @@ namespace retroforge
       resume();
     else if (root_ && parameters_.output.record)
       record_ = std::make_unique<RecordWriter>(
-        command_.output_directory, RecordHeader{version, commit, echo_, facets(model_.dies), billet_, X_0_});
+        command_.output_directory,
+        RecordHeader{version, commit, echo_, facets(model_.dies), billet_, X_0_, fingerprints(model_.dies)});
     if (root_)
       say_when_stopped(way_on());
-    forging_.run(process_, forged_, [&](const IncrementEvent &event) {
-      if (record_)
-      {
-        const auto timing = timings_.scope("record");
-        record_->write(event.record);
-      }
-      watch(event);
-    });
+    forge_on();
     values_ = trace_.values(forged_, true);
     if (record_)
     {
@@ -319,6 +329,45 @@ namespace retroforge
     check_finite(objectives_, values_);
     require_finite(forged_.energy.total(), "Workpiece", "its energy");
     require_finite(volume(forged_.leg->scene.mesh.cells, forged_.X), "Workpiece", "its volume");
+  }
+
+  void Simulation::forge_on()
+  {
+    begin_stroke_  = forged_.stroke;
+    begin_seconds_ = timings_.seconds("total");
+    bool writes    = false;
+    try
+    {
+      forging_.run(process_, forged_, [&](const IncrementEvent &event) {
+        writes = true;
+        if (record_)
+        {
+          const auto timing = timings_.scope("record");
+          record_->write(event.record);
+        }
+        watch(event);
+        writes = false;
+      });
+    }
+    catch (const Error &error)
+    {
+      // Other numerics do not cure a full disk.
+      if (writes || forged_.increments == 0 || !(parameters_.output.record || command_.resume))
+        throw;
+      throw error.or_else(way_on_after_failure());
+    }
+  }
+
+  std::string Simulation::way_on_after_failure() const
+  {
+    const std::string remeshing =
+      remesher_.enabled() ? "'Remeshing/element size=" + as_text(0.7 * parameters_.edge_length(billet_)) + "'"
+                          : "Remeshing/when=quality";
+    return "go on from stroke " + as_text(forged_.stroke) +
+           " mm, up to which it is recorded, by the same command with --resume" +
+           (command_.overwrite ? " in place of --overwrite" : "") +
+           " and other numerics, for instance --set Press/increments=" +
+           std::to_string(2 * parameters_.press.increments) + " or --set " + remeshing;
   }
 
   std::string Simulation::way_on() const
@@ -361,12 +410,58 @@ namespace retroforge
       forged_,
       [&](const IncrementEvent &event) { watch(event); });
     MPI_Barrier(comm_); // all have read before the writer removes what is torn
-    if (root_ && record.finished())
-      RecordWriter::tidy(command_.output_directory);
-    else if (root_)
-      record_ = std::make_unique<RecordWriter>(RecordWriter::resume(command_.output_directory));
-    if (root_)
-      std::cout << "  resumed after increment " << n << std::endl;
+    const bool is_left = forging_.is_left(forged_);
+    if (is_left)
+      change_numerics();
+    if (!root_)
+      return;
+    const std::string &folder = command_.output_directory;
+    if (record.finished() && is_left)
+      RecordWriter::reopen(folder);
+    if (record.finished() && !is_left)
+      RecordWriter::tidy(folder);
+    else
+      record_ = std::make_unique<RecordWriter>(RecordWriter::resume(folder));
+    print_resumed();
+  }
+
+  void Simulation::change_numerics()
+  {
+    if (resumption_->changes.empty())
+      return;
+    Forging::change_numerics(echo_, forged_);
+    stretches_.push_back({{forged_.increments, forged_.stroke, echo_}, parameters_});
+  }
+
+  void Simulation::print_resumed() const
+  {
+    std::cout << "  resumed after increment " << forged_.increments << '\n';
+    if (!resumption_->changes.empty())
+      std::cout << (forging_.is_left(forged_)
+                      ? "  with other settings from here on:\n"
+                      : "  the forging is done, and other settings do not change it:\n");
+    for (const ChangedSetting &setting : resumption_->changes)
+      std::cout << "    " << setting.path << " = " << setting.now << ", was " << setting.before << '\n';
+    std::cout << std::flush;
+  }
+
+  std::vector<Simulation::Stretch> Simulation::make_stretches() const
+  {
+    std::vector<Stretch> stretches;
+    if (resumption_)
+      for (const RecordedInput &input : resumption_->inputs)
+      {
+        stretches.push_back({input, as_solved(Parameters::of_record(input.parameters), command_)});
+        stretches.back().parameters.settle(billet_size());
+      }
+    else
+    {
+      Stretch whole;
+      whole.input.parameters = echo_;
+      whole.parameters       = parameters_;
+      stretches.push_back(whole);
+    }
+    return stretches;
   }
 
   void Simulation::watch(const IncrementEvent &event)
@@ -416,7 +511,8 @@ namespace retroforge
     if (event.record.remesh)
       std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());
     print_increment(row,
-                    timings_.seconds("total") * (parameters_.press.stroke - state.stroke) / state.stroke);
+                    (timings_.seconds("total") - begin_seconds_) * (parameters_.press.stroke - state.stroke) /
+                      (state.stroke - begin_stroke_));
     const unsigned int every = parameters_.output.every;
     if (every > 0 &&
         (state.increments % every == 0 || state.stroke >= parameters_.press.stroke * (1. - 1e-9)))
@@ -587,14 +683,28 @@ namespace retroforge
     for (std::size_t d = 0; d < model.dies.size(); ++d)
       if (const auto vertices = std::exchange(at_dies.dies[d].vertices, nullptr))
         model.dies[d] = model.dies[d].moved(*vertices);
-    Timings        timings;
-    const Remesher remesher(
-      parameters_.remeshing, parameters_.edge_length(billet_), model.dies, billet_.patches, comm_);
-    const Forging    forging(model, parameters_.press, remesher, timings);
+    Timings          timings;
     const Objectives objectives = parameters_.make_objectives(model.dies, billet_);
     ObjectiveTrace   trace(objectives, model, at_dies);
-    ForgingState     state = forging.start(std::make_shared<Leg>(billet_, model, timings), X_0);
-    forging.run(at_dies, state, [&](const IncrementEvent &event) { trace.add(event); });
+    ForgingState     state;
+    for (std::size_t s = 0; s < stretches_.size(); ++s)
+    {
+      const Parameters &numerics = stretches_[s].parameters;
+      PressParameters   press    = numerics.press;
+      if (s + 1 < stretches_.size())
+        press.stroke = stretches_[s + 1].input.stroke;
+      model.step          = numerics.step_model();
+      model.newton        = numerics.newton;
+      model.linear_solver = numerics.linear_solver;
+      const Remesher remesher(
+        numerics.remeshing, numerics.edge_length(billet_), model.dies, billet_.patches, comm_);
+      const Forging forging(model, press, remesher, timings);
+      if (s == 0)
+        state = forging.start(std::make_shared<Leg>(billet_, model, timings), X_0);
+      else
+        Forging::change_numerics("", state);
+      forging.run(at_dies, state, [&](const IncrementEvent &event) { trace.add(event); });
+    }
     return combine(trace.values(state, true));
   }
 
@@ -638,22 +748,32 @@ namespace retroforge
 
   bool Simulation::check()
   {
-    const double begin = timings_.seconds("total");
-    const auto   rows  = check_gradient(
+    const double                begin = timings_.seconds("total");
+    std::optional<unsigned int> before; // directions that were done
+    const ObjectiveOracle       oracle = this->oracle();
+    std::vector<Judged>         judged = judged_;
+    if (command_.resume)
+    {
+      // The record may be of a run that was solved less well than its replays are here.
+      const auto values = oracle.replayed(mu_, {NodalVectors<double>(X_0_.size()), {}});
+      for (std::size_t j = 0; j < judged.size(); ++j)
+        judged[j].value = values[j];
+    }
+    const auto rows = check_gradient(
       parameters_.check,
       design_,
       mu_,
-      judged_,
+      judged,
       billet_size(),
-      oracle(),
+      oracle,
+      kept_check(),
       [&](const std::vector<CheckRow> &so_far, const unsigned int done, const unsigned int all) {
         keep_check(so_far, all - done);
-        if (!root_)
-          return;
-        if (done == 0)
-          print_check_begin(all, parameters_.check.n_runs(), forging_seconds_);
-        else
-          print_check_progress(so_far, done, all, timings_.seconds("total") - begin);
+        if (root_ && before)
+          print_check_progress(so_far, *before, done, all, timings_.seconds("total") - begin);
+        else if (root_)
+          print_check_begin(all, done, parameters_.check.n_runs(), forging_seconds_);
+        before = before.value_or(done);
       });
     if (root_)
       print(rows, std::cout);
@@ -667,6 +787,20 @@ namespace retroforge
       summary_.check.push_back(as_summary(row));
     summary_.check_remaining = remaining;
     write_summary();
+    if (root_)
+      CheckFile{program, echo_, forged_.increments, forged_.stroke, rows}.write(command_.output_directory +
+                                                                                "/check.json");
+  }
+
+  std::vector<CheckRow> Simulation::kept_check() const
+  {
+    if (!command_.resume)
+      return {};
+    CheckFile kept = CheckFile::read(command_.output_directory + "/check.json");
+    MPI_Barrier(comm_); // all have read before it is written again
+    const bool is_of_this = kept.program == program && kept.n_increments == forged_.increments &&
+                            kept.stroke == forged_.stroke && make_same_check(kept.parameters, echo_);
+    return is_of_this ? std::move(kept.rows) : std::vector<CheckRow>();
   }
 
   void Simulation::summarise()
@@ -688,6 +822,7 @@ namespace retroforge
     summary_.volume_final          = volume(forged_.leg->scene.mesh.cells, forged_.X);
     summary_.volume_repaired       = forged_.repaired;
     summarise_objectives();
+    summarise_restarts();
     for (std::size_t j = 0; j < mu_.size() && !judged_.empty(); ++j)
     {
       const DesignParameter &parameter = design_.parameters()[j];
@@ -712,6 +847,18 @@ namespace retroforge
     if (parameters_.objectives.gradients == "combined")
       summary_.objectives.push_back(
         {combinations_[0].name, combine(values_)[0], combinations_[0].unit, {}, {}});
+  }
+
+  void Simulation::summarise_restarts()
+  {
+    for (std::size_t s = 1; s < stretches_.size(); ++s)
+    {
+      const RecordedInput &input = stretches_[s].input;
+      summary_.restarts.push_back({input.first + 1, input.stroke, {}});
+      for (const ChangedSetting &setting :
+           changed_numerics(stretches_[s - 1].input.parameters, input.parameters))
+        summary_.restarts.back().changed[setting.path] = {setting.before, setting.now};
+    }
   }
 
   void Simulation::write_summary()

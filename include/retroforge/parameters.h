@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/adjoint/check.h>
+#include <retroforge/core/parameter_input.h>
 #include <retroforge/design/design.h>
 #include <retroforge/objective/objective_parameters.h>
 #include <retroforge/scan/scan_parameters.h>
@@ -99,6 +100,9 @@ namespace retroforge
                            const std::vector<std::pair<std::string, std::string>> &overrides,
                            std::string                                            &echo);
 
+    /// Reads the complete input of an earlier run, as its record has it.  @throws Error
+    static Parameters of_record(const std::string &text);
+
     /// A case to start from: all parameters with their meaning, a box between two planes.
     static void print_template(std::ostream &out);
 
@@ -120,6 +124,8 @@ namespace retroforge
     double edge_length(const TetMesh &billet) const;
 
   private:
+    static Parameters read(const std::vector<ParameterLine> &lines, std::string &echo);
+
     double edge_stiffness_ = 1.; ///< of edges' penalty over the nodes', once settled
 
     double height(double size) const;

@@ -8,7 +8,9 @@
 #include <retroforge/output/objective_history.h>
 #include <retroforge/output/summary.h>
 #include <retroforge/parameters.h>
+#include <retroforge/resume.h>
 
+#include <optional>
 #include <set>
 
 namespace retroforge
@@ -27,6 +29,13 @@ namespace retroforge
     int run();
 
   private:
+    /// A part of the stroke over which the same numerics hold.
+    struct Stretch
+    {
+      RecordedInput input;
+      Parameters    parameters;
+    };
+
     /// Makes sure that nothing of another run is lost or mixed with this one.  @throws Error
     void prepare_folder() const;
     /// Surfaces of the dies that are no planes, at the start of the run: die_NAME.stl.
@@ -38,8 +47,15 @@ namespace retroforge
     void                     forge();
     /// To the state after the last increment of the record in the output folder, which the run goes on from.
     void resume();
+    /// Where the record that the run goes on from ends, other settings begin to hold, if some changed.
+    void change_numerics();
+    void print_resumed() const;
+    /// Solves what is left of the stroke.
+    void forge_on();
     /// What a user is told who stops the run.
     std::string way_on() const;
+    /// What can be done when the run failed after some increments.
+    std::string way_on_after_failure() const;
     /// Leaves the reason why the run failed, which is being thrown, and the workpiece there.
     void keep_failure() const;
     void differentiate();
@@ -48,13 +64,17 @@ namespace retroforge
     bool check();
     /// Keeps what of a check is done, however it ends.
     void keep_check(const std::vector<CheckRow> &rows, unsigned int remaining);
-    void summarise();
-    void summarise_objectives();
-    void write_summary();
+    /// Rows of a check of the same run that was stopped.
+    std::vector<CheckRow> kept_check() const;
+    void                  summarise();
+    void                  summarise_objectives();
+    void                  summarise_restarts();
+    void                  write_summary();
 
-    void watch(const IncrementEvent &event);
-    void trace(const IncrementEvent &event);
-    void write_sensitivity();
+    void                 watch(const IncrementEvent &event);
+    void                 trace(const IncrementEvent &event);
+    void                 write_sensitivity();
+    std::vector<Stretch> make_stretches() const;
     /// Results that cannot be written are no reason to stop at the end of a run.  @throws Error
     void   check_outputs() const;
     double billet_size() const;
@@ -75,11 +95,12 @@ namespace retroforge
     const bool        root_; ///< this rank writes
     Timings           timings_;
 
-    std::string     echo_; ///< the parameters as understood
-    Parameters      parameters_;
-    const TetMesh   billet_;
-    Process<double> nominal_;
-    Design          design_;
+    std::string                     echo_; ///< the parameters as understood
+    Parameters                      parameters_;
+    const std::optional<Resumption> resumption_; ///< of a run that goes on
+    const TetMesh                   billet_;
+    Process<double>                 nominal_;
+    Design                          design_;
 
     std::vector<double>  mu_;
     Process<double>      process_;
@@ -99,6 +120,9 @@ namespace retroforge
     std::vector<double>          values_;               ///< of the objectives
     std::vector<Judged>          judged_;               ///< each combination that was differentiated
     double                       forging_seconds_ = 0.; ///< 0: unknown, the run was resumed
+    std::vector<Stretch>         stretches_;
+    /// Where increments began to be solved, for the time left: stroke [mm], and seconds of the run by then.
+    double begin_stroke_ = 0., begin_seconds_ = std::numeric_limits<double>::quiet_NaN();
 
     std::unique_ptr<RecordWriter>     record_;
     std::unique_ptr<History>          history_;

@@ -290,23 +290,37 @@ namespace retroforge
       return rows;
     }
 
+    /// Rows of a direction that an earlier check has done, or none.
+    std::vector<CheckRow> done_rows(const Direction             &direction,
+                                    const std::vector<Judged>   &judged,
+                                    const std::vector<CheckRow> &done)
+    {
+      std::vector<CheckRow> rows;
+      for (const Judged &objective : judged)
+        for (const CheckRow &row : done)
+          if (row.objective == objective.name && row.parameter == direction.name)
+            rows.push_back(row);
+      return rows.size() == judged.size() ? rows : std::vector<CheckRow>();
+    }
+
     std::vector<CheckRow> by_objective(const std::vector<std::vector<CheckRow>> &of_directions)
     {
       std::vector<CheckRow> rows;
-      for (std::size_t o = 0; o < of_directions[0].size(); ++o)
+      for (std::size_t o = 0; !of_directions.empty() && o < of_directions[0].size(); ++o)
         for (const auto &direction : of_directions)
           rows.push_back(direction[o]);
       return rows;
     }
   } // namespace
 
-  std::vector<CheckRow> check_gradient(const CheckParameters     &parameters,
-                                       const Design              &design,
-                                       const std::vector<double> &mu,
-                                       const std::vector<Judged> &judged,
-                                       const double               length,
-                                       const ObjectiveOracle     &oracle,
-                                       const CheckWatch          &watch)
+  std::vector<CheckRow> check_gradient(const CheckParameters       &parameters,
+                                       const Design                &design,
+                                       const std::vector<double>   &mu,
+                                       const std::vector<Judged>   &judged,
+                                       const double                 length,
+                                       const ObjectiveOracle       &oracle,
+                                       const std::vector<CheckRow> &done,
+                                       const CheckWatch            &watch)
   {
     CheckParameters small = parameters;
     for (double &step : small.steps)
@@ -314,9 +328,15 @@ namespace retroforge
     small.taylor_start *= 0.1;
     std::vector<std::vector<CheckRow>> of_directions;
     const auto                         all = directions(design, judged[0].shape, length);
-    watch({}, 0, all.size());
     for (const Direction &direction : all)
+      if (const auto rows = done_rows(direction, judged, done); rows.empty())
+        break;
+      else
+        of_directions.push_back(rows);
+    watch(by_objective(of_directions), of_directions.size(), all.size());
+    for (std::size_t i = of_directions.size(); i < all.size(); ++i)
     {
+      const Direction &direction = all[i];
       of_directions.push_back(rows_of(direction, judged));
       check_line(direction.is_of_shape ? small : parameters,
                  {mu, direction.mu_dot, direction.shift_dot},

@@ -83,4 +83,9 @@ namespace retroforge
                            clean(shortened(rule, 2000)) + "; " + clean(shortened(remedy, 2000)))
   {
   }
+
+  Error Error::or_else(const std::string &remedy) const
+  {
+    return Error(what() + ("; or " + clean(shortened(remedy, 2000))));
+  }
 } // namespace retroforge

@@ -33,7 +33,10 @@ namespace retroforge
 
   void print_increment(const HistoryRow &row, const double seconds_left)
   {
-    std::printf("%5u %8.4f %12.5g %13.7g %13.7g %8.4f %7.3f %6u %6u %8.0f s\n",
+    char left[32] = "-";
+    if (!std::isnan(seconds_left))
+      std::snprintf(left, sizeof left, "%.0f s", seconds_left);
+    std::printf("%5u %8.4f %12.5g %13.7g %13.7g %8.4f %7.3f %6u %6u %10s\n",
                 row.increment,
                 row.stroke,
                 row.force,
@@ -43,7 +46,7 @@ namespace retroforge
                 row.depth,
                 row.newton,
                 row.krylov,
-                seconds_left);
+                left);
     std::fflush(stdout);
   }
 
@@ -80,19 +83,24 @@ namespace retroforge
     }
   }
 
-  void print_check_begin(const unsigned int n_directions, const unsigned int n_runs, const double seconds)
+  void print_check_begin(const unsigned int n_directions,
+                         const unsigned int n_done,
+                         const unsigned int n_runs,
+                         const double       seconds)
   {
-    std::printf("\n  check of %u directions by %u forgings and a tangent each: %u forgings",
-                n_directions,
-                n_runs,
-                n_directions * n_runs);
+    const unsigned int n_left = n_directions - n_done;
+    std::printf("\n  check of %u directions by %u forgings and a tangent each: ", n_directions, n_runs);
+    if (n_done > 0)
+      std::printf("%u done before, ", n_done);
+    std::printf("%u forgings", n_left * n_runs);
     if (seconds > 0.) // a tangent solves a system per stage for each of its directions, and reassembles
-      std::printf(", about %.0f s", std::ceil(n_directions * (n_runs + 2) * seconds));
+      std::printf(", about %.0f s", std::ceil(n_left * (n_runs + 2) * seconds));
     std::printf("\n");
     std::fflush(stdout);
   }
 
   void print_check_progress(const std::vector<CheckRow> &rows,
+                            const unsigned int           before,
                             const unsigned int           done,
                             const unsigned int           all,
                             const double                 seconds)
@@ -107,7 +115,7 @@ namespace retroforge
                 rows[done - 1].parameter.c_str(),
                 failed == 0 ? "passed" : (std::to_string(failed) + " FAILED").c_str(),
                 seconds,
-                std::ceil(seconds / done * (all - done)));
+                std::ceil(seconds / (done - before) * (all - done)));
     std::fflush(stdout);
   }
 

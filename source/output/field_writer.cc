@@ -145,7 +145,7 @@ namespace retroforge
   {
     const ForgingState &run   = event.state;
     const Scene        &scene = run.leg->scene;
-    const LastStage     last(scene, model_.step, process_, event.X_before, event.record);
+    const LastStage     last(scene, process_, event.X_before, event.record);
     const ContactFields contact = contact_fields(last.stage, run.W, event.record.solves.back().active);
     const std::string   number = six_digits(run.increments), file = "fields_" + number + ".vtu";
     add_billet();

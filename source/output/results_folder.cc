@@ -15,9 +15,10 @@ namespace retroforge
     namespace fs = std::filesystem;
 
     /// Of files a run, a scan or the report writes.
-    const std::regex file_names("parameters\\.prm|summary\\.json|(history|objectives|scan)\\.csv|scan\\.json|"
-                                "fields\\.pvd|fields_[0-9]{6,}\\.vtu|failed\\.vtu|failure\\.txt|"
-                                "sensitivity(_die_.*)?\\.vtu|die_.*\\.(stl|vtu)|record\\.h5|report\\.html");
+    const std::regex
+      file_names("parameters\\.prm|summary\\.json|check\\.json|(history|objectives|scan)\\.csv|scan\\.json|"
+                 "fields\\.pvd|fields_[0-9]{6,}\\.vtu|failed\\.vtu|failure\\.txt|"
+                 "sensitivity(_die_.*)?\\.vtu|die_.*\\.(stl|vtu)|record\\.h5|report\\.html");
 
     bool is_result(const fs::path &path)
     {
@@ -83,14 +84,16 @@ namespace retroforge
     remove(directory, names);
   }
 
-  void remove_all_but_record(const std::string &directory)
+  void remove_all_but_record(const std::string &directory, const bool keep_check)
   {
     std::vector<std::string> names = results_in(directory);
-    names.erase(
-      std::remove_if(names.begin(),
-                     names.end(),
-                     [](const std::string &name) { return name == "record" || name == "record.h5"; }),
-      names.end());
+    names.erase(std::remove_if(names.begin(),
+                               names.end(),
+                               [&](const std::string &name) {
+                                 return name == "record" || name == "record.h5" ||
+                                        (keep_check && name == "check.json");
+                               }),
+                names.end());
     remove(directory, names);
   }
 } // namespace retroforge

@@ -41,6 +41,7 @@ namespace retroforge
     Json as_json(const Summary::CheckStep &step);
     Json as_json(const Summary::Objective &objective);
     Json as_json(const Summary::Parameter &parameter);
+    Json as_json(const Summary::Restart &restart);
     Json as_json(const double x)
     {
       return number(x);
@@ -73,6 +74,14 @@ namespace retroforge
                    {"scale", number(parameter.scale)}};
       add_unless_empty(json, "gradient", number_map(parameter.gradient));
       return json;
+    }
+
+    Json as_json(const Summary::Restart &restart)
+    {
+      Json changed = Json::object();
+      for (const auto &[path, values] : restart.changed)
+        changed[path] = {values.first, values.second};
+      return {{"increment", restart.increment}, {"stroke", number(restart.stroke)}, {"changed", changed}};
     }
 
     Json as_json(const Summary::CheckStep &step)
@@ -126,6 +135,7 @@ namespace retroforge
         {"die", deepest.die},
         {"stroke", number(deepest.stroke)},
         {"place", {number(deepest.place[0]), number(deepest.place[1]), number(deepest.place[2])}}};
+    add_unless_empty(json, "restarts", list(restarts));
     add_unless_empty(json, "wall_seconds", number_map(wall_seconds));
     json["record_bytes"] = number(record_bytes);
     add_unless_empty(json, "check", list(check));

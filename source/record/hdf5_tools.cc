@@ -277,7 +277,7 @@ namespace retroforge::hdf5
     return Handle(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, name);
   }
 
-  bool has_group(const hid_t parent, const std::string &name)
+  bool has_link(const hid_t parent, const std::string &name)
   {
     const htri_t exists = H5Lexists(parent, name.c_str(), H5P_DEFAULT);
     check(exists, name);

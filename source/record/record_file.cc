@@ -172,6 +172,12 @@ namespace retroforge
       remove_increments(directory, 0);
     }
 
+    void copy_object(const std::string &from, const std::string &name, const hid_t to)
+    {
+      const hdf5::Handle source = hdf5::open_file(from);
+      hdf5::check(H5Ocopy(source, name.c_str(), to, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), from);
+    }
+
     void make_folder(const std::string &folder)
     {
       std::error_code error;
@@ -209,6 +215,19 @@ namespace retroforge
     return RecordWriter(directory, RecordShape(reader.header()), reader.n_increments());
   }
 
+  void RecordWriter::reopen(const std::string &directory)
+  {
+    const unsigned int n    = RecordReader(directory).n_increments();
+    const std::string  from = finished_file(directory);
+    make_folder(segments(directory));
+    remove_segments(directory);
+    for (unsigned int i = 0; i < n; ++i)
+      write_whole(increment_file(directory, i),
+                  [&](const hid_t file) { copy_object(from, increment_name(i), file); });
+    write_whole(header_file(directory), [&](const hid_t file) { copy_object(from, "header", file); });
+    remove_file(from);
+  }
+
   void RecordWriter::write(const IncrementRecord &increment)
   {
     write_whole(increment_file(directory_, n_increments_),
@@ -218,14 +237,10 @@ namespace retroforge
 
   void RecordWriter::finish()
   {
-    const auto copy = [](const std::string &from, const std::string &name, const hid_t to) {
-      const hdf5::Handle source = hdf5::open_file(from);
-      hdf5::check(H5Ocopy(source, name.c_str(), to, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), from);
-    };
     write_whole(finished_file(directory_), [&](const hid_t file) {
-      copy(header_file(directory_), "header", file);
+      copy_object(header_file(directory_), "header", file);
       for (unsigned int i = 0; i < n_increments_; ++i)
-        copy(increment_file(directory_, i), increment_name(i), file);
+        copy_object(increment_file(directory_, i), increment_name(i), file);
       hdf5::write_attribute(file, "n_increments", &n_increments_);
     });
     tidy(directory_);
@@ -270,6 +285,29 @@ namespace retroforge
     else
       while (is_file(increment_file(directory_, n_increments_)))
         ++n_increments_;
+  }
+
+  IncrementHead RecordReader::head(const unsigned int i) const
+  {
+    return read_whole<IncrementHead>(finished() ? file_ : increment_file(directory_, i),
+                                     [&](const hid_t f) { return read_increment_head(f, i, shape_); });
+  }
+
+  std::vector<RecordedInput> RecordReader::inputs() const
+  {
+    std::vector<RecordedInput> inputs = {{0, 0., header_.parameters}};
+    for (unsigned int i = 0; i < n_increments_; ++i)
+      if (IncrementHead increment = head(i); !increment.parameters.empty())
+        inputs.push_back({i, increment.stroke, std::move(increment.parameters)});
+    return inputs;
+  }
+
+  double RecordReader::stroke() const
+  {
+    if (n_increments_ == 0)
+      return 0.;
+    const IncrementHead last = head(n_increments_ - 1);
+    return last.stroke + last.step;
   }
 
   IncrementRecord RecordReader::read(const unsigned int i) const

@@ -3,6 +3,7 @@
 #include <deal.II/base/exceptions.h>
 
 #include <retroforge/core/error.h>
+#include <retroforge/core/fingerprint.h>
 #include <retroforge/mesh/mesh_checks.h>
 #include <retroforge/record/record_format.h>
 
@@ -15,18 +16,10 @@ namespace retroforge
 {
   namespace
   {
-    constexpr unsigned int format = 5;
+    constexpr unsigned int format = 6;
 
     static_assert(sizeof(Vec3) == 3 * sizeof(double),
                   "nodal vectors are read and written as arrays of numbers");
-
-    /// FNV-1a.
-    void add_to_fingerprint(std::uint64_t &fingerprint, const void *data, const std::size_t size)
-    {
-      const auto *bytes = static_cast<const unsigned char *>(data);
-      for (std::size_t i = 0; i < size; ++i)
-        fingerprint = (fingerprint ^ bytes[i]) * 0x100000001b3u;
-    }
 
     void write_vectors(const hid_t parent, const std::string &name, const NodalVectors<double> &X)
     {
@@ -205,6 +198,24 @@ namespace retroforge
       return remesh;
     }
 
+    void write_contact(const hid_t group, const ContactNumerics &contact)
+    {
+      const double numbers[] = {
+        contact.approach, contact.layer, contact.step, contact.ramp.width, contact.edge_stiffness};
+      const unsigned int sharp = contact.ramp.sharp ? 1 : 0;
+      hdf5::write_attribute(group, "contact", numbers, 5);
+      hdf5::write_attribute(group, "sharp", &sharp);
+    }
+
+    ContactNumerics read_contact(const hid_t group)
+    {
+      double numbers[5];
+      hdf5::read_attribute(group, "contact", numbers, 5);
+      check_finite(numbers, 5, "contact");
+      const auto sharp = hdf5::read_attribute<unsigned int>(group, "sharp");
+      return {numbers[0], numbers[1], numbers[2], {numbers[3], sharp != 0}, numbers[4]};
+    }
+
     void write_solves(const hid_t                     group,
                       const std::vector<SolveRecord> &solves,
                       const hsize_t                   n_nodes,
@@ -305,13 +316,14 @@ namespace retroforge
     }
   } // namespace
 
-  RecordShape::RecordShape(const RecordHeader &header)
-      : die_facets(header.die_facets), run(0xcbf29ce484222325u)
+  RecordShape::RecordShape(const RecordHeader &header) : die_facets(header.die_facets)
   {
     const TetMesh &mesh = header.mesh;
-    add_to_fingerprint(run, header.parameters.data(), header.parameters.size());
-    add_to_fingerprint(run, header.X_0.data(), header.X_0.size() * sizeof(Vec3));
-    add_to_fingerprint(run, mesh.cells.data(), mesh.cells.size() * sizeof(mesh.cells[0]));
+    Fingerprint    fingerprint;
+    fingerprint.add(header.parameters.data(), header.parameters.size());
+    fingerprint.add(header.X_0.data(), header.X_0.size() * sizeof(Vec3));
+    fingerprint.add(mesh.cells.data(), mesh.cells.size() * sizeof(mesh.cells[0]));
+    run = fingerprint.value;
   }
 
   std::string increment_name(const unsigned int i)
@@ -326,6 +338,8 @@ namespace retroforge
     const hdf5::Handle group = hdf5::create_group(file, "header");
     hdf5::write_attribute(group, "format", &format);
     hdf5::write_array(group, "die_facets", {header.die_facets.size()}, header.die_facets.data());
+    hdf5::write_array(
+      group, "die_fingerprints", {header.die_fingerprints.size()}, header.die_fingerprints.data());
     hdf5::write_string(group, "program", header.program);
     hdf5::write_string(group, "commit", header.commit);
     hdf5::write_string(group, "parameters", header.parameters);
@@ -339,14 +353,17 @@ namespace retroforge
     const auto         found_format = hdf5::read_attribute<unsigned int>(group, "format");
     RecordHeader       header;
     header.program = hdf5::read_string(group, "program");
+    header.commit  = hdf5::read_string(group, "commit");
     if (found_format != format)
       throw Error(file_name,
                   "has format " + std::to_string(found_format),
                   "this program reads format " + std::to_string(format),
-                  "use retroforge " + header.program + ", which wrote it, or run the simulation again");
-    header.commit     = hdf5::read_string(group, "commit");
+                  "use retroforge " + header.program + " (" + header.commit +
+                    "), which wrote it, or run the simulation again with --overwrite");
     header.parameters = hdf5::read_string(group, "parameters");
     header.die_facets = hdf5::read_array<unsigned int>(group, "die_facets", {hdf5::any});
+    header.die_fingerprints =
+      hdf5::read_array<std::uint64_t>(group, "die_fingerprints", {header.die_facets.size()});
     if (std::count(header.die_facets.begin(), header.die_facets.end(), 0u) > 0)
       throw hdf5::Failure("die_facets holds a die without facets");
     header.mesh = read_mesh(group);
@@ -372,6 +389,9 @@ namespace retroforge
     hdf5::write_attribute(group, "newton", &increment.newton);
     hdf5::write_attribute(group, "krylov", &increment.krylov);
     hdf5::write_attribute(group, "linear_solves", &increment.linear_solves);
+    write_contact(group, increment.contact);
+    if (!increment.parameters.empty())
+      hdf5::write_string(group, "parameters", increment.parameters);
     write_vectors(group, "forces", increment.forces);
     write_pairs(group, increment.pairs);
     write_solves(group, increment.solves, n_nodes, increment.pairs.size());
@@ -379,17 +399,41 @@ namespace retroforge
       write_remesh(group, *increment.remesh);
   }
 
+  namespace
+  {
+    hdf5::Handle open_increment(const hid_t file, const unsigned int i, const RecordShape &shape)
+    {
+      hdf5::Handle group = hdf5::open_group(file, increment_name(i));
+      if (hdf5::read_attribute<std::uint64_t>(group, "run") != shape.run)
+        throw hdf5::Failure(increment_name(i) + " belongs to another run");
+      return group;
+    }
+
+    IncrementHead read_head(const hid_t group)
+    {
+      return {read_number(group, "stroke"),
+              read_number(group, "step"),
+              hdf5::has_link(group, "parameters") ? hdf5::read_string(group, "parameters") : ""};
+    }
+  } // namespace
+
+  IncrementHead read_increment_head(const hid_t file, const unsigned int i, const RecordShape &shape)
+  {
+    return read_head(open_increment(file, i, shape));
+  }
+
   IncrementRecord read_increment(const hid_t        file,
                                  const std::string &file_name,
                                  const unsigned int i,
                                  const RecordShape &shape)
   {
-    const hdf5::Handle group = hdf5::open_group(file, increment_name(i));
-    if (hdf5::read_attribute<std::uint64_t>(group, "run") != shape.run)
-      throw hdf5::Failure(increment_name(i) + " belongs to another run");
-    IncrementRecord increment;
-    increment.stroke             = read_number(group, "stroke");
-    increment.step               = read_number(group, "step");
+    const hdf5::Handle group = open_increment(file, i, shape);
+    IncrementHead      head  = read_head(group);
+    IncrementRecord    increment;
+    increment.stroke             = head.stroke;
+    increment.step               = head.step;
+    increment.parameters         = std::move(head.parameters);
+    increment.contact            = read_contact(group);
     increment.cuts               = hdf5::read_attribute<unsigned int>(group, "cuts");
     increment.deformation_energy = read_number(group, "deformation_energy");
     increment.friction_energy    = read_number(group, "friction_energy");
@@ -400,7 +444,7 @@ namespace retroforge
     const auto n_nodes           = hdf5::read_attribute<unsigned int>(group, "n_nodes");
     increment.pairs              = read_pairs(group, shape, n_nodes);
     increment.solves             = read_solves(group, n_nodes, increment.pairs.size());
-    if (hdf5::has_group(group, "remesh"))
+    if (hdf5::has_link(group, "remesh"))
       increment.remesh = read_remesh(group, file_name + ", " + increment_name(i));
     if (increment.remesh && increment.remesh->mesh.n_nodes() != n_nodes)
       throw hdf5::Failure("the new mesh has " + std::to_string(increment.remesh->mesh.n_nodes()) +

@@ -232,7 +232,7 @@ namespace retroforge
     state.krylov += record.krylov;
     state.linear_solves += record.linear_solves;
     ++state.increments;
-    const double whole = press_.stroke / press_.increments, done = state.stroke / whole;
+    const double whole = record.contact.step, done = (state.stroke - state.numerics_stroke) / whole;
     while (whole / (1 << state.depth) > record.step * (1. + 1e-9) && state.depth < 30)
       ++state.depth;
     // Back to longer steps once a whole number of them fits.
@@ -241,13 +241,12 @@ namespace retroforge
       --state.depth;
   }
 
-  void
-  Forging::throw_stuck(const IncrementRecord &record, const double whole, const std::string &reason) const
+  void Forging::throw_stuck(const IncrementRecord &record, const std::string &reason) const
   {
     std::ostringstream what;
     what.precision(5);
     what << "stops at stroke " << record.stroke << " mm, where even an increment of "
-         << whole * std::ldexp(1., -static_cast<int>(press_.max_cuts)) << " mm is too long: " << reason;
+         << whole() * std::ldexp(1., -static_cast<int>(press_.max_cuts)) << " mm is too long: " << reason;
     const char *remedy =
       record.stroke == 0. ? "nothing moved yet, so the stroke is not what is wrong: use values of the usual "
                             "size, penalty and friction above all, more increments, or a better mesh"
@@ -277,10 +276,10 @@ namespace retroforge
         "at most Press/largest volume change may be lost",
         "if the dies nearly close there, shorten the stroke; else use more increments or a finer mesh");
     }
-    if (state.increments > most_increments * press_.increments)
+    if (const unsigned int n = state.increments - state.numerics_increments;
+        n > most_increments * press_.increments)
     {
-      what << "was cut so often that " << state.increments << " increments brought it to " << state.stroke
-           << " mm";
+      what << "was cut so often that " << n << " increments brought it to " << state.stroke << " mm";
       throw Error("Press/stroke",
                   what.str(),
                   "a run may take " + std::to_string(most_increments) + " times Press/increments",
@@ -289,9 +288,21 @@ namespace retroforge
     }
   }
 
+  void Forging::change_numerics(const std::string &parameters, ForgingState &state)
+  {
+    state.depth               = 0;
+    state.numerics_stroke     = state.stroke;
+    state.numerics_increments = state.increments;
+    state.parameters          = parameters;
+  }
+
+  bool Forging::is_left(const ForgingState &state) const
+  {
+    return state.stroke < press_.stroke - 1e-9 * whole();
+  }
+
   void Forging::run(const Process<double> &process, ForgingState &state, const Watch &watch) const
   {
-    const double      whole = press_.stroke / press_.increments;
     std::vector<bool> frozen;
     if (remesher_.enabled())
       frozen = remesher_.frozen(state.leg->scene.mesh);
@@ -301,7 +312,9 @@ namespace retroforge
     // Also where a run is resumed that stopped for that.
     if (!remesher_.enabled())
       check_fold(state);
-    while (state.stroke < press_.stroke - 1e-9 * whole)
+    if (state.increments > 0)
+      check_progress(state);
+    while (is_left(state))
     {
       IncrementRecord record;
       const auto      renew = [&]() {
@@ -320,8 +333,9 @@ namespace retroforge
         renew();
       if (crossed)
         check_fold(state);
-      record.stroke = state.stroke;
-      record.step   = std::min(whole / (1 << state.depth), press_.stroke - state.stroke);
+      record.stroke     = state.stroke;
+      record.step       = std::min(whole() / (1 << state.depth), press_.stroke - state.stroke);
+      record.parameters = std::exchange(state.parameters, "");
       NodalVectors<double> X_next;
       Field<double>        solution;
       for (;;)
@@ -336,11 +350,11 @@ namespace retroforge
         }
         record.step *= 0.5;
         ++record.cuts;
-        if (record.step < whole * std::ldexp(1., -static_cast<int>(press_.max_cuts)) * (1. - 1e-9))
+        if (record.step < whole() * std::ldexp(1., -static_cast<int>(press_.max_cuts)) * (1. - 1e-9))
         {
           // A fold that is closing is the true reason.
           check_fold(state);
-          throw_stuck(record, whole, reason);
+          throw_stuck(record, reason);
         }
       }
       const NodalVectors<double> X_before = state.X;
@@ -350,7 +364,7 @@ namespace retroforge
         watch({record, X_before, state, process.time(state.stroke)});
       check_progress(state);
       // With remeshing, the next increment begins with a repair.
-      const bool last = state.stroke >= press_.stroke - 1e-9 * whole;
+      const bool last = !is_left(state);
       if (remesher_.enabled()
             ? last && !remesher_.repairs(state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies)
             : last || state.increments % fold_interval == 0)
@@ -367,6 +381,8 @@ namespace retroforge
     for (unsigned int i = 0; i < n; ++i)
     {
       const IncrementRecord &record = source(i);
+      if (!record.parameters.empty())
+        change_numerics("", state);
       if (record.remesh)
       {
         change_mesh(*record.remesh, state);

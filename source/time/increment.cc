@@ -102,7 +102,6 @@ namespace retroforge
   } // namespace
 
   LastStage::LastStage(const Scene                &scene,
-                       const StepModel            &model,
                        const Process<double>      &process,
                        const NodalVectors<double> &X_before,
                        const IncrementRecord      &record)
@@ -113,11 +112,11 @@ namespace retroforge
                                   scene.dies,
                                   physics_.dies,
                                   record.pairs,
-                                  model.ramp,
-                                  model.approach * dt_,
+                                  record.contact.ramp,
+                                  record.contact.approach * dt_,
                                   X_before,
-                                  model.approach_law(record.step),
-                                  model.edge_stiffness))
+                                  record.contact.approach_law(record.step),
+                                  record.contact.edge_stiffness))
       , X_(record.solves.size() == 1 ? X_before : advanced(X_before, 0.5 * dt_, record.solves[0].V))
       , stage(scene, physics_, contact_, X_)
   {
@@ -143,11 +142,11 @@ namespace retroforge
                             scene_.dies,
                             physics.dies,
                             record.pairs,
-                            model_.ramp,
-                            model_.approach * dt,
+                            record.contact.ramp,
+                            record.contact.approach * dt,
                             X,
-                            model_.approach_law(record.step),
-                            model_.edge_stiffness);
+                            record.contact.approach_law(record.step),
+                            record.contact.edge_stiffness);
   }
 
   bool Increment::escaped(const Stage<double> &stage, const Field<double> &W) const
@@ -182,9 +181,11 @@ namespace retroforge
   {
     const Physics<double> physics = process.at_stroke(record.stroke);
     const double          dt      = process.time(record.step);
-    const bool            two     = model_.scheme == Scheme::midpoint;
+    const bool            two     = replay ? record.solves.size() == 2 : model_.scheme == Scheme::midpoint;
     const auto frozen = [&](const unsigned int s) { return replay ? record.solves[s].active : ActiveSet(); };
     std::vector<SolveRecord> solves(two ? 2 : 1);
+    if (!replay)
+      record.contact = model_.contact;
     // A run that is resumed must not differ from one that was not.
     system_.reset();
     std::size_t n_watched = 0;
@@ -196,7 +197,7 @@ namespace retroforge
       {
         const auto timing = timings_.scope("contact");
         record.pairs      = find_contact_pairs(
-          scene_.topology, scene_.dies, physics.dies, X, model_.ramp, reach, model_.edges_touch);
+          scene_.topology, scene_.dies, physics.dies, X, record.contact.ramp, reach, model_.edges_touch);
         all_found = reach > model_.reach && record.pairs.size() == n_watched;
         n_watched = record.pairs.size();
       }
@@ -273,8 +274,8 @@ namespace retroforge
                                                   const NodalVectors<double> &X,
                                                   const IncrementRecord      &record) const
   {
-    return model_.scheme == Scheme::euler ? X
-                                          : advanced(X, 0.5 * process.time(record.step), record.solves[0].V);
+    return record.solves.size() == 1 ? X
+                                     : advanced(X, 0.5 * process.time(record.step), record.solves[0].V);
   }
 
   namespace
@@ -353,7 +354,7 @@ namespace retroforge
           reverse_contact_set(scene_.dies,
                               physics.dies,
                               contact,
-                              model_.ramp,
+                              record.contact.ramp,
                               X,
                               bar.contact,
                               position_bar,
@@ -365,7 +366,8 @@ namespace retroforge
       }
     }
     for (std::size_t j = 0; j < costates.size(); ++j)
-      costates[j].process.add(bars[j].physics, process, {record.stroke, record.step}, model_.approach);
+      costates[j].process.add(
+        bars[j].physics, process, {record.stroke, record.step}, record.contact.approach);
   }
 
   Field<Dual> Increment::tangent_field(const Stage<Dual>          &stage,
@@ -403,11 +405,11 @@ namespace retroforge
                                                       scene_.dies,
                                                       physics.dies,
                                                       record.pairs,
-                                                      model_.ramp,
-                                                      Dual(model_.approach * dt),
+                                                      record.contact.ramp,
+                                                      Dual(record.contact.approach * dt),
                                                       X,
-                                                      model_.approach_law(record.step),
-                                                      model_.edge_stiffness);
+                                                      record.contact.approach_law(record.step),
+                                                      record.contact.edge_stiffness);
     const Physics<double>    physics_value = values_of(physics);
     const ContactSet<double> contact_value = contact_set(physics_value, values_of(X), record, dt.val());
     NodalVectors<Dual>       position      = X;

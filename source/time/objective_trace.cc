@@ -36,7 +36,7 @@ namespace retroforge
 
   void ObjectiveTrace::add(const IncrementEvent &event)
   {
-    const LastStage         last(event.state.leg->scene, model_.step, process_, event.X_before, event.record);
+    const LastStage         last(event.state.leg->scene, process_, event.X_before, event.record);
     const StageView<double> view{last.stage, event.state.W, event.record.solves.back().active};
     const double            dt = process_.time(event.record.step);
     for (std::size_t j = 0; j < objectives_.size(); ++j)

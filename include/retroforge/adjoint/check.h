@@ -82,21 +82,24 @@ namespace retroforge
     double smallest_difference() const;
   };
 
-  /// Told before the first direction and after each: the rows so far, how many directions are done, and how
-  /// many there are.
+  /// Told before the first direction that is to be checked and after each: the rows so far, how many
+  /// directions are done, and how many there are.
   using CheckWatch =
     std::function<void(const std::vector<CheckRow> &rows, unsigned int done, unsigned int all)>;
 
   /// Checks the derivative of each objective in each design parameter, along one random direction of all X_0,
   /// and along one of all vertices of each die that has some. Objectives share the runs. Rows are ordered by
   /// objective.
-  std::vector<CheckRow> check_gradient(const CheckParameters     &parameters,
-                                       const Design              &design,
-                                       const std::vector<double> &mu,
-                                       const std::vector<Judged> &judged,
-                                       double                     length,
-                                       const ObjectiveOracle     &oracle,
-                                       const CheckWatch          &watch);
+  /// @param done  rows of an earlier check of the same record, which stopped: their directions are not
+  /// repeated
+  std::vector<CheckRow> check_gradient(const CheckParameters       &parameters,
+                                       const Design                &design,
+                                       const std::vector<double>   &mu,
+                                       const std::vector<Judged>   &judged,
+                                       double                       length,
+                                       const ObjectiveOracle       &oracle,
+                                       const std::vector<CheckRow> &done,
+                                       const CheckWatch            &watch);
 
   /// The table a user reads.
   void print(const std::vector<CheckRow> &rows, std::ostream &out);

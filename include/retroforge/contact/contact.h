@@ -6,6 +6,7 @@
 #include <retroforge/geometry/die.h>
 #include <retroforge/material/norton_hoff.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -60,6 +61,23 @@ namespace retroforge
     double part  = 1.; ///< of a whole increment, where it was cut
 
     ApproachLaw(const double layer = 0., const double part = 1.) : layer(layer), part(part) {}
+  };
+
+  /// What of the numerics stands in an increment's equations of contact. It is recorded with the increment,
+  /// since a run may go on with other numerics: the backward sweep and the replay use what was used.
+  struct ContactNumerics
+  {
+    double       approach = 1.; ///< approach time in increments: tau = approach * dt
+    double       layer    = 0.; ///< of the approach speed [mm]
+    double       step     = 0.; ///< stroke of a whole increment [mm]
+    FrictionRamp ramp;
+    double       edge_stiffness = 1.; ///< of edges' penalty over the nodes'
+
+    /// Of an increment of a given stroke.
+    ApproachLaw approach_law(const double stroke) const
+    {
+      return {layer, step > 0. ? std::min(1., stroke / step) : 1.};
+    }
   };
 
   /// A point in reach of a die: a recorded decision.

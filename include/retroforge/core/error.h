@@ -27,5 +27,11 @@ namespace retroforge
           const std::string &what,
           const std::string &rule,
           const std::string &remedy);
+
+    /// The same with one more remedy.
+    Error or_else(const std::string &remedy) const;
+
+  private:
+    explicit Error(const std::string &message) : std::runtime_error(message) {}
   };
 } // namespace retroforge

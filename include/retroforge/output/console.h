@@ -19,7 +19,7 @@ namespace retroforge
   /// Of what part the numbers are, and the head of the table of increments.
   void print_head(const WholePart &whole);
 
-  /// @param seconds_left  until the forging is done
+  /// @param seconds_left  until the forging is done; NaN when unknown
   void print_increment(const HistoryRow &row, double seconds_left);
 
   /// The parameters by what one per cent of each does: what a forger would turn first.
@@ -27,12 +27,15 @@ namespace retroforge
 
   /// What a check is about to do.
   /// @param n_directions  to be checked, by n_runs forgings each
+  /// @param n_done        directions that an earlier check has done
   /// @param seconds       of one forging; 0 when unknown
-  void print_check_begin(unsigned int n_directions, unsigned int n_runs, double seconds);
+  void print_check_begin(unsigned int n_directions, unsigned int n_done, unsigned int n_runs, double seconds);
 
   /// Of the direction checked last, and the time left as those so far took it.
-  /// @param rows  of all objectives along the directions so far
+  /// @param rows    of all objectives along the directions so far
+  /// @param before  of the directions done, those that an earlier check has done
   void print_check_progress(const std::vector<CheckRow> &rows,
+                            unsigned int                 before,
                             unsigned int                 done,
                             unsigned int                 all,
                             double                       seconds);

@@ -16,6 +16,8 @@ namespace retroforge
   /// @throws Error  where there are some and the user did not, or the folder cannot be made
   void make_results_folder(const std::string &directory, bool overwrite);
 
-  /// Removes what a run that goes on writes anew: all but its record.  @throws Error
-  void remove_all_but_record(const std::string &directory);
+  /// Removes what a run that goes on writes anew: all but its record, and what of a check is done.
+  /// @param keep_check  whether the run goes on with that, too
+  /// @throws Error
+  void remove_all_but_record(const std::string &directory, bool keep_check);
 } // namespace retroforge

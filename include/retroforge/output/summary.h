@@ -92,6 +92,15 @@ namespace retroforge
     };
     Depth deepest;
 
+    /// A point from which the run went on with other settings.
+    struct Restart
+    {
+      unsigned int                                               increment; ///< the first with them, from 1
+      double                                                     stroke;    ///< where it began, mm
+      std::map<std::string, std::pair<std::string, std::string>> changed;   ///< before and after
+    };
+    std::vector<Restart> restarts;
+
     std::map<std::string, double> wall_seconds;
     Count                         record_bytes;
 

@@ -95,7 +95,7 @@ namespace retroforge::hdf5
   Handle create_group(hid_t parent, const std::string &name);
   Handle open_group(hid_t parent, const std::string &name);
   bool   has_attribute(hid_t object, const std::string &name);
-  bool   has_group(hid_t parent, const std::string &name);
+  bool   has_link(hid_t parent, const std::string &name);
 
   /// Small values. Numbers are double, unsigned int, std::uint64_t or unsigned char, here and below.
   template <typename Number>

@@ -6,6 +6,7 @@
 #include <retroforge/mesh/transfer.h>
 
 #include <memory>
+#include <string>
 
 namespace retroforge
 {
@@ -32,8 +33,11 @@ namespace retroforge
     double       stroke = 0.; ///< of the leading die at the start [mm]
     double       step   = 0.; ///< [mm]
     unsigned int cuts   = 0;  ///< times the step was halved
+    /// The complete input, where other settings hold from this increment on; else empty.
+    std::string parameters;
     /// Made just before the increment; null when it goes on with the mesh there was.
     std::shared_ptr<const RemeshRecord> remesh;
+    ContactNumerics                     contact;
     std::vector<ContactPair>            pairs;
     std::vector<SolveRecord>            solves;           ///< one per stage of the scheme
     double deformation_energy = 0., friction_energy = 0.; ///< of this increment [mJ]

@@ -39,6 +39,11 @@ namespace retroforge
     /// @throws Error  if there is none, or the run is finished
     static RecordWriter resume(const std::string &directory);
 
+    /// Makes a finished record one of a run that was stopped after its last increment, so that the run can
+    /// go on: finish() backwards. Interrupted at any moment it leaves the one record or the other.
+    /// @throws Error
+    static void reopen(const std::string &directory);
+
     /// Appends an increment. On return it is on disk; on Error all earlier ones still are, and the call may
     /// be repeated.
     void write(const IncrementRecord &increment);
@@ -63,6 +68,14 @@ namespace retroforge
     unsigned int n_increments_;
   };
 
+  /// The complete input of a run, and the increment, counted from 0, and stroke [mm] from which it holds.
+  struct RecordedInput
+  {
+    unsigned int first  = 0;
+    double       stroke = 0.;
+    std::string  parameters;
+  };
+
   /// Reads the record of a run, finished or not, as it is at construction. Do not keep a reader of an
   /// unfinished record over RecordWriter::finish().
   class RecordReader
@@ -76,10 +89,18 @@ namespace retroforge
     unsigned int        n_increments() const { return n_increments_; }
     bool                finished() const { return !file_.empty(); }
 
+    /// Of the start of the run, and of each restart with other settings.  @throws Error
+    std::vector<RecordedInput> inputs() const;
+
+    /// Where the record ends: the path of the leading die by then [mm].  @throws Error
+    double stroke() const;
+
     /// @throws Error  if the increment is damaged or of another run
     IncrementRecord read(unsigned int i) const;
 
   private:
+    IncrementHead head(unsigned int i) const;
+
     std::string  directory_; ///< of an unfinished run
     std::string  file_;      ///< of a finished run
     RecordHeader header_;

@@ -14,12 +14,15 @@
 ///     /header                 attributes: format, n_patches
 ///       program commit parameters               text
 ///       die_facets            [n_dies]          uint32        facets of each die; 1 for a plane
+///       die_fingerprints      [n_dies]          uint64        of the surface of each die
 ///       X X_0                 [n_nodes][3]      double [mm]   mesh when made, and at the start of the run
 ///       cells                 [n_cells][4]      uint32
 ///       faces                 [n_faces][4]      uint32        three nodes, patch
 ///       patch_0 ...           name; of a symmetry plane also the attributes point, normal  [3] double
 ///     /increment_000000 ...   attributes: run, n_nodes, stroke, step, cuts, deformation_energy,
-///                             friction_energy, newton, krylov, linear_solves
+///                             friction_energy, newton, krylov, linear_solves, sharp (the ramp is), and
+///                             contact [5] double: approach, layer, step, width of the ramp, edge_stiffness
+///       parameters                              text          only where other settings hold from here on
 ///       forces                [n_dies][3]             double [N]
 ///       V                     [n_solves][n_nodes][3]  double [mm/s]
 ///       P                     [n_solves][n_nodes]     double [MPa]
@@ -27,8 +30,9 @@
 ///       touching              [n_pairs]               uint8
 ///       facet                 [n_pairs]               uint32  of the die
 ///       kind                  [n_pairs]               uint8   0 face, 1-3 edge, 4-6 corner of the facet, 7
-///       its plane active                [n_solves][n_pairs]     uint8 remesh                only of an
-///       increment that begins on a new mesh: that mesh as in the header
+///                                                             its plane
+///       active                [n_solves][n_pairs]     uint8
+///       remesh                only of an increment that begins on a new mesh: that mesh as in the header
 ///         X_before            [n_old][3]              double [mm]   positions on the mesh before
 ///         attribute: repaired, volume taken away where the surface had crossed itself [mm^3]
 ///         begin               [n_nodes + 1]           uint32        rows of J,
@@ -39,12 +43,20 @@ namespace retroforge
   /// What holds for a whole run.
   struct RecordHeader
   {
-    std::string               program;    ///< version
-    std::string               commit;     ///< of the program
-    std::string               parameters; ///< the complete input
-    std::vector<unsigned int> die_facets; ///< number of facets of each die; 1 for a plane
-    TetMesh                   mesh;
-    NodalVectors<double>      X_0; ///< positions at the start of the run [mm]
+    std::string                program;    ///< version
+    std::string                commit;     ///< of the program
+    std::string                parameters; ///< the complete input
+    std::vector<unsigned int>  die_facets; ///< number of facets of each die; 1 for a plane
+    TetMesh                    mesh;
+    NodalVectors<double>       X_0;              ///< positions at the start of the run [mm]
+    std::vector<std::uint64_t> die_fingerprints; ///< of the surface of each die
+  };
+
+  /// What of an increment can be read without its arrays.
+  struct IncrementHead
+  {
+    double      stroke = 0., step = 0.; ///< [mm]
+    std::string parameters;
   };
 
   /// What the increments of a run have in common.
@@ -65,5 +77,6 @@ namespace retroforge
 
   void write_increment(hid_t file, unsigned int i, const IncrementRecord &, const RecordShape &);
   IncrementRecord
-  read_increment(hid_t file, const std::string &file_name, unsigned int i, const RecordShape &);
+                read_increment(hid_t file, const std::string &file_name, unsigned int i, const RecordShape &);
+  IncrementHead read_increment_head(hid_t file, unsigned int i, const RecordShape &);
 } // namespace retroforge

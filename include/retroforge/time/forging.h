@@ -34,6 +34,11 @@ namespace retroforge
     double               repaired = 0.; ///< taken away where the surface crossed itself [mm^3]
     unsigned int         depth    = 0;  ///< an increment is the whole one / 2^depth
 
+    /// Where the present numerics began to hold: stroke [mm] and increments before.
+    double       numerics_stroke     = 0.;
+    unsigned int numerics_increments = 0;
+    std::string  parameters; ///< the complete input, to be recorded with the next increment; else empty
+
     Energy<double>                   energy;
     unsigned int                     increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;
     std::vector<unsigned int>        remeshed;       ///< the increments, from 0, that began on a new mesh
@@ -66,6 +71,13 @@ namespace retroforge
     /// Before the first increment.
     ForgingState start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0) const;
 
+    /// From `state` on other numerics hold: it goes on with whole increments of theirs.
+    /// @param parameters  the complete input, which the next increment's record is to tell
+    static void change_numerics(const std::string &parameters, ForgingState &state);
+
+    /// Whether the stroke is not done yet.
+    bool is_left(const ForgingState &state) const;
+
     /// Goes on from `state` to the end of the stroke, and decides everything anew.
     void run(const Process<double> &process, ForgingState &state, const Watch &watch) const;
 
@@ -95,12 +107,11 @@ namespace retroforge
                         Field<double>         &solution) const;
     std::string
     too_much(const Leg &leg, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const;
-    std::string slips_too_far(const Process<double>      &process,
-                              const IncrementRecord      &record,
-                              const NodalVectors<double> &X,
-                              const NodalVectors<double> &X_next) const;
-    [[noreturn]] void
-    throw_stuck(const IncrementRecord &record, double whole, const std::string &reason) const;
+    std::string       slips_too_far(const Process<double>      &process,
+                                    const IncrementRecord      &record,
+                                    const NodalVectors<double> &X,
+                                    const NodalVectors<double> &X_next) const;
+    [[noreturn]] void throw_stuck(const IncrementRecord &record, const std::string &reason) const;
     /// Throws Error where a run can only go on to no good: it takes too many increments, or loses its volume.
     void check_progress(const ForgingState &state) const;
     void remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
@@ -108,6 +119,9 @@ namespace retroforge
                           const IncrementRecord &record,
                           NodalVectors<double>   X_next,
                           ForgingState          &state) const;
+
+    /// Stroke of an increment that is not cut [mm].
+    double whole() const { return model_.step.contact.step; }
 
     const ForgingModel    &model_;
     const PressParameters &press_;

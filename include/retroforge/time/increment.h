@@ -15,25 +15,16 @@ namespace retroforge
     midpoint ///< X_{i+1} = X_i + dt V(X_i + dt/2 V(X_i))
   };
 
-  /// What of a scene's numerical model is neither mesh nor process.
+  /// What of a scene's numerical model is neither mesh nor process. Of a recorded increment, scheme and
+  /// contact are those of the record.
   struct StepModel
   {
-    Scheme           scheme   = Scheme::midpoint;
-    double           approach = 1.; ///< approach time in increments: tau = approach * dt
-    double           layer    = 0.; ///< of the approach speed [mm]
-    double           step     = 0.; ///< stroke of a whole increment [mm]
-    FrictionRamp     ramp;
-    double           edge_stiffness    = 1.;    ///< of edges' penalty over the nodes'
+    Scheme           scheme = Scheme::midpoint;
+    ContactNumerics  contact;
     bool             edges_touch       = true;  ///< middles of edges are contact points of curved dies
     double           reach             = 0.;    ///< nodes nearer than this to a die are watched [mm]
     double           adjoint_tolerance = 1e-10; ///< of the adjoint and tangent linear systems
     ShapeDerivatives shape_derivatives;         ///< of the backward sweep
-
-    /// Of an increment of a given stroke.
-    ApproachLaw approach_law(const double stroke) const
-    {
-      return {layer, step > 0. ? std::min(1., stroke / step) : 1.};
-    }
   };
 
   /// Energy spent, deformation and friction [mJ].
@@ -65,7 +56,6 @@ namespace retroforge
   public:
     /// @param X_before  positions before the increment
     LastStage(const Scene                &scene,
-              const StepModel            &model,
               const Process<double>      &process,
               const NodalVectors<double> &X_before,
               const IncrementRecord      &record);
@@ -91,7 +81,7 @@ namespace retroforge
               Timings                &timings);
 
     /// From X_i to X_{i+1}. @param record  in: stroke, step; with `replay`, the recorded decisions are
-    /// obeyed. Out: pairs, solves, energies, forces; iterations are added.
+    /// obeyed. Out: contact, pairs, solves, energies, forces; iterations are added.
     /// @param W  in: initial guess, out: the last stage's solution
     NodalVectors<double> forward(const Process<double>      &process,
                                  const NodalVectors<double> &X,

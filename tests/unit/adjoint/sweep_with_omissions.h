@@ -354,11 +354,11 @@ namespace retroforge
                                                         scene.dies,
                                                         physics.dies,
                                                         record.pairs,
-                                                        problem.model.step.ramp,
-                                                        problem.model.step.approach * dt,
+                                                        record.contact.ramp,
+                                                        record.contact.approach * dt,
                                                         X,
-                                                        problem.model.step.approach_law(record.step),
-                                                        problem.model.step.edge_stiffness);
+                                                        record.contact.approach_law(record.step),
+                                                        record.contact.edge_stiffness);
     ContactSetBar            contact_bar(record.pairs.size());
     PhysicsBar               bar(scene.dies);
     NodalVectors<double>     next = G; // dPhi/d(where the stage's velocity leads): X_{i+1}, then Y
@@ -400,8 +400,8 @@ namespace retroforge
     if (omitted == Term::tau)
       bar.contact.tau = 0.;
     reverse_set(
-      scene.dies, physics.dies, contact, problem.model.step.ramp, X, contact_bar, omitted, G, bar.contact);
-    process_bar.add(bar, problem.process, {record.stroke, record.step}, problem.model.step.approach);
+      scene.dies, physics.dies, contact, record.contact.ramp, X, contact_bar, omitted, G, bar.contact);
+    process_bar.add(bar, problem.process, {record.stroke, record.step}, record.contact.approach);
   }
 
   inline AdjointResult sweep(RecordedRun &problem, const Term omitted)

@@ -54,10 +54,10 @@ PathRows<double> rows(const RecordedRun &run, const PathObjective &objective)
                                           run.scene.dies,
                                           physics.dies,
                                           record.pairs,
-                                          run.model.step.ramp,
-                                          run.model.step.approach * dt,
+                                          record.contact.ramp,
+                                          record.contact.approach * dt,
                                           X,
-                                          run.model.step.layer);
+                                          record.contact.layer);
     const Stage<double>        stage(run.scene, physics, contact, position);
     rows.push_back(
       {sum_over_ranks(objective.integrals({stage, W, record.solves.back().active}), MPI_COMM_WORLD),

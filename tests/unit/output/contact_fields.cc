@@ -50,7 +50,7 @@ struct LastFields
       , record(run.records.back())
       , X(positions_before(run))
       , W(run.leg->increment.last_field(run.process, X, record))
-      , last(run.scene, run.model.step, run.process, X, record)
+      , last(run.scene, run.process, X, record)
       , fields(contact_fields(last.stage, W, record.solves.back().active))
   {
   }

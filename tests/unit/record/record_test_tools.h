@@ -69,7 +69,8 @@ namespace retroforge
   inline RecordHeader sample_header(const TetMesh     &mesh,
                                     const std::string &parameters = "set K = 1\n# 5°, µ\n")
   {
-    RecordHeader header{"0.1.0", "abc1234", parameters, {1, 96}, mesh, mesh.X};
+    std::mt19937_64 random(7);
+    RecordHeader    header{"0.1.0", "abc1234", parameters, {1, 96}, mesh, mesh.X, {random(), random()}};
     for (Vec3 &x : header.X_0)
       x *= 1.1;
     return header;
@@ -90,6 +91,8 @@ namespace retroforge
     increment.newton             = i + 1;
     increment.krylov             = 10 * i;
     increment.linear_solves      = i + 2;
+    increment.parameters         = i % 4 == 1 ? "set K = 1\nset n = " + std::to_string(i) + "\n" : "";
+    increment.contact            = {number(), number(), number(), {number(), i % 2 == 0}, number()};
     for (unsigned int d = 0; d < header.die_facets.size(); ++d)
       increment.forces.push_back(Vec3({number(), number(), number()}));
     for (NodeIndex k = 0; k < header.mesh.n_nodes(); k += 3)
@@ -161,15 +164,22 @@ namespace retroforge
            same_bits(a.transfer.offset, b.transfer.offset);
   }
 
+  inline bool same(const ContactNumerics &a, const ContactNumerics &b)
+  {
+    return same_bits(a.approach, b.approach) && same_bits(a.layer, b.layer) && same_bits(a.step, b.step) &&
+           same_bits(a.ramp.width, b.ramp.width) && a.ramp.sharp == b.ramp.sharp &&
+           same_bits(a.edge_stiffness, b.edge_stiffness);
+  }
+
   inline bool same(const IncrementRecord &a, const IncrementRecord &b)
   {
-    bool equal = same_bits(a.stroke, b.stroke) && same_bits(a.step, b.step) && a.cuts == b.cuts &&
-                 same_bits(a.deformation_energy, b.deformation_energy) &&
-                 same_bits(a.friction_energy, b.friction_energy) && a.newton == b.newton &&
-                 a.krylov == b.krylov && a.linear_solves == b.linear_solves &&
-                 same_bits(a.forces, b.forces) && !a.remesh == !b.remesh &&
-                 (!a.remesh || same(*a.remesh, *b.remesh)) && a.pairs.size() == b.pairs.size() &&
-                 a.solves.size() == b.solves.size();
+    bool equal =
+      same_bits(a.stroke, b.stroke) && same_bits(a.step, b.step) && a.cuts == b.cuts &&
+      same_bits(a.deformation_energy, b.deformation_energy) &&
+      same_bits(a.friction_energy, b.friction_energy) && a.newton == b.newton && a.krylov == b.krylov &&
+      a.linear_solves == b.linear_solves && same_bits(a.forces, b.forces) && a.parameters == b.parameters &&
+      same(a.contact, b.contact) && !a.remesh == !b.remesh && (!a.remesh || same(*a.remesh, *b.remesh)) &&
+      a.pairs.size() == b.pairs.size() && a.solves.size() == b.solves.size();
     for (std::size_t p = 0; equal && p < a.pairs.size(); ++p)
       equal = a.pairs[p].point == b.pairs[p].point && a.pairs[p].die == b.pairs[p].die &&
               a.pairs[p].touching == b.pairs[p].touching && a.pairs[p].feature == b.pairs[p].feature;
@@ -196,7 +206,8 @@ namespace retroforge
   inline bool same(const RecordHeader &a, const RecordHeader &b)
   {
     return a.program == b.program && a.commit == b.commit && a.parameters == b.parameters &&
-           a.die_facets == b.die_facets && same_bits(a.X_0, b.X_0) && same(a.mesh, b.mesh);
+           a.die_facets == b.die_facets && a.die_fingerprints == b.die_fingerprints &&
+           same_bits(a.X_0, b.X_0) && same(a.mesh, b.mesh);
   }
 
   inline std::string bytes_of(const std::string &file)

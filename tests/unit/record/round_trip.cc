@@ -83,7 +83,7 @@ int main()
   const auto [nodes, edges] = count_points(folder, 0);
   std::cout << "points: " << nodes << " nodes and " << edges << " edges\n";
 
-  const RecordHeader bare{"", "", "", {}, brick(2, 2, 2), {}};
+  const RecordHeader bare{"", "", "", {}, brick(2, 2, 2), {}, {}};
   RecordHeader       positioned = bare;
   positioned.X_0                = bare.mesh.X;
   RecordWriter again(folder, positioned);

@@ -62,10 +62,10 @@ namespace
                                                       scene.dies,
                                                       physics.dies,
                                                       scene.mesh.X,
-                                                      model.ramp,
+                                                      model.contact.ramp,
                                                       model.reach,
                                                       model.edges_touch),
-                                   model.ramp,
+                                   model.contact.ramp,
                                    parameters.press.stroke / parameters.press.increments / process.speed(),
                                    scene.mesh.X))
         , stage(scene, physics, contact, scene.mesh.X)

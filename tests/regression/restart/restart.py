@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""A run that failed goes on with other numerics from where its record ends: more increments, remeshing, then another time
+scheme and contact in other units of the increment. Proved: the failure says how; adjoint and direct method agree to 1e-10 across
+the changes, differences replayed across them to 1e-6, and free ones follow the same changes; the record tells what held from where.
+A stretch killed and resumed, the whole resumed twice, and a stroke made longer give the bits of a run left alone. Another
+scene is refused by the names of all that differs, and nothing in the folder changes. A check that was stopped repeats nothing.
+
+By hand: 2 mm in 4 increments and on to 3 mm are 6 increments of 0.5 mm, as 3 mm in 6 are. Usage: restart.py RETROFORGE"""
+import csv
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+PROGRAM = os.path.abspath(sys.argv[1])
+ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+
+CASE = """
+subsection Billet
+  set shape           = box
+  set size            = 20, 20, 20
+  set element size    = 7
+  set symmetry planes = -1, 0, 0; 0, -1, 0
+end
+subsection Dies
+  set names = lower, upper
+end
+subsection Die lower
+  set point    = 0, 0, 0
+  set facing   = 0, 0, 1
+  set friction = 0.3
+end
+subsection Die upper
+  set point    = 0, 0, 20
+  set facing   = 0.08, 0.05, -1
+  set velocity = 0, 0, -100
+  set friction = 0.3
+end
+subsection Press
+  set stroke       = 12
+  set increments   = 6
+  set largest move = 0.18
+  set max cuts     = 0
+end
+subsection Contact
+  set penetration = 1e-4
+end
+subsection Remeshing
+  set when = never
+end
+subsection Objectives
+  set names = energy, mean strain
+end
+subsection Design
+  set parameters = material/m, die upper/offset, billet/height
+end
+subsection Check
+  set steps            = 1e-5, 1e-6
+  set taylor halvings  = 2
+  set free differences = false
+end
+"""
+
+FINER = ("Press/increments=20", "Press/largest move=0.35", "Remeshing/when=increments", "Remeshing/every=3")
+OTHER = (*FINER[:1], "Press/largest move=0.5", *FINER[2:], "Press/scheme=euler", "Contact/layer=0.8", "Contact/approach=1.5",
+         "Newton/tolerance=1e-10")
+
+failures = []
+
+
+def judge(name, good, detail=""):
+    print(f"passed {name}" if good else f"FAILED {name} {detail}", flush=True)
+    if not good:
+        failures.append(name)
+
+
+def run(word, output, *settings):
+    words = [PROGRAM, word, "case.prm", "--output", output]
+    for setting in settings:
+        words += [setting] if setting.startswith("--") else ["--set", setting]
+    return subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=600, check=False)
+
+
+def summary_of(output):
+    with open(os.path.join(output, "summary.json"), encoding="utf-8") as file:
+        return json.load(file)
+
+
+def results(output):
+    """Objectives and gradients, to all digits."""
+    summary = summary_of(output)
+    return summary["objectives"], summary["parameters"]
+
+
+def contents(folder):
+    """File -> bytes and time of change."""
+    found = {}
+    for place, _, names in os.walk(folder):
+        for path in (os.path.join(place, name) for name in names):
+            with open(path, "rb") as file:
+                found[path] = (file.read(), os.stat(path).st_mtime_ns)
+    return found
+
+
+def rows_of(output):
+    with open(os.path.join(output, "history.csv"), encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def n_recorded(output):
+    return sum(name.startswith("increment_") for name in os.listdir(os.path.join(output, "record")))
+
+
+def failed():
+    """Too long increments on the first mesh: the message says how to go on, and does not lie."""
+    done = run("simulate", "run")
+    judge("failed: says how to go on", done.returncode == 1 and done.stderr.count("\n") == 1 and all(
+        text in done.stderr for text in ("--resume", "--set Press/increments=12", "--set Remeshing/when=quality")), done.stderr)
+    judge("failed: after some increments", 2 <= n_recorded("run") <= 5, n_recorded("run"))
+    shutil.copytree("run", "failed")
+    again = run("simulate", "run", "--resume")
+    judge("failed: unchanged it fails alike", again.stderr == done.stderr and n_recorded("run") == n_recorded("failed"), again.stderr)
+
+
+def refused():
+    before = contents("run")
+    done = run("simulate", "run", "--resume", *FINER, "Material/consistency=2", "Die upper/friction=0.2", "Contact/penetration=1e-3",
+               "Remeshing/first mesh=true", "Press/stroke=1")
+    names = ("Material/consistency is '2' and was '1.693'", "Die upper/friction is '0.2' and was '0.3'", "Contact/penetration",
+             "Remeshing/first mesh", "Press/stroke is 1 mm and the record has come to", "--overwrite", "nothing was changed")
+    judge("refused: all by name", done.returncode == 1 and done.stderr.count("\n") == 1 and all(n in done.stderr for n in names),
+          done.stderr)
+    judge("refused: what may change is not told", "Press/increments" not in done.stderr and "every" not in done.stderr, done.stderr)
+    judge("refused: no byte changed", contents("run") == before)
+
+
+def killed_and_resumed():
+    """The second stretch is too coarse as well. Its record short of the last increments is what a kill would have left."""
+    first = n_recorded("run")
+    done = run("simulate", "run", "--resume", *FINER)
+    second = n_recorded("run")
+    judge("second stretch: fails after some increments", done.returncode == 1 and second >= first + 3, f"{first} {second} {done.stderr}")
+    judge("second stretch: says what changed", "Press/increments = 20, was 6" in done.stdout and "Remeshing/when" in done.stdout,
+          done.stdout)
+    left = re.findall(r"^ +\d+ .* (-|\d+ s)$", done.stdout, re.M)
+    judge("second stretch: time left from here on", left[:first] == ["-"] * first and len(left) == second and "-" not in left[first:], left)
+    for kept in (first, second - 2):
+        shutil.copytree("run", "killed")
+        for i in range(kept, second):
+            os.remove(f"killed/record/increment_{i:06}.h5")
+        for _ in range(2):
+            run("simulate", "killed", "--resume", *FINER)
+        same = {path[len("run"):]: data for path, (data, _) in contents("run").items() if "/record/" in path} == {
+            path[len("killed"):]: data for path, (data, _) in contents("killed").items() if "/record/" in path}
+        judge(f"killed after increment {kept}: the same bits", same)
+        shutil.rmtree("killed")
+    return first, second
+
+
+def checked(first, second):
+    """Three stretches, differentiated in all ways; twice, with a stop after the first direction."""
+    done = run("check", "run", "--resume", *OTHER)
+    summary = summary_of("run")
+    judge("checked: passes", done.returncode == 0, done.stdout + done.stderr)
+    rows = summary["check"]
+    judge("checked: all rows", len(rows) == 8 and summary["check_remaining"] == 0, len(rows))
+    tangents = [abs(r["tangent"] / r["adjoint"] - 1) for r in rows]
+    judge("adjoint against direct method", max(tangents) < 1e-10, tangents)
+    replayed = [min(abs(s["replayed_central"] / r["adjoint"] - 1) for s in r["steps"]) for r in rows]
+    judge("adjoint against replayed differences", max(replayed) < 1e-6, replayed)
+    restarts = summary["restarts"]
+    judge("restarts are told", [r["increment"] for r in restarts] == [first + 1, second + 1] and
+          restarts[0]["changed"]["Press/increments"] == ["6", "20"] and restarts[1]["changed"]["Press/scheme"] == ["midpoint", "euler"] and
+          "Press/increments" not in restarts[1]["changed"], restarts)
+    judge("remeshed, and not at first", summary["remeshings"] >= 2 and "remeshed" in done.stdout)
+    steps = [float(b["stroke"]) - float(a["stroke"]) for a, b in zip(rows_of("run"), rows_of("run")[1:])]
+    judge("increments of each stretch", max(steps[:first - 1]) > 1.9 and max(steps[first - 1:]) < 0.7, steps)
+
+    with open("run/check.json", encoding="utf-8") as file:
+        kept = json.load(file)
+    kept["rows"] = [row for row in kept["rows"] if row["parameter"] == "material/m"]
+    with open("run/check.json", "w", encoding="utf-8") as file:
+        json.dump(kept, file)
+    again = run("check", "run", "--resume", *OTHER)
+    judge("check resumed: repeats nothing", again.returncode == 0 and "1 done before" in again.stdout and "  1/4" not in again.stdout and
+          "  2/4" in again.stdout, again.stdout + again.stderr)
+
+    def numbers(rows):
+        return [(r["objective"], r["parameter"], r["adjoint"], r["tangent"], [s["replayed_central"] for s in r["steps"]]) for r in rows]
+    judge("check resumed: the same numbers", numbers(summary_of("run")["check"]) == numbers(rows))
+    other = run("check", "run", "--resume", *OTHER, "Check/steps=1e-5", "Design/parameters=material/m")
+    judge("check of other steps: begins anew", "done before" not in other.stdout and other.returncode == 0, other.stdout)
+
+
+def free():
+    """Free runs change their numerics where the record does: without contact that comes and goes they follow the replays."""
+    done = run("check", "run", "--resume", *OTHER, "Check/steps=1e-6", "Check/free differences=true", "Design/parameters=material/m")
+    row = next(r for r in summary_of("run")["check"] if r["parameter"] == "material/m" and r["objective"] == "energy")
+    error = abs(row["steps"][0]["free_central"] / row["adjoint"] - 1)
+    judge("free differences change numerics at the same stroke", done.returncode == 0 and error < 1e-4, f"{error:.1e} {done.stderr}")
+
+
+def finished():
+    done = [run("gradient", "run", "--resume", *OTHER)]
+    once = results("run")
+    done.append(run("gradient", "run", "--resume"))
+    judge("finished: other settings change nothing", all(d.returncode == 0 for d in done) and results("run") == once and
+          "do not change it" in done[1].stdout, done[1].stdout + done[1].stderr)
+
+
+def longer_stroke():
+    sound = ("Press/largest move=0.5", "Output/fields every=0")
+    run("gradient", "long", *sound, "Press/stroke=3", "Press/increments=6")
+    run("simulate", "short", *sound, "Press/stroke=2", "Press/increments=4")
+    shutil.copytree("short", "moved")
+    done = run("gradient", "short", "--resume", *sound, "Press/stroke=3", "Press/increments=6")
+    judge("longer stroke: the bits of one run", done.returncode == 0 and results("short") == results("long"), done.stderr)
+    judge("longer stroke: one record", os.path.exists("short/record.h5") and not os.path.exists("short/record"))
+
+
+STL = "solid wedge\n" + "".join(
+    "facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {x} {y} {{z}}\n" for x, y in corners) + "endloop\nendfacet\n"
+    for corners in (((-60, -60), (60, 60), (60, -60)), ((-60, -60), (-60, 60), (60, 60)))) + "endsolid wedge\n"
+
+
+def other_die():
+    """As many facets, elsewhere."""
+    die = ("Die upper/shape=stl", "Die upper/file=die.stl", "Die upper/point=0, 0, 0", "Die upper/facing=0, 0, -1", "Press/stroke=1",
+           "Press/increments=2", "Press/largest move=0.5")
+    for height in (20, 20.5):
+        with open("die.stl", "w", encoding="utf-8") as file:
+            file.write(STL.format(z=height))
+        if height == 20:
+            first = run("simulate", "stl", *die)
+            before = contents("stl")
+    done = run("simulate", "stl", "--resume", *die)
+    judge("another die of as many facets", first.returncode == 0 and done.returncode == 1 and "Die upper" in done.stderr and
+          "another one" in done.stderr and contents("stl") == before, first.stderr + done.stderr)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        with open("case.prm", "w", encoding="utf-8") as file:
+            file.write(CASE)
+        try:
+            failed()
+            refused()
+            checked(*killed_and_resumed())
+            free()
+            finished()
+            longer_stroke()
+            other_die()
+        except (KeyError, OSError, StopIteration, ValueError, subprocess.SubprocessError) as error:
+            judge("all tests run", False, repr(error))
+    print(f"{len(failures)} failed")
+    return 1 if failures else 0
+
+
+sys.exit(main())
