@@ -297,7 +297,7 @@ def resumed(folder):
     judge_that("and no folder made", not os.path.exists(os.path.join(folder, "new")), "there is one")
     run(["case.prm", "--output", "done"] + short, folder)
     before = contents(os.path.join(folder, "done"))
-    for name, value in (("Material/consistency", "2"), ("Press/increments", "4"), ("Die upper/friction", "0.2"),
+    for name, value in (("Material/consistency", "2"), ("Press/stroke", "0.2"), ("Die upper/friction", "0.2"),
                         ("Billet/element size", "3")):
         judge(f"resumed with another {name}",
               run(["case.prm", "--output", "done", "--resume"] + short + settings(f"{name}={value}"), folder), name)

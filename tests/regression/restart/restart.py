@@ -56,18 +56,18 @@ subsection Objectives
   set names = energy, mean strain
 end
 subsection Design
-  set parameters = material/m, die upper/offset, billet/height
+  set parameters = material/m, billet/height
 end
 subsection Check
   set steps            = 1e-5, 1e-6
+  set taylor start     = 1e-3
   set taylor halvings  = 2
   set free differences = false
 end
 """
 
-FINER = ("Press/increments=20", "Press/largest move=0.35", "Remeshing/when=increments", "Remeshing/every=3")
-OTHER = (*FINER[:1], "Press/largest move=0.5", *FINER[2:], "Press/scheme=euler", "Contact/layer=0.8", "Contact/approach=1.5",
-         "Newton/tolerance=1e-10")
+FINER = ("Remeshing/when=increments", "Remeshing/every=4", "Press/increments=20", "Press/largest move=0.042", "Press/max cuts=1")
+OTHER = (*FINER[:2], "Press/increments=60", "Press/scheme=euler", "Contact/layer=0.8", "Contact/approach=1.5", "Newton/tolerance=1e-10")
 
 failures = []
 
@@ -167,7 +167,7 @@ def checked(first, second):
     summary = summary_of("run")
     judge("checked: passes", done.returncode == 0, done.stdout + done.stderr)
     rows = summary["check"]
-    judge("checked: all rows", len(rows) == 8 and summary["check_remaining"] == 0, len(rows))
+    judge("checked: all rows", len(rows) == 6 and summary["check_remaining"] == 0, len(rows))
     tangents = [abs(r["tangent"] / r["adjoint"] - 1) for r in rows]
     judge("adjoint against direct method", max(tangents) < 1e-10, tangents)
     replayed = [min(abs(s["replayed_central"] / r["adjoint"] - 1) for s in r["steps"]) for r in rows]
@@ -175,10 +175,11 @@ def checked(first, second):
     restarts = summary["restarts"]
     judge("restarts are told", [r["increment"] for r in restarts] == [first + 1, second + 1] and
           restarts[0]["changed"]["Press/increments"] == ["6", "20"] and restarts[1]["changed"]["Press/scheme"] == ["midpoint", "euler"] and
-          "Press/increments" not in restarts[1]["changed"], restarts)
+          "Remeshing/every" not in restarts[1]["changed"], restarts)
     judge("remeshed, and not at first", summary["remeshings"] >= 2 and "remeshed" in done.stdout)
     steps = [float(b["stroke"]) - float(a["stroke"]) for a, b in zip(rows_of("run"), rows_of("run")[1:])]
-    judge("increments of each stretch", max(steps[:first - 1]) > 1.9 and max(steps[first - 1:]) < 0.7, steps)
+    judge("increments of each stretch", min(steps[:first - 1]) > 1.9 and
+          0.25 < min(steps[first - 1:second - 1]) and max(steps[second - 1:]) < 0.21, steps)
 
     with open("run/check.json", encoding="utf-8") as file:
         kept = json.load(file)
@@ -186,22 +187,25 @@ def checked(first, second):
     with open("run/check.json", "w", encoding="utf-8") as file:
         json.dump(kept, file)
     again = run("check", "run", "--resume", *OTHER)
-    judge("check resumed: repeats nothing", again.returncode == 0 and "1 done before" in again.stdout and "  1/4" not in again.stdout and
-          "  2/4" in again.stdout, again.stdout + again.stderr)
+    judge("check resumed: repeats nothing", again.returncode == 0 and "1 done before" in again.stdout and "  1/3" not in again.stdout and
+          "  2/3" in again.stdout, again.stdout + again.stderr)
 
-    def numbers(rows):
-        return [(r["objective"], r["parameter"], r["adjoint"], r["tangent"], [s["replayed_central"] for s in r["steps"]]) for r in rows]
-    judge("check resumed: the same numbers", numbers(summary_of("run")["check"]) == numbers(rows))
+    found = summary_of("run")["check"]
+    judge("check resumed: what was done is kept", [r for r in found if r["parameter"] == "material/m"] == [
+        r for r in rows if r["parameter"] == "material/m"], found)
+    judge("check resumed: the rest is the same", [(r["objective"], r["parameter"], r["adjoint"]) for r in found] == [
+        (r["objective"], r["parameter"], r["adjoint"]) for r in rows] and all(
+            abs(a["replayed_central"] / b["replayed_central"] - 1) < 1e-6 for r, s in zip(found, rows) for a, b in zip(r["steps"], s["steps"])))
     other = run("check", "run", "--resume", *OTHER, "Check/steps=1e-5", "Design/parameters=material/m")
     judge("check of other steps: begins anew", "done before" not in other.stdout and other.returncode == 0, other.stdout)
 
 
 def free():
-    """Free runs change their numerics where the record does: without contact that comes and goes they follow the replays."""
+    """Free runs change their numerics where the record does, and so follow the replays but for the jumps of their decisions."""
     done = run("check", "run", "--resume", *OTHER, "Check/steps=1e-6", "Check/free differences=true", "Design/parameters=material/m")
     row = next(r for r in summary_of("run")["check"] if r["parameter"] == "material/m" and r["objective"] == "energy")
     error = abs(row["steps"][0]["free_central"] / row["adjoint"] - 1)
-    judge("free differences change numerics at the same stroke", done.returncode == 0 and error < 1e-4, f"{error:.1e} {done.stderr}")
+    judge("free differences change numerics at the same stroke", done.returncode == 0 and error < 3e-3, f"{error:.1e} {done.stderr}")
 
 
 def finished():
