@@ -236,8 +236,9 @@ Options:
   --at NAME=VALUE            change a design parameter (billet/radius, die upper/offset, ...) on the mesh of the
                              unchanged design; may be repeated; replaces Design/at
   --output DIR               folder of the results (default: CASE-results in the current folder)
-  --resume                   go on with the run in that folder, to the same bits as if it had not been stopped;
-                             of a scan, keep the points that are finished
+  --resume                   go on with the run in that folder, to the same bits as if it had not been stopped,
+                             or with other numerics (--set Press/increments=80, --set Remeshing/when=quality);
+                             of a check, keep the directions that are done; of a scan, the points that are finished
   --overwrite                replace the results that are in that folder; without it they are left alone, and the
                              command is refused
   --print-parameters         write all parameters with their meaning; a case to start from

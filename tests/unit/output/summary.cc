@@ -37,6 +37,7 @@ Summary filled()
   s.volume_final          = 7.5;
   s.wall_seconds          = {{"assembly", 0.5}, {"total", 2.}};
   s.record_bytes          = 5000000000;
+  s.restarts              = {{13, 9.25, {{"Press/increments", {"20", "40"}}}}};
   s.check                 = {{"energy", "material/K", 1.5, 1.5, {}, {2., 1. / 0.}, "passed"}};
   s.check_remaining       = 3;
   s.check[0].steps        = {{1e-3, 1.5, 1.5, 1.5, Summary::unknown}};

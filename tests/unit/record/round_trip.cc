@@ -80,6 +80,18 @@ int main()
             << yes(writer.bytes() == std::filesystem::file_size(folder + "/record.h5"))
             << ", segments gone: " << yes(!std::filesystem::exists(folder + "/record")) << '\n';
 
+  const auto inputs = RecordReader(folder).inputs();
+  std::cout << "inputs: " << inputs.size() << ", the second from increment " << inputs[1].first
+            << ", its own: " << yes(inputs[1].parameters == increments[1].parameters)
+            << "; the record ends at stroke "
+            << yes(same_bits(RecordReader(folder).stroke(), increments[4].stroke + increments[4].step))
+            << '\n';
+  RecordWriter::reopen(folder);
+  std::cout << "reopened: unfinished " << yes(!RecordReader(folder).finished()) << ", all there "
+            << yes(reads_back(folder, header, increments)) << ", goes on after "
+            << RecordWriter::resume(folder).n_increments() << '\n';
+  RecordWriter::resume(folder).finish();
+
   const auto [nodes, edges] = count_points(folder, 0);
   std::cout << "points: " << nodes << " nodes and " << edges << " edges\n";
 
