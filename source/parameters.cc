@@ -334,16 +334,17 @@ end
                               const std::vector<std::pair<std::string, std::string>> &overrides,
                               std::string                                            &echo)
   {
-    return read(read_parameter_lines(file, overrides), echo);
+    return of_lines(file, read_parameter_lines(file, overrides), echo);
   }
 
   Parameters Parameters::of_record(const std::string &text)
   {
     std::string ignored;
-    return read(parameter_lines_of(text, "parameters of the record"), ignored);
+    return of_lines("", parameter_lines_of(text, "parameters of the record"), ignored);
   }
 
-  Parameters Parameters::read(const std::vector<ParameterLine> &lines, std::string &echo)
+  Parameters
+  Parameters::of_lines(const std::string &file, const std::vector<ParameterLine> &lines, std::string &echo)
   {
     const auto               values = parameter_values(lines);
     Parameters               parameters;

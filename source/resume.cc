@@ -104,6 +104,12 @@ namespace retroforge
     for (const ChangedSetting &setting : changed_settings(header.parameters, parameters, Kind::scene))
       list += (list.empty() ? "" : ", ") + setting.path + " is '" + setting.now + "' and was '" +
               setting.before + "'";
+    // The stretch of its path, and so all times, would be other ones.
+    const bool follows = parameters.find("set follows billet = true") != std::string::npos;
+    for (const ChangedSetting &setting : changes)
+      if (setting.path == "Press/stroke" && follows)
+        list += (list.empty() ? "" : ", ") + setting.path + " is '" + setting.now + "' and was '" +
+                setting.before + "' with a die that follows the billet";
     if (stroke > press_stroke * (1. + 1e-9))
       list += (list.empty() ? "" : ", ") + std::string("Press/stroke is ") + as_text(press_stroke) +
               " mm and the record has come to " + as_text(stroke) + " mm";

@@ -124,7 +124,9 @@ namespace retroforge
     double edge_length(const TetMesh &billet) const;
 
   private:
-    static Parameters read(const std::vector<ParameterLine> &lines, std::string &echo);
+    /// @param file  of the case, beside which other files are looked for
+    static Parameters
+    of_lines(const std::string &file, const std::vector<ParameterLine> &lines, std::string &echo);
 
     double edge_stiffness_ = 1.; ///< of edges' penalty over the nodes', once settled
 

@@ -274,8 +274,7 @@ namespace retroforge
                                                   const NodalVectors<double> &X,
                                                   const IncrementRecord      &record) const
   {
-    return record.solves.size() == 1 ? X
-                                     : advanced(X, 0.5 * process.time(record.step), record.solves[0].V);
+    return record.solves.size() == 1 ? X : advanced(X, 0.5 * process.time(record.step), record.solves[0].V);
   }
 
   namespace
