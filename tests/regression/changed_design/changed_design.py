@@ -161,7 +161,8 @@ def die_follows_billet():
     with open("followed/history.csv", encoding="utf-8") as file:
         last = file.read().splitlines()[-1].split(",")
     judge("and takes the time for it", abs(float(last[1]) - 0.04) < 1e-12, last[1])
-    quick = ["--set", "Check/steps=1e-3, 1e-5", "--set", "Check/taylor halvings=2", "--set", "Check/free differences=false"]
+    quick = ["--set", "Design/parameters=billet/height, die upper/speed", "--set", "Check/steps=1e-3, 1e-5",
+             "--set", "Check/taylor halvings=2", "--set", "Check/free differences=false"]
     done = run("check", "followed.prm", "check_followed", more=quick)
     judge("adjoint, tangent and replayed differences agree", done.returncode == 0, done.stderr + done.stdout[-1500:] if done.returncode else "")
 
