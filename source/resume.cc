@@ -80,6 +80,16 @@ namespace retroforge
       return changes;
     }
 
+    bool a_die_follows(const Values &values)
+    {
+      const std::string name = "/follows billet";
+      return std::any_of(values.begin(), values.end(), [&](const auto &entry) {
+        const std::string &path = entry.first;
+        return path.size() > name.size() && path.substr(path.size() - name.size()) == name &&
+               entry.second == "true";
+      });
+    }
+
     const std::string untouched = "; nothing was changed there";
     const std::string anew      = ", or begin anew with --overwrite";
   } // namespace
@@ -105,9 +115,8 @@ namespace retroforge
       list += (list.empty() ? "" : ", ") + setting.path + " is '" + setting.now + "' and was '" +
               setting.before + "'";
     // The stretch of its path, and so all times, would be other ones.
-    const bool follows = parameters.find("set follows billet = true") != std::string::npos;
     for (const ChangedSetting &setting : changes)
-      if (setting.path == "Press/stroke" && follows)
+      if (setting.path == "Press/stroke" && a_die_follows(values_of(parameters)))
         list += (list.empty() ? "" : ", ") + setting.path + " is '" + setting.now + "' and was '" +
                 setting.before + "' with a die that follows the billet";
     if (stroke > press_stroke * (1. + 1e-9))
