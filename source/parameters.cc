@@ -403,7 +403,7 @@ end
     for (unsigned int d = 0; d < dies.size(); ++d)
     {
       dies[d].check();
-      if (dies[d].friction > 0. && material.sensitivity < 1. && contact.slip_fraction < least_slip)
+      if (dies[d].friction > 0. && !material.law.is_linear() && contact.slip_fraction < least_slip)
         throw Error("Contact/slip regularisation",
                     "is " + as_text(contact.slip_fraction) +
                       " with friction and a strain rate sensitivity below 1",
@@ -500,15 +500,14 @@ end
 
   double Parameters::mean_pressure(const double size) const
   {
-    const auto   law  = material.law();
     const double rate = dies[leading_die()].velocity.norm() / height(size);
-    return law.stress_factor(law.q(1.5 * rate * rate)) * 1.5 * rate;
+    return material.law(1.5 * rate * rate) * 1.5 * rate;
   }
 
   Process<double> Parameters::process(const double size) const
   {
     Process<double> process;
-    process.law         = material.law();
+    process.law         = material.law;
     process.leading_die = leading_die();
     for (const DieParameters &die : dies)
       process.dies.push_back(die.initial_state());
@@ -527,7 +526,7 @@ end
     Objectives made;
     for (const ObjectiveParameters &objective : objectives.all)
       made.push_back(
-        objective.make({made_dies, states, leading_die(), press.stroke, material.consistency, made_billet}));
+        objective.make({made_dies, states, leading_die(), press.stroke, material.law.K, made_billet}));
     return made;
   }
 

@@ -49,8 +49,8 @@ namespace retroforge
       std::vector<Die> dies = make_dies(parameters.dies);
       if (!parameters.design.at.empty())
         for (std::size_t d = 0; d < dies.size(); ++d)
-          if (process.dies[d].vertices)
-            dies[d] = dies[d].moved(*process.dies[d].vertices);
+          if (!process.dies[d].vertices.empty())
+            dies[d] = dies[d].moved(process.dies[d].vertices);
       return dies;
     }
 
@@ -584,7 +584,9 @@ namespace retroforge
     {
       const auto timing   = timings_.scope("design");
       judged_[j].gradient = design_.pull_back(mu_, sweep.of[j].X_0, sweep.of[j].process);
-      judged_[j].shape    = {sweep.of[j].X_0, sweep.of[j].process.die_vertices};
+      judged_[j].shape    = {sweep.of[j].X_0, {}};
+      for (const auto &die : sweep.of[j].process.dies)
+        judged_[j].shape.dies.push_back(die.vertices);
     }
     if (root_)
       write_sensitivity();
@@ -654,12 +656,12 @@ namespace retroforge
         {
           Vector3<Number> x;
           for (unsigned int i = 0; i < 3; ++i)
-            x[i] = moved(process.dies[d].vertices ? (*process.dies[d].vertices)[k][i]
-                                                  : Number(dies[d].surface()->vertices()[k][i]),
+            x[i] = moved(process.dies[d].vertices.empty() ? Number(dies[d].surface()->vertices()[k][i])
+                                                          : process.dies[d].vertices[k][i],
                          shift.dies[d][k][i]);
           vertices.push_back(x);
         }
-        process.dies[d].vertices = std::make_shared<const NodalVectors<Number>>(std::move(vertices));
+        process.dies[d].vertices = std::move(vertices);
       }
     }
 
@@ -681,8 +683,8 @@ namespace retroforge
     ForgingModel    model   = model_;
     Process<double> at_dies = process;
     for (std::size_t d = 0; d < model.dies.size(); ++d)
-      if (const auto vertices = std::exchange(at_dies.dies[d].vertices, nullptr))
-        model.dies[d] = model.dies[d].moved(*vertices);
+      if (auto vertices = std::exchange(at_dies.dies[d].vertices, {}); !vertices.empty())
+        model.dies[d] = model.dies[d].moved(std::move(vertices));
     Timings          timings;
     const Objectives objectives = parameters_.make_objectives(model.dies, billet_);
     ObjectiveTrace   trace(objectives, model, at_dies);

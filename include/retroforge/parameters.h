@@ -5,6 +5,7 @@
 #include <retroforge/adjoint/check.h>
 #include <retroforge/core/parameter_input.h>
 #include <retroforge/design/design.h>
+#include <retroforge/material/material_parameters.h>
 #include <retroforge/objective/objective_parameters.h>
 #include <retroforge/scan/scan_parameters.h>
 #include <retroforge/time/forging.h>

@@ -48,7 +48,8 @@ namespace retroforge
                                         const std::vector<Combination> &combinations)
     {
       std::vector<Costate> costates(
-        combinations.size(), {NodalVectors<double>(end.X.size()), {}, ProcessBar(run.model.dies.size())});
+        combinations.size(),
+        {NodalVectors<double>(end.X.size()), {}, no_process_derivatives(run.model.dies)});
       for (std::size_t o = 0; o < run.objectives.size(); ++o)
       {
         if (!run.objectives[o].at_end)
@@ -67,10 +68,10 @@ namespace retroforge
             costates[j].strain[c] += weight * bar.q[c];
           PhysicsBar physics_bar(run.model.dies);
           if (const auto d = run.objectives[o].at_end->target_die(); d != invalid_index)
-            add(weight, bar.target, physics_bar.contact.die_vertices[d]);
+            add(weight, bar.target, physics_bar.dies[d].vertices);
           for (std::size_t d = 0; d < run.model.dies.size(); ++d)
-            physics_bar.contact.dies[d].displacement = weight * bar.displacements[d];
-          costates[j].process.add(physics_bar, run.process, {end.stroke, 0.}, 0.);
+            physics_bar.dies[d].displacement = weight * bar.displacements[d];
+          reverse_at_stroke(run.process, {end.stroke, 0.}, 0., physics_bar, costates[j].process);
         }
       }
       return costates;
@@ -160,7 +161,7 @@ namespace retroforge
     }
     for (Costate &costate : costates)
     {
-      costate.process.sum(run.model.comm);
+      sum_over_ranks(costate.process, run.model.comm);
       sweep.of.push_back({std::move(costate.X), std::move(costate.process)});
     }
     return sweep;

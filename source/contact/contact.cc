@@ -16,13 +16,6 @@ namespace retroforge
       return node.u - node.n * Number(node.u * node.n);
     }
 
-    /// Friction force / dv = S^f alpha K r^((m-1)/2),  r = |dv|^2 + v0^2.
-    template <typename Number>
-    Number friction_factor(const ContactNode<Number> &node, const NortonHoff<Number> &law, const Number &r)
-    {
-      return node.Sf * node.alpha * law.K * power(r, Number(0.5 * (law.m - 1.)));
-    }
-
     bool has_friction(const ContactNode<double> &node)
     {
       return node.Sf * node.alpha != 0.;
@@ -259,24 +252,23 @@ namespace retroforge
                            const NodalVectors<double>          &X,
                            const ContactSetBar                 &bar,
                            NodalVectors<double>                &X_bar,
-                           ContactSensitivity                  &sensitivity)
+                           std::vector<DieState<double>>       &dies_bar)
   {
     const std::vector<double> ramps_bar = reverse_touched_by_edges(contact, ramp, bar.ramp);
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
     {
-      const ContactPair &pair  = contact.pairs[p];
-      const double delta_bar   = bar.delta[p] + ramps_bar[p] * ramp.derivative(contact.projections[p].delta);
-      const bool   by_vertices = dies[pair.die].surface() && pair.die < sensitivity.die_vertices.size() &&
-                               !sensitivity.die_vertices[pair.die].empty();
-      Vec3 at_point;
+      const ContactPair &pair   = contact.pairs[p];
+      const double delta_bar    = bar.delta[p] + ramps_bar[p] * ramp.derivative(contact.projections[p].delta);
+      DieState<double> &die_bar = dies_bar[pair.die];
+      Vec3              at_point;
       dies[pair.die].reverse_project(pair.point.mean(X),
                                      states[pair.die].displacement,
                                      pair.feature,
                                      delta_bar,
                                      bar.n[p],
                                      at_point,
-                                     sensitivity.dies[pair.die].displacement,
-                                     by_vertices ? &sensitivity.die_vertices[pair.die] : nullptr);
+                                     die_bar.displacement,
+                                     die_bar.vertices.empty() ? nullptr : &die_bar.vertices);
       pair.point.add(at_point, X_bar);
     }
   }
@@ -340,7 +332,7 @@ namespace retroforge
 
   template <typename Number>
   Vector3<Number> contact_force(const ContactNode<Number> &node,
-                                const NortonHoff<Number>  &law,
+                                const MaterialLaw<Number> &law,
                                 const ContactLaw<Number>  &contact)
   {
     Vector3<Number> force;
@@ -349,36 +341,37 @@ namespace retroforge
     if (value_of(node.Sf) * value_of(node.alpha) != 0.)
     {
       const Vector3<Number> dv = slip(node);
-      force += dv * friction_factor(node, law, Number(dv * dv + contact.v0 * contact.v0));
+      force += dv * FrictionLaw<Number>{law, contact}(Number(node.Sf * node.alpha), Number(dv * dv));
     }
     return force;
   }
 
   template <typename Number>
   Number friction_power(const ContactNode<Number> &node,
-                        const NortonHoff<Number>  &law,
+                        const MaterialLaw<Number> &law,
                         const ContactLaw<Number>  &contact)
   {
     if (value_of(node.Sf) * value_of(node.alpha) == 0.)
       return Number(0.);
     const Vector3<Number> dv  = slip(node);
     const Number          dv2 = dv * dv;
-    return friction_factor(node, law, Number(dv2 + contact.v0 * contact.v0)) * dv2;
+    return FrictionLaw<Number>{law, contact}(Number(node.Sf * node.alpha), dv2) * dv2;
   }
 
   double contact_potential(const ContactNode<double> &node,
-                           const NortonHoff<double>  &law,
+                           const MaterialLaw<double> &law,
                            const ContactLaw<double>  &contact)
   {
-    const double h  = node.active ? approach_excess(node) : 0.;
-    const Vec3   dv = slip(node);
-    const double r  = dv * dv + contact.v0 * contact.v0;
+    const double              h   = node.active ? approach_excess(node) : 0.;
+    const Vec3                dv  = slip(node);
+    const double              dv2 = dv * dv;
+    const FrictionLaw<double> friction{law, contact};
     return 0.5 * contact.rho * node.S * h * h +
-           (has_friction(node) ? friction_factor(node, law, r) * r / (law.m + 1.) : 0.);
+           (has_friction(node) ? friction(node.Sf * node.alpha, dv2) * friction.potential_ratio(dv2) : 0.);
   }
 
   dealii::Tensor<2, 3> contact_tangent(const ContactNode<double> &node,
-                                       const NortonHoff<double>  &law,
+                                       const MaterialLaw<double> &law,
                                        const ContactLaw<double>  &contact)
   {
     dealii::Tensor<2, 3> tangent;
@@ -386,20 +379,21 @@ namespace retroforge
       tangent += contact.rho * node.S * outer_product(node.n, node.n);
     if (has_friction(node))
     {
-      const Vec3   dv     = slip(node);
-      const double r      = dv * dv + contact.v0 * contact.v0;
-      const double factor = friction_factor(node, law, r);
+      const Vec3                dv  = slip(node);
+      const double              dv2 = dv * dv;
+      const FrictionLaw<double> friction{law, contact};
+      const double              factor = friction(node.Sf * node.alpha, dv2);
       tangent -= factor * outer_product(node.n, node.n);
       for (unsigned int i = 0; i < 3; ++i)
         tangent[i][i] += factor;
-      if (law.m != 1.)
-        tangent += factor * (law.m - 1.) / r * outer_product(dv, dv);
+      if (const double slope = friction.slope(dv2); slope != 0.)
+        tangent += factor * slope * outer_product(dv, dv);
     }
     return tangent;
   }
 
   ContactNodeBar reverse_contact_force(const ContactNode<double> &node,
-                                       const NortonHoff<double>  &law,
+                                       const MaterialLaw<double> &law,
                                        const ContactLaw<double>  &contact,
                                        const Vec3                &lambda)
   {
@@ -408,48 +402,43 @@ namespace retroforge
     if (node.active)
     {
       const double h = approach_excess(node), lambda_n = lambda * node.n;
-      h_bar   = contact.rho * node.S * lambda_n;
-      bar.S   = contact.rho * h * lambda_n;
-      bar.rho = node.S * h * lambda_n;
-      bar.n   = contact.rho * node.S * h * lambda;
+      h_bar           = contact.rho * node.S * lambda_n;
+      bar.S           = contact.rho * h * lambda_n;
+      bar.n           = contact.rho * node.S * h * lambda;
+      bar.contact.rho = node.S * h * lambda_n;
     }
     Vec3 dv_bar;
     if (has_friction(node))
     {
-      const Vec3   dv     = slip(node);
-      const double r      = dv * dv + contact.v0 * contact.v0;
-      const double factor = friction_factor(node, law, r), product = lambda * dv;
-      const double slope = law.m == 1. ? 0. : (law.m - 1.) / r;
-      bar.Sf             = factor * product / node.Sf;
-      bar.alpha          = factor * product / node.alpha;
-      bar.K              = factor * product / law.K;
-      bar.m              = factor * product * 0.5 * log_or_zero(r);
-      bar.v0             = factor * product * slope * contact.v0;
-      dv_bar             = factor * (lambda + slope * product * dv);
+      const Vec3                dv  = slip(node);
+      const double              dv2 = dv * dv, product = lambda * dv;
+      const FrictionLaw<double> friction{law, contact};
+      const double              factor = friction(node.Sf * node.alpha, dv2);
+      bar.Sf                           = factor * product / node.Sf;
+      bar.alpha                        = factor * product / node.alpha;
+      friction.reverse(dv2, factor * product, bar.law, bar.contact);
+      dv_bar = factor * (lambda + friction.slope(dv2) * product * dv);
     }
     reverse_kinematics(node, dv_bar, h_bar, bar);
     return bar;
   }
 
   ContactNodeBar reverse_friction_power(const ContactNode<double> &node,
-                                        const NortonHoff<double>  &law,
+                                        const MaterialLaw<double> &law,
                                         const ContactLaw<double>  &contact,
                                         const double               weight)
   {
     ContactNodeBar bar;
     if (!has_friction(node))
       return bar;
-    const Vec3   dv     = slip(node);
-    const double dv2    = dv * dv;
-    const double r      = dv2 + contact.v0 * contact.v0;
-    const double factor = weight * friction_factor(node, law, r);
-    const double slope  = law.m == 1. ? 0. : (law.m - 1.) / r;
-    bar.Sf              = factor * dv2 / node.Sf;
-    bar.alpha           = factor * dv2 / node.alpha;
-    bar.K               = factor * dv2 / law.K;
-    bar.m               = factor * dv2 * 0.5 * log_or_zero(r);
-    bar.v0              = factor * dv2 * slope * contact.v0;
-    reverse_kinematics(node, factor * (2. + slope * dv2) * dv, 0., bar);
+    const Vec3                dv  = slip(node);
+    const double              dv2 = dv * dv;
+    const FrictionLaw<double> friction{law, contact};
+    const double              factor = weight * friction(node.Sf * node.alpha, dv2);
+    bar.Sf                           = factor * dv2 / node.Sf;
+    bar.alpha                        = factor * dv2 / node.alpha;
+    friction.reverse(dv2, factor * dv2, bar.law, bar.contact);
+    reverse_kinematics(node, factor * (2. + friction.slope(dv2) * dv2) * dv, 0., bar);
     return bar;
   }
 
@@ -468,9 +457,9 @@ namespace retroforge
   template ContactAreas<Number> contact_areas(                                                    \
     const TetMesh &, const Topology &, const ContactSet<Number> &, const NodalVectors<Number> &); \
   template Vector3<Number> contact_force(                                                         \
-    const ContactNode<Number> &, const NortonHoff<Number> &, const ContactLaw<Number> &);         \
+    const ContactNode<Number> &, const MaterialLaw<Number> &, const ContactLaw<Number> &);        \
   template Number friction_power(                                                                 \
-    const ContactNode<Number> &, const NortonHoff<Number> &, const ContactLaw<Number> &);
+    const ContactNode<Number> &, const MaterialLaw<Number> &, const ContactLaw<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE

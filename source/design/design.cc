@@ -56,13 +56,16 @@ namespace retroforge
   {
     for (const DieParameters &die : dies_)
       followed_.push_back(followed_node(die, nominal_X_));
+    const std::vector<DesignParameter> all = offered();
     for (const std::string &name : names)
     {
-      const DesignParameter parameter = make(name);
+      check_offered(name, "Design/parameters");
+      const DesignParameter &parameter = *std::find_if(
+        all.begin(), all.end(), [&](const DesignParameter &other) { return other.name == name; });
+      if (parameter.kind == Kind::friction && parameter.die == invalid_index)
+        check_common_friction();
       for (const DesignParameter &other : parameters_)
-        if (other.kind == parameter.kind &&
-            (other.die == parameter.die || other.die == invalid_index || parameter.die == invalid_index) &&
-            other.measure == parameter.measure)
+        if (parameter.overlaps(other))
           throw Error("Design/parameters",
                       "'" + name + "' and '" + other.name + "' set the same number",
                       "parameters must be independent",
@@ -71,33 +74,112 @@ namespace retroforge
     }
   }
 
-  std::vector<std::string> Design::available() const
+  bool DesignParameter::overlaps(const DesignParameter &other) const
   {
-    std::vector<std::string> names = {"material/K", "material/m", "contact/rho"};
-    if (process_.law.m != 1.)
-      names.push_back("material/e0");
-    for (const ShapeParameter &shape : billet_map_.parameters())
-      names.push_back("billet/" + shape.name);
-    bool friction = false;
-    for (const auto &die : dies_)
+    const bool same_die = die == other.die || die == invalid_index || other.die == invalid_index;
+    return kind == other.kind && same_die && number == other.number && measure == other.measure;
+  }
+
+  namespace
+  {
+    /// The numbers of a law, called GROUP/NAME, those that `offers` names.
+    template <typename Law, typename Offers>
+    void add_numbers_of(Law                           law,
+                        const std::string            &group,
+                        const Kind                    kind,
+                        const Offers                 &offers,
+                        std::vector<DesignParameter> &all)
     {
-      friction |= die.friction > 0.;
-      if (die.friction > 0.)
-        names.push_back("die " + die.name + "/friction");
-      if (die.velocity.norm() > 0.)
-        names.push_back("die " + die.name + "/speed");
-      names.push_back("die " + die.name + "/offset");
-      for (const std::string &measure : die.measures())
-        names.push_back("die " + die.name + "/" + measure);
+      const std::vector<NumberInfo> info = Law::info();
+      for (unsigned int i = 0; i < info.size(); ++i)
+        if (offers(info[i].name))
+        {
+          const double value = number_of(law, i);
+          all.push_back({group + "/" + info[i].name,
+                         info[i].unit,
+                         kind,
+                         value,
+                         value,
+                         invalid_index,
+                         i,
+                         {},
+                         info[i].may_vanish,
+                         info[i].largest});
+        }
     }
+
+    void add_numbers_of(const DieParameters          &die,
+                        const unsigned int            d,
+                        const double                  width,
+                        std::vector<DesignParameter> &all)
+    {
+      const std::string prefix = "die " + die.name + "/";
+      const double      speed  = die.velocity.norm();
+      if (die.friction > 0.)
+        all.push_back(
+          {prefix + "friction", "mm^(-m)", Kind::friction, die.friction, die.friction, d, 0, {}, true});
+      if (speed > 0.)
+        all.push_back({prefix + "speed", "mm/s", Kind::speed, speed, speed, d});
+      all.push_back({prefix + "offset", "mm", Kind::offset, 0., width, d});
+      for (const std::string &measure : die.measures())
+      {
+        const double value = die.measure(measure);
+        all.push_back({prefix + measure,
+                       measure == "draft angle" ? "degrees" : "mm",
+                       Kind::die_shape,
+                       value,
+                       value,
+                       d,
+                       0,
+                       measure});
+      }
+    }
+  } // namespace
+
+  std::vector<DesignParameter> Design::offered() const
+  {
+    const auto with_friction =
+      std::find_if(dies_.begin(), dies_.end(), [](const DieParameters &die) { return die.friction > 0.; });
+    const bool                   friction = with_friction != dies_.end();
+    std::vector<DesignParameter> all;
+    add_numbers_of(
+      process_.law,
+      "material",
+      Kind::material,
+      [&](const std::string &name) { return process_.law.depends_on(name); },
+      all);
+    add_numbers_of(
+      process_.contact,
+      "contact",
+      Kind::contact,
+      [&](const std::string &name) { return process_.contact.depends_on(name, friction); },
+      all);
+    for (unsigned int j = 0; j < billet_map_.parameters().size(); ++j)
+    {
+      const ShapeParameter &shape = billet_map_.parameters()[j];
+      all.push_back(
+        {"billet/" + shape.name, shape.unit, Kind::billet, shape.nominal, shape.scale, invalid_index, j});
+    }
+    for (unsigned int d = 0; d < dies_.size(); ++d)
+      add_numbers_of(dies_[d], d, width_, all);
     if (friction)
-      names.insert(names.end(), {"dies/friction", "contact/v0"});
-    return names;
+      all.push_back({"dies/friction",
+                     "mm^(-m)",
+                     Kind::friction,
+                     with_friction->friction,
+                     with_friction->friction,
+                     invalid_index,
+                     0,
+                     {},
+                     true});
+    return all;
   }
 
   void Design::check_offered(const std::string &name, const std::string &where) const
   {
-    const auto known = available();
+    std::vector<std::string> known;
+    for (const DesignParameter &parameter : offered())
+      known.push_back(parameter.name);
     if (std::find(known.begin(), known.end(), name) != known.end())
       return;
     const std::string near = nearest_name(name, known, 6);
@@ -107,56 +189,19 @@ namespace retroforge
                 near.empty() ? "name some of these" : "did you mean '" + near + "'?");
   }
 
-  DesignParameter Design::make(const std::string &name) const
+  void Design::check_common_friction() const
   {
-    check_offered(name, "Design/parameters");
-    if (name == "material/K")
-      return {name, "MPa s^m", Kind::consistency, invalid_index, process_.law.K, process_.law.K};
-    if (name == "material/m")
-      return {name, "", Kind::sensitivity, invalid_index, process_.law.m, process_.law.m};
-    if (name == "material/e0")
-      return {name, "1/s", Kind::strain_rate, invalid_index, process_.law.e0, process_.law.e0};
-    if (name == "contact/rho")
-      return {name, "MPa s/mm", Kind::penalty, invalid_index, process_.contact.rho, process_.contact.rho};
-    if (name == "contact/v0")
-      return {name, "mm/s", Kind::slip, invalid_index, process_.contact.v0, process_.contact.v0};
-    const auto &shapes = billet_map_.parameters();
-    for (unsigned int j = 0; j < shapes.size(); ++j)
-      if (name == "billet/" + shapes[j].name)
-        return {name, shapes[j].unit, Kind::billet, j, shapes[j].nominal, shapes[j].scale};
-    if (name == "dies/friction")
-    {
-      double alpha = 0.;
-      for (const auto &die : dies_)
-        if (die.friction > 0.)
-        {
-          if (alpha > 0. && alpha != die.friction)
-            throw Error("Design/parameters",
-                        "'dies/friction' stands for all dies with friction, but their coefficients differ",
-                        "one number must describe them all",
-                        "name each die, as in 'die " + die.name + "/friction'");
-          alpha = die.friction;
-        }
-      return {name, "mm^(-m)", Kind::friction, invalid_index, alpha, alpha};
-    }
-    for (unsigned int d = 0; d < dies_.size(); ++d)
-    {
-      const double friction = dies_[d].friction, speed = dies_[d].velocity.norm();
-      if (name == "die " + dies_[d].name + "/friction")
-        return {name, "mm^(-m)", Kind::friction, d, friction, friction};
-      if (name == "die " + dies_[d].name + "/speed")
-        return {name, "mm/s", Kind::speed, d, speed, speed};
-      if (name == "die " + dies_[d].name + "/offset")
-        return {name, "mm", Kind::offset, d, 0., width_};
-      for (const std::string &measure : dies_[d].measures())
-        if (name == "die " + dies_[d].name + "/" + measure)
-        {
-          const double value = dies_[d].measure(measure);
-          return {
-            name, measure == "draft angle" ? "degrees" : "mm", Kind::die_shape, d, value, value, measure};
-        }
-    }
-    throw Error("Design/parameters", name, "unknown", "see the list of parameters");
+    double alpha = 0.;
+    for (const auto &die : dies_)
+      if (die.friction > 0.)
+      {
+        if (alpha > 0. && alpha != die.friction)
+          throw Error("Design/parameters",
+                      "'dies/friction' stands for all dies with friction, but their coefficients differ",
+                      "one number must describe them all",
+                      "name each die, as in 'die " + die.name + "/friction'");
+        alpha = die.friction;
+      }
   }
 
   std::vector<double> Design::nominal() const
@@ -169,20 +214,17 @@ namespace retroforge
 
   namespace
   {
-    /// Shapes are checked where they are made.
     void check_value(const DesignParameter &parameter, const double value)
     {
-      const bool may_vanish = parameter.kind == Kind::friction || parameter.kind == Kind::strain_rate ||
-                              parameter.kind == Kind::slip;
-      const bool is_free  = parameter.kind == Kind::offset || parameter.kind == Kind::billet;
-      const bool is_sound = std::isfinite(value) && (is_free || value > 0. || (may_vanish && value == 0.)) &&
-                            (parameter.kind != Kind::sensitivity || value <= 1.);
-      if (!is_sound)
+      const bool in_range = parameter.is_free() || ((value > 0. || (parameter.may_vanish && value == 0.)) &&
+                                                    value <= parameter.largest);
+      if (!std::isfinite(value) || !in_range)
         throw Error("Design/at",
                     "gives " + parameter.name + " the value " + as_text(value),
-                    parameter.kind == Kind::sensitivity ? "it lies above 0 and up to 1"
-                    : may_vanish                        ? "it is not negative"
-                                                        : "it is positive",
+                    std::isfinite(parameter.largest)
+                      ? "it lies above 0 and up to " + as_text(parameter.largest)
+                    : parameter.may_vanish ? "it is not negative"
+                                           : "it is positive",
                     "stay closer to the nominal value, " + as_text(parameter.nominal));
     }
   } // namespace
@@ -212,7 +254,7 @@ namespace retroforge
       shape.push_back(Number(parameter.nominal));
     for (unsigned int j = 0; j < parameters_.size(); ++j)
       if (parameters_[j].kind == Kind::billet)
-        shape[parameters_[j].die] = mu[j];
+        shape[parameters_[j].number] = mu[j];
     return shape;
   }
 
@@ -225,41 +267,18 @@ namespace retroforge
   template <typename Number>
   Process<Number> Design::process(const std::vector<Number> &mu) const
   {
-    Process<Number> process{{process_.law.K, process_.law.m, process_.law.e0},
-                            {process_.contact.rho, process_.contact.v0},
-                            {},
-                            process_.leading_die};
-    for (const auto &die : process_.dies)
-    {
-      DieState<Number> state;
-      for (unsigned int i = 0; i < 3; ++i)
-      {
-        state.velocity[i]     = Number(die.velocity[i]);
-        state.displacement[i] = Number(die.displacement[i]);
-      }
-      state.friction = Number(die.friction);
-      process.dies.push_back(state);
-    }
+    auto                                       process = converted<Number>(process_);
     std::vector<std::map<std::string, Number>> measures(dies_.size());
     for (unsigned int j = 0; j < parameters_.size(); ++j)
     {
       const DesignParameter &parameter = parameters_[j];
       switch (parameter.kind)
       {
-        case Kind::consistency:
-          process.law.K = mu[j];
+        case Kind::material:
+          number_of(process.law, parameter.number) = mu[j];
           break;
-        case Kind::sensitivity:
-          process.law.m = mu[j];
-          break;
-        case Kind::strain_rate:
-          process.law.e0 = mu[j];
-          break;
-        case Kind::penalty:
-          process.contact.rho = mu[j];
-          break;
-        case Kind::slip:
-          process.contact.v0 = mu[j];
+        case Kind::contact:
+          number_of(process.contact, parameter.number) = mu[j];
           break;
         case Kind::friction:
           for (unsigned int d = 0; d < dies_.size(); ++d)
@@ -284,8 +303,7 @@ namespace retroforge
     }
     for (unsigned int d = 0; d < dies_.size(); ++d)
       if (!measures[d].empty())
-        process.dies[d].vertices =
-          std::make_shared<const NodalVectors<Number>>(dies_[d].vertices(measures[d]));
+        process.dies[d].vertices = dies_[d].vertices(measures[d]);
     follow_billet(mu, process);
     return process;
   }
@@ -318,28 +336,17 @@ namespace retroforge
 
   std::vector<double> Design::pull_back(const std::vector<double>  &mu,
                                         const NodalVectors<double> &X_0_bar,
-                                        const ProcessBar           &bar) const
+                                        const Process<double>      &bar) const
   {
     const std::vector<double> billet = billet_map_.pull_back(shape_of(mu), X_0_bar);
     std::vector<double>       gradient;
     for (unsigned int j = 0; j < parameters_.size(); ++j)
     {
-      const auto p   = process(along(mu, j));
-      double     sum = bar.stretch * p.stretch.dx(0) + bar.K * p.law.K.dx(0) + bar.m * p.law.m.dx(0) +
-                   bar.e0 * p.law.e0.dx(0) + bar.rho * p.contact.rho.dx(0) + bar.v0 * p.contact.v0.dx(0);
-      for (unsigned int d = 0; d < p.dies.size(); ++d)
-      {
-        sum += bar.dies[d].friction * p.dies[d].friction.dx(0);
-        if (p.dies[d].vertices && d < bar.die_vertices.size())
-          for (std::size_t k = 0; k < bar.die_vertices[d].size(); ++k)
-            for (unsigned int i = 0; i < 3; ++i)
-              sum += bar.die_vertices[d][k][i] * (*p.dies[d].vertices)[k][i].dx(0);
-        for (unsigned int i = 0; i < 3; ++i)
-          sum += bar.dies[d].velocity[i] * p.dies[d].velocity[i].dx(0) +
-                 bar.dies[d].displacement[i] * p.dies[d].displacement[i].dx(0);
-      }
+      const auto process_dot = process(along(mu, j));
+      double     sum         = 0.;
+      for_each_number([&](const double &x_bar, const Dual &x) { sum += x_bar * x.dx(0); }, bar, process_dot);
       if (parameters_[j].kind == Kind::billet)
-        sum += billet[parameters_[j].die];
+        sum += billet[parameters_[j].number];
       gradient.push_back(sum);
     }
     return gradient;

@@ -7,7 +7,7 @@ namespace retroforge
 {
   SymmetricTensor cell_deviatoric_stress(const CellGeometry<double> &geometry,
                                          const CellValues<double>   &w,
-                                         const NortonHoff<double>   &law)
+                                         const MaterialLaw<double>  &law)
   {
     SymmetricTensor s{};
     for (const auto &eps : SubStrainRates<double>(geometry, w.V, w.beta).eps)
@@ -15,7 +15,7 @@ namespace retroforge
       const double eps2 = double_contraction(eps, eps);
       if (eps2 == 0.) // the factor of a law without e0 is infinite there
         continue;
-      const double factor = 0.25 * law.stress_factor(law.q(eps2));
+      const double factor = 0.25 * law(eps2);
       for (unsigned int k = 0; k < 6; ++k)
         s[k] += factor * eps[k];
     }

@@ -35,10 +35,16 @@ namespace retroforge
         f(p[n_lanes * k], x[k]);
     }
 
+    /// eps:eps
+    double square(const double (&e)[6])
+    {
+      return e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + 2. * (e[3] * e[3] + e[4] * e[4] + e[5] * e[5]);
+    }
+
     void fill(const CellGeometry<double> &geometry,
               const Vec3                 *V,
               const Vec3                 &beta,
-              const NortonHoff<double>   &law,
+              const MaterialLaw<double>  &law,
               TangentInput<double>       &input)
     {
       input.volume           = geometry.volume;
@@ -63,11 +69,10 @@ namespace retroforge
         double *eps = input.eps[a];
         std::copy(linear, linear + 6, eps);
         add_dyad(beta, 4., geometry.g[a], eps);
-        const double q      = law.q(eps[0] * eps[0] + eps[1] * eps[1] + eps[2] * eps[2] +
-                               2. * (eps[3] * eps[3] + eps[4] * eps[4] + eps[5] * eps[5]));
-        const double factor = quarter * law.stress_factor(q);
+        const double eps2   = square(input.eps[a]);
+        const double factor = quarter * law(eps2);
         input.half[a]       = 0.5 * factor;
-        input.rank_one[a]   = law.m == 1. ? 0. : 2. * (law.m - 1.) / q * factor;
+        input.rank_one[a]   = 2. * law.slope(eps2) * factor;
       }
     }
 
@@ -226,17 +231,17 @@ namespace retroforge
 
   void compute_cell_tangent(const CellGeometry<double> &geometry,
                             const CellValues<double>   &w,
-                            const NortonHoff<double>   &law,
+                            const MaterialLaw<double>  &law,
                             CellTangent                &tangent)
   {
     TangentInput<double> input;
     fill(geometry, w.V.data(), w.beta, law, input);
-    tangent_blocks(input, law.m == 1., tangent);
+    tangent_blocks(input, law.is_linear(), tangent);
   }
 
   void compute_cell_tangents(const std::array<CellGeometry<double>, n_lanes>        &geometry,
                              const std::array<CellValues<double>, n_lanes>          &w,
-                             const NortonHoff<double>                               &law,
+                             const MaterialLaw<double>                              &law,
                              const Linearisation                                     linearisation,
                              TangentPack                                            &tangent,
                              const std::array<BubbleElimination<double> *, n_lanes> &elimination)
@@ -248,7 +253,7 @@ namespace retroforge
       fill(geometry[lane], w[lane].V.data(), w[lane].beta, law, input);
       for_each_entry(pack, input, [lane](double &p, const double &x) { (&p)[lane] = x; });
     }
-    tangent_pack(pack, law.m == 1. || linearisation == Linearisation::picard, tangent);
+    tangent_pack(pack, law.is_linear() || linearisation == Linearisation::picard, tangent);
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
       for_each_entry(static_cast<BubbleElimination<Pack> &>(tangent),
                      *elimination[lane],
@@ -290,7 +295,7 @@ namespace retroforge
                   const CellValues<double>   &w,
                   const Vec3                 &grad_p,
                   const Vec3                 &beta,
-                  const NortonHoff<double>   &law)
+                  const MaterialLaw<double>  &law)
       {
         TangentInput<double> in;
         fill(geometry, w.V.data(), beta, law, in);
@@ -302,13 +307,10 @@ namespace retroforge
           eps_times_g(in.eps[a], in.g[a], y);
           for (unsigned int i = 0; i < 3; ++i)
             residual[i] += 8. * in.half[a] * y[i];
-          const auto &e = in.eps[a];
-          value +=
-            in.half[a] / (law.m + 1.) *
-            law.q(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + 2. * (e[3] * e[3] + e[4] * e[4] + e[5] * e[5]));
+          value += 2. * in.half[a] * law.potential_ratio(square(in.eps[a]));
         }
         double block[3][3], inverse[3][3];
-        bubble_block(in, law.m == 1., block);
+        bubble_block(in, law.is_linear(), block);
         invert(block, inverse);
         newton_step = -multiply(inverse, residual);
       }
@@ -317,7 +319,7 @@ namespace retroforge
 
   Vec3 solve_bubble(const CellGeometry<double> &geometry,
                     const CellValues<double>   &w,
-                    const NortonHoff<double>   &law)
+                    const MaterialLaw<double>  &law)
   {
     const Vec3 grad_p = pressure_gradient(geometry, w.P);
     double     spread = 0.;

@@ -30,13 +30,13 @@ namespace retroforge
 
   template CellGeometry<double> cell_geometry(const Four<Vector3<double>> &);
   template CellGeometry<Dual>   cell_geometry(const Four<Vector3<Dual>> &);
-#define RETROFORGE_INSTANTIATE(Number)                                                     \
-  template Number cell_functional(                                                         \
-    const CellGeometry<Number> &, const CellValues<Number> &, const NortonHoff<Number> &); \
-  template CellValues<Number> cell_residual(                                               \
-    const CellGeometry<Number> &, const CellValues<Number> &, const NortonHoff<Number> &); \
-  template Number cell_dissipation(                                                        \
-    const CellGeometry<Number> &, const CellValues<Number> &, const NortonHoff<Number> &);
+#define RETROFORGE_INSTANTIATE(Number)                                                      \
+  template Number cell_functional(                                                          \
+    const CellGeometry<Number> &, const CellValues<Number> &, const MaterialLaw<Number> &); \
+  template CellValues<Number> cell_residual(                                                \
+    const CellGeometry<Number> &, const CellValues<Number> &, const MaterialLaw<Number> &); \
+  template Number cell_dissipation(                                                         \
+    const CellGeometry<Number> &, const CellValues<Number> &, const MaterialLaw<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE
@@ -67,7 +67,7 @@ namespace retroforge
   CellSensitivity reverse_cell_residual(const CellGeometry<double> &geometry,
                                         const CellValues<double>   &w,
                                         const CellValues<double>   &lambda,
-                                        const NortonHoff<double>   &law)
+                                        const MaterialLaw<double>  &law)
   {
     const double                 quarter = 0.25 * geometry.volume;
     const SubStrainRates<double> eps(geometry, w.V, w.beta), eta(geometry, lambda.V, lambda.beta);
@@ -76,20 +76,18 @@ namespace retroforge
     double                       viscous = 0.;
     for (unsigned int a = 0; a < 4; ++a)
     {
-      const double q       = law.q(double_contraction(eps.eps[a], eps.eps[a]));
-      const double factor  = quarter * law.stress_factor(q);
+      const double eps2    = double_contraction(eps.eps[a], eps.eps[a]);
+      const double factor  = quarter * law(eps2);
       const double product = double_contraction(eps.eps[a], eta.eps[a]);
-      const double slope   = law.m == 1. ? 0. : (law.m - 1.) / q;
+      const double slope   = law.slope(eps2);
       for (unsigned int k = 0; k < 6; ++k)
       {
         E[a][k] = factor * (eta.eps[a][k] + 2. * slope * product * eps.eps[a][k]);
         H[a][k] = factor * eps.eps[a][k];
       }
       viscous += factor * product;
-      bar.m += factor * product * 0.5 * log_or_zero(q);
-      bar.e0 += factor * product * slope * 3. * law.e0;
+      law.reverse(eps2, factor * product, bar.law);
     }
-    bar.K = viscous / law.K;
 
     const double p_sum        = quarter * (w.P[0] + w.P[1] + w.P[2] + w.P[3]);
     const double lambda_p_sum = quarter * (lambda.P[0] + lambda.P[1] + lambda.P[2] + lambda.P[3]);
@@ -110,7 +108,7 @@ namespace retroforge
 
   CellSensitivity reverse_cell_dissipation(const CellGeometry<double> &geometry,
                                            const CellValues<double>   &w,
-                                           const NortonHoff<double>   &law,
+                                           const MaterialLaw<double>  &law,
                                            const double                weight,
                                            CellValues<double>         &w_bar)
   {
@@ -123,17 +121,14 @@ namespace retroforge
     for (unsigned int a = 0; a < 4; ++a)
     {
       const double eps2   = double_contraction(rates.eps[a], rates.eps[a]);
-      const double q      = law.q(eps2);
-      const double factor = quarter * law.stress_factor(q);
-      const double slope  = law.m == 1. ? 0. : (law.m - 1.) / q;
+      const double factor = quarter * law(eps2);
+      const double slope  = law.slope(eps2);
       for (unsigned int k = 0; k < 6; ++k)
         E[a][k] = factor * 2. * (1. + slope * eps2) * rates.eps[a][k];
       add(E_sum, 1., E[a]);
       power += factor * eps2;
-      bar.m += factor * eps2 * 0.5 * log_or_zero(q);
-      bar.e0 += factor * eps2 * slope * 3. * law.e0;
+      law.reverse(eps2, factor * eps2, bar.law);
     }
-    bar.K = power / law.K;
     for (unsigned int c = 0; c < 4; ++c)
     {
       w_bar.V[c] += times(E_sum, geometry.g[c]);

@@ -32,11 +32,11 @@ namespace retroforge
     }
   } // namespace
 
-  Four<Vec3> difference_cell_residual(const Four<Vec3>         &X,
-                                      const CellValues<double> &w,
-                                      const CellValues<double> &lambda,
-                                      const NortonHoff<double> &law,
-                                      const ShapeDerivatives   &how)
+  Four<Vec3> difference_cell_residual(const Four<Vec3>          &X,
+                                      const CellValues<double>  &w,
+                                      const CellValues<double>  &lambda,
+                                      const MaterialLaw<double> &law,
+                                      const ShapeDerivatives    &how)
   {
     return differences(X, how, [&](const Four<Vec3> &at) {
       const CellValues<double> r   = cell_residual(cell_geometry(at), w, law);
@@ -47,11 +47,11 @@ namespace retroforge
     });
   }
 
-  Four<Vec3> difference_cell_dissipation(const Four<Vec3>         &X,
-                                         const CellValues<double> &w,
-                                         const NortonHoff<double> &law,
-                                         const double              weight,
-                                         const ShapeDerivatives   &how)
+  Four<Vec3> difference_cell_dissipation(const Four<Vec3>          &X,
+                                         const CellValues<double>  &w,
+                                         const MaterialLaw<double> &law,
+                                         const double               weight,
+                                         const ShapeDerivatives    &how)
   {
     return differences(
       X, how, [&](const Four<Vec3> &at) { return weight * cell_dissipation(cell_geometry(at), w, law); });

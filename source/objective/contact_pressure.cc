@@ -3,7 +3,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/text.h>
 #include <retroforge/objective/contact_pressure.h>
-#include <retroforge/objective/contact_pullback.h>
+#include <retroforge/solver/contact_pullback.h>
 
 namespace retroforge
 {
@@ -131,8 +131,8 @@ namespace retroforge
         if (of_point == 0. || force == 0.)
           continue;
         ContactNodeBar node_bar;
-        node_bar.S   = of_point * force / node.S;
-        node_bar.rho = of_point * force / rho;
+        node_bar.S           = of_point * force / node.S;
+        node_bar.contact.rho = of_point * force / rho;
         pullback.add(p, node_bar);
         pullback.add_excess(p, node, of_point * rho * node.S);
       }

@@ -2,9 +2,9 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/core/text.h>
-#include <retroforge/objective/contact_pullback.h>
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>
+#include <retroforge/solver/contact_pullback.h>
 
 namespace retroforge
 {
@@ -60,7 +60,7 @@ namespace retroforge
         {
           const ContactNode<double> node = stage.contact_node(p, view.W, view.active);
           pullback.add(p, reverse_contact_force(node, stage.physics.law, stage.physics.contact, -weight * v));
-          bar.physics.contact.dies[die].velocity -=
+          bar.physics.dies[die].velocity -=
             weight * contact_force(node, stage.physics.law, stage.physics.contact);
         }
       pullback.finish();
@@ -106,10 +106,10 @@ namespace retroforge
   {
     const double v = speed(view, die_);
     if (by_ == By::power)
-      reverse_powers(view, weight / v, weight / v, bar);
+      reverse_power(view, weight / v, weight / v, bar);
     else
       reverse_power_of_die(view, die_, weight / v, bar);
-    bar.physics.contact.dies[die_].velocity -=
+    bar.physics.dies[die_].velocity -=
       weight * (*this)(view) / (v * v) * view.stage.physics.dies[die_].velocity;
   }
 

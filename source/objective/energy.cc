@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/objective/contact_pullback.h>
 #include <retroforge/objective/energy.h>
 
 namespace retroforge
@@ -30,26 +29,6 @@ namespace retroforge
                                           const std::vector<double> &weights,
                                           StageBar                  &bar) const
   {
-    reverse_powers(view, weights[0], weights[1], bar);
-  }
-
-  void reverse_powers(const StageView<double> &view,
-                      const double             deformation,
-                      const double             friction,
-                      StageBar                &bar)
-  {
-    const Stage<double> &stage = view.stage;
-    reverse_power(stage, view.W, view.active, deformation, bar.W, bar.X, bar.contact, bar.physics, bar.shape);
-    if (friction == deformation)
-      return;
-    ContactPullback pullback(view, bar);
-    for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-      if (stage.scene.partition.owns(stage.contact.pairs[p].point.nodes[0]))
-        pullback.add(p,
-                     reverse_friction_power(stage.contact_node(p, view.W, view.active),
-                                            stage.physics.law,
-                                            stage.physics.contact,
-                                            friction - deformation));
-    pullback.finish();
+    reverse_power(view, weights[0], weights[1], bar);
   }
 } // namespace retroforge

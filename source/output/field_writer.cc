@@ -34,7 +34,7 @@ namespace retroforge
     CellFields cell_fields(const TetMesh              &mesh,
                            const NodalVectors<double> &X,
                            const Field<double>        &W,
-                           const NortonHoff<double>   &law)
+                           const MaterialLaw<double>  &law)
     {
       CellFields fields;
       for (CellIndex c = 0; c < mesh.n_cells(); ++c)

@@ -54,18 +54,13 @@ namespace retroforge
       return std::max(speed, 1e-300) / std::cbrt(volume);
     }
 
-    /// The Newtonian metal with the same stress at a strain rate.
-    NortonHoff<double> newtonian_law(const NortonHoff<double> &law, const double rate)
-    {
-      return {law.stress_factor(3. * rate * rate) / 2., 1., 0.};
-    }
-
     /// What residual_scale would be in a flow at the dies' speed.
     std::pair<double, double> reference_scale(const Stage<double> &stage)
     {
       const auto [volume, speed] = volume_and_speed(stage);
       const double rate = typical_rate(volume, speed), n = stage.scene.mesh.n_nodes(), v = volume / n;
-      const double stress = 2. * newtonian_law(stage.physics.law, rate).K * rate;
+      const MaterialLaw<double> newtonian = stage.physics.law.newtonian(rate);
+      const double              stress    = newtonian(1.5 * rate * rate) * rate;
       return {stress * std::cbrt(v * v) * std::sqrt(n), rate * v * std::sqrt(n)};
     }
   } // namespace
@@ -156,9 +151,10 @@ namespace retroforge
   {
     const auto [volume, speed] = volume_and_speed(stage);
     Physics<double> newtonian  = stage.physics;
-    newtonian.law              = newtonian_law(stage.physics.law, typical_rate(volume, speed));
+    newtonian.law              = stage.physics.law.newtonian(typical_rate(volume, speed));
+    const FrictionLaw<double> friction{stage.physics.law, stage.physics.contact};
     for (auto &die : newtonian.dies)
-      die.friction *= std::pow(0.1 * speed, stage.physics.law.m - 1.) * stage.physics.law.K / newtonian.law.K;
+      die.friction *= friction.linear_part(0.1 * speed, newtonian.law);
     const Stage<double> linear(scene_, newtonian, stage.contact, stage.X);
     // Nodes at rest against a die at rest must feel it: all that touch count as active in the first matrix.
     ActiveSet active = frozen;
@@ -204,7 +200,7 @@ namespace retroforge
   Newton::solve(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen, const Start start)
   {
     NewtonStatistics statistics;
-    const bool       linear = stage.physics.law.m == 1.;
+    const bool       linear = stage.physics.law.is_linear();
     const bool       from_rest =
       std::all_of(W.V.begin(), W.V.end(), [](const Vec3 &v) { return v.norm_square() == 0.; });
     if (from_rest && !linear)

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/element/mini_element.templates.h>
-#include <retroforge/solver/stage.h>
+#include <retroforge/solver/contact_pullback.h>
 
 namespace retroforge
 {
-  PhysicsBar::PhysicsBar(const std::vector<Die> &dies) : PhysicsBar(dies.size())
+  std::vector<DieState<double>> no_derivatives(const std::vector<Die> &dies)
   {
-    for (const Die &die : dies)
-      contact.die_vertices.emplace_back(die.surface() ? die.surface()->vertices().size() : 0);
+    std::vector<DieState<double>> states(dies.size());
+    for (std::size_t d = 0; d < dies.size(); ++d)
+      states[d].vertices.resize(dies[d].surface() ? dies[d].surface()->vertices().size() : 0);
+    return states;
   }
 
   template <typename Number>
@@ -129,118 +131,64 @@ namespace retroforge
       partition.gather_cells(W.beta.data()->begin_raw(), 3);
   }
 
-  namespace
+  void reverse_residual(const StageView<double> &view, const Field<double> &lambda, StageBar &bar)
   {
-    void add_material(const CellSensitivity &s, PhysicsBar &bar)
-    {
-      bar.contact.K += s.K;
-      bar.contact.m += s.m;
-      bar.e0 += s.e0;
-    }
-
-    /// Where the derivatives of one contact node go.
-    void scatter(const Stage<double>  &stage,
-                 const unsigned int    p,
-                 const ContactNodeBar &node_bar,
-                 ContactAreas<double> &areas_bar,
-                 ContactSetBar        &contact_bar,
-                 PhysicsBar           &bar)
-    {
-      areas_bar.S[p] += node_bar.S;
-      areas_bar.Sf[p] += node_bar.Sf;
-      contact_bar.delta[p] += node_bar.delta;
-      contact_bar.n[p] += node_bar.n;
-      bar.contact.tau += node_bar.tau;
-      bar.contact.K += node_bar.K;
-      bar.contact.m += node_bar.m;
-      bar.contact.rho += node_bar.rho;
-      bar.contact.v0 += node_bar.v0;
-      DieState<double> &die = bar.contact.dies[stage.contact.pairs[p].die];
-      die.velocity -= node_bar.u;
-      die.friction += node_bar.alpha;
-    }
-
-    ContactAreas<double> no_areas(const Stage<double> &stage)
-    {
-      const std::size_t n = stage.contact.pairs.size();
-      return {std::vector<double>(n, 0.), std::vector<double>(n, 0.)};
-    }
-  } // namespace
-
-  void reverse_residual(const Stage<double>    &stage,
-                        const Field<double>    &W,
-                        const ActiveSet        &active,
-                        const Field<double>    &lambda,
-                        NodalVectors<double>   &X_bar,
-                        ContactSetBar          &contact_bar,
-                        PhysicsBar             &physics_bar,
-                        const ShapeDerivatives &shape)
-  {
-    const TetMesh   &mesh      = stage.scene.mesh;
-    const Partition &partition = stage.scene.partition;
+    const Stage<double> &stage     = view.stage;
+    const TetMesh       &mesh      = stage.scene.mesh;
+    const Partition     &partition = stage.scene.partition;
     for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
     {
       const auto               X        = positions_of_cell(mesh, stage.X, c);
-      const CellValues<double> w        = W.on_cell(mesh, c);
+      const CellValues<double> w        = view.W.on_cell(mesh, c);
       const CellValues<double> lambda_c = lambda.on_cell(mesh, c);
       CellSensitivity          s = reverse_cell_residual(cell_geometry(X), w, lambda_c, stage.physics.law);
-      if (shape.method != ShapeDerivatives::Method::exact)
-        s.X = difference_cell_residual(X, w, lambda_c, stage.physics.law, shape);
+      if (bar.shape.method != ShapeDerivatives::Method::exact)
+        s.X = difference_cell_residual(X, w, lambda_c, stage.physics.law, bar.shape);
       for (unsigned int a = 0; a < 4; ++a)
-        X_bar[mesh.cells[c][a]] += s.X[a];
-      add_material(s, physics_bar);
+        bar.X[mesh.cells[c][a]] += s.X[a];
+      add_numbers(s.law, bar.physics.law);
     }
-    ContactAreas<double> areas_bar = no_areas(stage);
+    ContactPullback pullback(view, bar);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (const ContactPoint &point = stage.contact.pairs[p].point; partition.owns(point.nodes[0]))
-        scatter(
-          stage,
-          p,
-          reverse_contact_force(
-            stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, point.mean(lambda.V)),
-          areas_bar,
-          contact_bar,
-          physics_bar);
-    reverse_contact_areas(mesh, stage.scene.topology, stage.contact, stage.X, areas_bar, X_bar, contact_bar);
+        pullback.add_at_fixed_velocity(p,
+                                       reverse_contact_force(stage.contact_node(p, view.W, view.active),
+                                                             stage.physics.law,
+                                                             stage.physics.contact,
+                                                             point.mean(lambda.V)));
+    pullback.finish();
   }
 
-  void reverse_power(const Stage<double>    &stage,
-                     const Field<double>    &W,
-                     const ActiveSet        &active,
-                     const double            weight,
-                     Field<double>          &W_bar,
-                     NodalVectors<double>   &X_bar,
-                     ContactSetBar          &contact_bar,
-                     PhysicsBar             &physics_bar,
-                     const ShapeDerivatives &shape)
+  void
+  reverse_power(const StageView<double> &view, const double deformation, const double friction, StageBar &bar)
   {
-    const TetMesh   &mesh      = stage.scene.mesh;
-    const Partition &partition = stage.scene.partition;
+    const Stage<double> &stage     = view.stage;
+    const TetMesh       &mesh      = stage.scene.mesh;
+    const Partition     &partition = stage.scene.partition;
     for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
     {
       const auto               X     = positions_of_cell(mesh, stage.X, c);
-      const CellValues<double> w     = W.on_cell(mesh, c);
+      const CellValues<double> w     = view.W.on_cell(mesh, c);
       CellValues<double>       w_bar = {};
-      CellSensitivity s = reverse_cell_dissipation(cell_geometry(X), w, stage.physics.law, weight, w_bar);
-      if (shape.method != ShapeDerivatives::Method::exact)
-        s.X = difference_cell_dissipation(X, w, stage.physics.law, weight, shape);
+      CellSensitivity          s =
+        reverse_cell_dissipation(cell_geometry(X), w, stage.physics.law, deformation, w_bar);
+      if (bar.shape.method != ShapeDerivatives::Method::exact)
+        s.X = difference_cell_dissipation(X, w, stage.physics.law, deformation, bar.shape);
       for (unsigned int a = 0; a < 4; ++a)
       {
-        X_bar[mesh.cells[c][a]] += s.X[a];
-        W_bar.V[mesh.cells[c][a]] += w_bar.V[a];
+        bar.X[mesh.cells[c][a]] += s.X[a];
+        bar.W.V[mesh.cells[c][a]] += w_bar.V[a];
       }
-      W_bar.beta[c] += w_bar.beta;
-      add_material(s, physics_bar);
+      bar.W.beta[c] += w_bar.beta;
+      add_numbers(s.law, bar.physics.law);
     }
-    ContactAreas<double> areas_bar = no_areas(stage);
+    ContactPullback pullback(view, bar);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-      if (const ContactPoint &point = stage.contact.pairs[p].point; partition.owns(point.nodes[0]))
-      {
-        const ContactNodeBar node_bar = reverse_friction_power(
-          stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, weight);
-        point.add(node_bar.u, W_bar.V);
-        scatter(stage, p, node_bar, areas_bar, contact_bar, physics_bar);
-      }
-    reverse_contact_areas(mesh, stage.scene.topology, stage.contact, stage.X, areas_bar, X_bar, contact_bar);
+      if (partition.owns(stage.contact.pairs[p].point.nodes[0]))
+        pullback.add(
+          p,
+          reverse_friction_power(
+            stage.contact_node(p, view.W, view.active), stage.physics.law, stage.physics.contact, friction));
+    pullback.finish();
   }
 } // namespace retroforge

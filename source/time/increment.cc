@@ -60,30 +60,18 @@ namespace retroforge
 
     NodalVectors<double> values_of(const NodalVectors<Dual> &x)
     {
-      NodalVectors<double> v(x.size());
-      for (std::size_t k = 0; k < x.size(); ++k)
-        for (unsigned int i = 0; i < 3; ++i)
-          v[k][i] = x[k][i].val();
+      NodalVectors<double> v;
+      convert(x, v);
       return v;
     }
 
+    /// A tangent is taken where the dies have the vertices they were made with.
     Physics<double> values_of(const Physics<Dual> &physics)
     {
-      Physics<double> v{{physics.law.K.val(), physics.law.m.val(), physics.law.e0.val()},
-                        {physics.contact.rho.val(), physics.contact.v0.val()},
-                        {}};
-      for (const auto &die : physics.dies)
-      {
-        DieState<double> d;
-        for (unsigned int i = 0; i < 3; ++i)
-        {
-          d.velocity[i]     = die.velocity[i].val();
-          d.displacement[i] = die.displacement[i].val();
-        }
-        d.friction = die.friction.val();
-        v.dies.push_back(d);
-      }
-      return v;
+      auto values = converted<double>(physics);
+      for (auto &die : values.dies)
+        die.vertices.clear();
+      return values;
     }
 
     Field<Dual> make_dual(const Field<double> &value, const Field<double> &dot)
@@ -317,6 +305,7 @@ namespace retroforge
       const NodalVectors<double> position = s == 0 ? X : stage_positions(process, X, record);
       const Stage<double>        stage(scene_, physics, contact, position);
       const Field<double>        W = recorded_field(stage, solve);
+      const StageView<double>    view{stage, W, solve.active};
       // X_{i+1} = X_i + dt V, and for the first of two stages  Y = X_i + dt/2 V.
       const double fraction = last ? 1. : 0.5;
       system_.assemble(stage, W, solve.active);
@@ -330,10 +319,10 @@ namespace retroforge
         Field<double>               rhs(scene_.mesh);
         if (first)
           bar.physics.dt += fraction * dot(next, W.V);
+        StageBar stage_bar{rhs, position_bar, bar.contact, bar.physics, model_.shape_derivatives};
         if (last)
         {
-          StageBar stage_bar{rhs, position_bar, bar.contact, bar.physics, model_.shape_derivatives};
-          source(j, {stage, W, solve.active}, stage_bar);
+          source(j, view, stage_bar);
           if (!costate.strain.empty())
             bar.physics.dt += reverse_accumulate_strain(
               scene_.mesh, position, W, dt, owned_part(costate.strain, scene_.partition), rhs, position_bar);
@@ -347,8 +336,7 @@ namespace retroforge
         system_.solve(minus_rhs, model_.adjoint_tolerance, lambda, guesses);
         guesses.insert(guesses.begin(), lambda);
         guesses.resize(std::min<std::size_t>(guesses.size(), 3));
-        reverse_residual(
-          stage, W, solve.active, lambda, position_bar, bar.contact, bar.physics, model_.shape_derivatives);
+        reverse_residual(view, lambda, stage_bar);
         if (s == 0)
           reverse_contact_set(scene_.dies,
                               physics.dies,
@@ -357,7 +345,7 @@ namespace retroforge
                               X,
                               bar.contact,
                               position_bar,
-                              bar.physics.contact);
+                              bar.physics.dies);
         sum_over_ranks(position_bar, comm);
         for (std::size_t k = 0; k < X.size(); ++k)
           costate.X[k] += position_bar[k];
@@ -365,8 +353,8 @@ namespace retroforge
       }
     }
     for (std::size_t j = 0; j < costates.size(); ++j)
-      costates[j].process.add(
-        bars[j].physics, process, {record.stroke, record.step}, record.contact.approach);
+      reverse_at_stroke(
+        process, {record.stroke, record.step}, record.contact.approach, bars[j].physics, costates[j].process);
   }
 
   Field<Dual> Increment::tangent_field(const Stage<Dual>          &stage,

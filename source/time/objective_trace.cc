@@ -19,8 +19,9 @@ namespace retroforge
                                const std::vector<Number>           &strain,
                                const std::vector<DieState<Number>> &dies)
   {
-    const unsigned int d = objective.target_die();
-    return {scene, X, strain, dies, d == invalid_index ? nullptr : dies[d].vertices.get()};
+    const unsigned int d     = objective.target_die();
+    const bool         moved = d != invalid_index && !dies[d].vertices.empty();
+    return {scene, X, strain, dies, moved ? &dies[d].vertices : nullptr};
   }
 
   template FinalView<double> final_view(const FinalObjective &,

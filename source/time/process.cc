@@ -33,64 +33,44 @@ namespace retroforge
   template struct Process<double>;
   template struct Process<Dual>;
 
-  void ProcessBar::add(const PhysicsBar      &bar,
-                       const Process<double> &process,
-                       const StrokeStep      &step,
-                       const double           approach)
+  void reverse_at_stroke(const Process<double> &process,
+                         const StrokeStep      &step,
+                         const double           approach,
+                         const PhysicsBar      &bar,
+                         Process<double>       &process_bar)
   {
-    K += bar.contact.K;
-    m += bar.contact.m;
-    e0 += bar.e0;
-    rho += bar.contact.rho;
-    v0 += bar.contact.v0;
-    die_vertices.resize(dies.size());
-    for (std::size_t d = 0; d < bar.contact.die_vertices.size(); ++d)
-    {
-      die_vertices[d].resize(bar.contact.die_vertices[d].size());
-      for (std::size_t k = 0; k < die_vertices[d].size(); ++k)
-        die_vertices[d][k] += bar.contact.die_vertices[d][k];
-    }
-    const double speed = process.speed();
+    add_numbers(bar.law, process_bar.law);
+    add_numbers(bar.contact, process_bar.contact);
     // In stretch/speed, by which all times are made of strokes.
-    double pace_bar = (bar.dt + approach * bar.contact.tau) * step.step;
-    for (unsigned int d = 0; d < dies.size(); ++d)
+    double pace_bar = (bar.dt + approach * bar.tau) * step.step;
+    auto   dies_bar = bar.dies;
+    for (std::size_t d = 0; d < dies_bar.size(); ++d)
     {
-      const DieState<double> &die = bar.contact.dies[d];
-      dies[d].velocity += die.velocity + process.time(step.stroke) * die.displacement;
-      dies[d].displacement += die.displacement;
-      dies[d].friction += die.friction;
-      pace_bar += die.displacement * process.dies[d].velocity * step.stroke;
+      dies_bar[d].velocity += process.time(step.stroke) * dies_bar[d].displacement;
+      pace_bar += dies_bar[d].displacement * process.dies[d].velocity * step.stroke;
     }
-    stretch += pace_bar / speed;
-    dies[process.leading_die].velocity -=
-      pace_bar * process.stretch / std::pow(speed, 3) * process.dies[process.leading_die].velocity;
+    add_numbers(dies_bar, process_bar.dies);
+    const double       speed   = process.speed();
+    const unsigned int leading = process.leading_die;
+    process_bar.stretch += pace_bar / speed;
+    process_bar.dies[leading].velocity -=
+      pace_bar * process.stretch / std::pow(speed, 3) * process.dies[leading].velocity;
   }
 
-  void ProcessBar::sum(MPI_Comm comm)
+  Process<double> no_process_derivatives(const std::vector<Die> &dies)
   {
-    std::vector<double> all = {K, m, e0, rho, v0, stretch};
-    for (const auto &die : dies)
-    {
-      for (unsigned int i = 0; i < 3; ++i)
-        all.insert(all.end(), {die.velocity[i], die.displacement[i]});
-      all.push_back(die.friction);
-    }
-    for (NodalVectors<double> &vertices : die_vertices)
-      if (!vertices.empty())
-        MPI_Allreduce(
-          MPI_IN_PLACE, vertices.data()->begin_raw(), 3 * vertices.size(), MPI_DOUBLE, MPI_SUM, comm);
-    dealii::Utilities::MPI::sum(all, comm, all);
-    auto next = all.begin();
-    for (double *x : {&K, &m, &e0, &rho, &v0, &stretch})
-      *x = *next++;
-    for (auto &die : dies)
-    {
-      for (unsigned int i = 0; i < 3; ++i)
-      {
-        die.velocity[i]     = *next++;
-        die.displacement[i] = *next++;
-      }
-      die.friction = *next++;
-    }
+    Process<double> bar;
+    bar.dies = no_derivatives(dies);
+    for_each_number([](double &x) { x = 0.; }, bar);
+    return bar;
+  }
+
+  void sum_over_ranks(Process<double> &process_bar, MPI_Comm comm)
+  {
+    std::vector<double> numbers;
+    for_each_number([&](const double &x) { numbers.push_back(x); }, process_bar);
+    dealii::Utilities::MPI::sum(numbers, comm, numbers);
+    auto next = numbers.begin();
+    for_each_number([&](double &x) { x = *next++; }, process_bar);
   }
 } // namespace retroforge

@@ -22,7 +22,7 @@ namespace retroforge
   struct AdjointResult
   {
     NodalVectors<double> X_0;
-    ProcessBar           process;
+    Process<double>      process;
   };
 
   struct AdjointSweep

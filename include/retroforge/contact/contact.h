@@ -3,8 +3,8 @@
 #pragma once
 
 #include <retroforge/contact/contact_point.h>
+#include <retroforge/contact/friction.h>
 #include <retroforge/geometry/die.h>
-#include <retroforge/material/norton_hoff.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,14 +32,6 @@
 /// ContactSet. What belongs to a stage (S, S^f) is computed from the stage's positions: ContactAreas.
 namespace retroforge
 {
-  /// The numbers of the contact and friction laws.
-  template <typename Number>
-  struct ContactLaw
-  {
-    Number rho = 0.; ///< penalty [MPa s/mm]
-    Number v0  = 0.; ///< slip regularisation [mm/s]
-  };
-
   /// w(delta): 1 where the node touches, 0 where it is out of reach.
   /// Smooth: 1 - 10t^3 + 15t^4 - 6t^5 with t = delta/width on [0, 1], twice differentiable, because nodes in
   /// contact stand exactly at delta = 0. Sharp: 1 for delta <= width.
@@ -118,15 +110,6 @@ namespace retroforge
     std::vector<Number> S, Sf;
   };
 
-  /// Sums of derivatives with respect to everything that a scene's contact depends on besides the mesh.
-  struct ContactSensitivity
-  {
-    double                        K = 0., m = 0., rho = 0., v0 = 0., tau = 0.;
-    std::vector<DieState<double>> dies; ///< velocity, displacement and friction of each
-    /// In each die's vertices: filled in where it has as many entries as there are.
-    std::vector<NodalVectors<double>> die_vertices;
-  };
-
   /// Derivatives in the increment's data: what ContactSet depends on is filled in later, by
   /// reverse_contact_set.
   struct ContactSetBar
@@ -162,7 +145,8 @@ namespace retroforge
                                       const ApproachLaw                   &approach       = {},
                                       double                               edge_stiffness = 1.);
 
-  /// Pull-back of make_contact_set: adds to X_bar and to the dies' displacements and vertices.
+  /// Pull-back of make_contact_set: adds to X_bar, to the dies' displacements, and to vertices where there is
+  /// an entry for each.
   void reverse_contact_set(const std::vector<Die>              &dies,
                            const std::vector<DieState<double>> &states,
                            const ContactSet<double>            &contact,
@@ -170,7 +154,7 @@ namespace retroforge
                            const NodalVectors<double>          &X,
                            const ContactSetBar                 &bar,
                            NodalVectors<double>                &X_bar,
-                           ContactSensitivity                  &sensitivity);
+                           std::vector<DieState<double>>       &dies_bar);
 
   template <typename Number>
   ContactAreas<Number> contact_areas(const TetMesh              &mesh,
@@ -247,41 +231,44 @@ namespace retroforge
 
   template <typename Number>
   Vector3<Number> contact_force(const ContactNode<Number> &node,
-                                const NortonHoff<Number>  &law,
+                                const MaterialLaw<Number> &law,
                                 const ContactLaw<Number>  &contact);
 
   /// tau·dv S^f: power lost in friction [mJ/s], as the residual has it.
   template <typename Number>
   Number friction_power(const ContactNode<Number> &node,
-                        const NortonHoff<Number>  &law,
+                        const MaterialLaw<Number> &law,
                         const ContactLaw<Number>  &contact);
 
   /// Value of the potential whose gradient in V is contact_force.
   double contact_potential(const ContactNode<double> &node,
-                           const NortonHoff<double>  &law,
+                           const MaterialLaw<double> &law,
                            const ContactLaw<double>  &contact);
 
   /// d contact_force / dV, symmetric.
   dealii::Tensor<2, 3> contact_tangent(const ContactNode<double> &node,
-                                       const NortonHoff<double>  &law,
+                                       const MaterialLaw<double> &law,
                                        const ContactLaw<double>  &contact);
 
   /// Derivatives of a scalar of one node.
   struct ContactNodeBar
   {
     Vec3   u, n;
-    double delta = 0., tau = 0., S = 0., Sf = 0., alpha = 0., K = 0., m = 0., rho = 0., v0 = 0.;
+    double delta = 0., tau = 0., S = 0., Sf = 0., alpha = 0.;
+
+    MaterialLaw<double> law;
+    ContactLaw<double>  contact;
   };
 
   /// Derivatives of  lambda·contact_force.
   ContactNodeBar reverse_contact_force(const ContactNode<double> &node,
-                                       const NortonHoff<double>  &law,
+                                       const MaterialLaw<double> &law,
                                        const ContactLaw<double>  &contact,
                                        const Vec3                &lambda);
 
   /// Derivatives of  weight * friction_power.
   ContactNodeBar reverse_friction_power(const ContactNode<double> &node,
-                                        const NortonHoff<double>  &law,
+                                        const MaterialLaw<double> &law,
                                         const ContactLaw<double>  &contact,
                                         double                     weight);
 } // namespace retroforge

@@ -13,25 +13,30 @@ namespace retroforge
   {
     enum class Kind
     {
-      consistency, ///< material/K
-      sensitivity, ///< material/m
-      strain_rate, ///< material/e0
-      penalty,     ///< contact/rho
-      slip,        ///< contact/v0
-      friction,    ///< of one die, or of all that have friction
-      speed,       ///< of one die, along its velocity
-      offset,      ///< of one die, along its facing direction
-      die_shape,   ///< a measure of one tripod or bell
-      billet       ///< of the billet's shape, see BilletMap
+      material,  ///< a number of the material law
+      contact,   ///< a number of the contact law
+      friction,  ///< of one die, or of all that have friction
+      speed,     ///< of one die, along its velocity
+      offset,    ///< of one die, along its facing direction
+      die_shape, ///< a measure of one tripod or bell
+      billet     ///< of the billet's shape, see BilletMap
     };
 
     std::string  name;
     std::string  unit;
     Kind         kind;
-    unsigned int die     = invalid_index; ///< invalid_index: all; for a billet its number in BilletMap
-    double       nominal = 0.;
-    double       scale   = 1.; ///< a length or size that steps are relative to
-    std::string  measure = {}; ///< of a die's shape
+    double       nominal    = 0.;
+    double       scale      = 1.;            ///< a length or size that steps are relative to
+    unsigned int die        = invalid_index; ///< invalid_index: all
+    unsigned int number     = 0;             ///< in the law, or in BilletMap
+    std::string  measure    = {};            ///< of a die's shape
+    bool         may_vanish = false;         ///< else it is positive, unless it is free
+    double       largest    = std::numeric_limits<double>::infinity();
+
+    /// Whether it may have any sign: shapes are checked where they are made.
+    bool is_free() const { return kind == Kind::offset || kind == Kind::billet; }
+    /// Whether both set the same number.
+    bool overlaps(const DesignParameter &other) const;
   };
 
   /// The map from parameter values to the initial positions and the process, and its derivative: both are
@@ -64,10 +69,10 @@ namespace retroforge
     /// dPhi/dmu from dPhi/dX_0 and the derivatives in the process: one number per parameter.
     std::vector<double> pull_back(const std::vector<double>  &mu,
                                   const NodalVectors<double> &X_0_bar,
-                                  const ProcessBar           &process_bar) const;
+                                  const Process<double>      &process_bar) const;
 
-    /// All names this scene offers.
-    std::vector<std::string> available() const;
+    /// All that this scene offers.
+    std::vector<DesignParameter> offered() const;
     /// @param where  the name stands, for the message     @throws Error  for a name that is not among them
     void check_offered(const std::string &name, const std::string &where) const;
 
@@ -75,7 +80,7 @@ namespace retroforge
     /// Values of the billet map's parameters.
     template <typename Number>
     std::vector<Number> shape_of(const std::vector<Number> &mu) const;
-    DesignParameter     make(const std::string &name) const;
+    void                check_common_friction() const;
 
     /// Dies that follow the billet start as far from it as in the nominal design; the leading one ends where
     /// it does there.

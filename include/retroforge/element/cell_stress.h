@@ -14,7 +14,7 @@ namespace retroforge
   /// incompressible.
   SymmetricTensor cell_deviatoric_stress(const CellGeometry<double> &geometry,
                                          const CellValues<double>   &w,
-                                         const NortonHoff<double>   &law);
+                                         const MaterialLaw<double>  &law);
 
   /// Equivalent stress sqrt(3/2 s:s) of a deviator s [MPa].
   double von_mises(const SymmetricTensor &s);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <retroforge/geometry/vector_algebra.h>
-#include <retroforge/material/norton_hoff.h>
+#include <retroforge/material/material_law.h>
 
 #include <array>
 
@@ -42,10 +42,8 @@ namespace retroforge
   /// Derivatives of a scalar of the cell in everything that is not an unknown.
   struct CellSensitivity
   {
-    Four<Vec3> X  = {};
-    double     K  = 0.;
-    double     m  = 0.;
-    double     e0 = 0.;
+    Four<Vec3>          X = {};
+    MaterialLaw<double> law;
   };
 
   template <typename Number>
@@ -61,34 +59,34 @@ namespace retroforge
   template <typename Number>
   Number cell_functional(const CellGeometry<Number> &geometry,
                          const CellValues<Number>   &w,
-                         const NortonHoff<Number>   &law);
+                         const MaterialLaw<Number>  &law);
 
   /// Gradient of Pi_T in (V, beta, P).
   template <typename Number>
   CellValues<Number> cell_residual(const CellGeometry<Number> &geometry,
                                    const CellValues<Number>   &w,
-                                   const NortonHoff<Number>   &law);
+                                   const MaterialLaw<Number>  &law);
 
   /// Dissipated power  int_T s:eps  [mJ/s].
   template <typename Number>
   Number cell_dissipation(const CellGeometry<Number> &geometry,
                           const CellValues<Number>   &w,
-                          const NortonHoff<Number>   &law);
+                          const MaterialLaw<Number>  &law);
 
   /// Equivalent strain rates e = sqrt(2/3 eps:eps) [1/s] on the four sub-tetrahedra.
   Four<double> cell_strain_rates(const CellGeometry<double> &geometry, const CellValues<double> &w);
 
-  /// Derivative of lambda·cell_residual in X, K, m, e0 at fixed unknowns: one closed-form sweep, no matrix.
+  /// Derivative of lambda·cell_residual in X and the law at fixed unknowns: one closed-form sweep, no matrix.
   CellSensitivity reverse_cell_residual(const CellGeometry<double> &geometry,
                                         const CellValues<double>   &w,
                                         const CellValues<double>   &lambda,
-                                        const NortonHoff<double>   &law);
+                                        const MaterialLaw<double>  &law);
 
-  /// Adds weight times the derivatives of cell_dissipation in the unknowns to w_bar and returns those in X,
-  /// K, m, e0.
+  /// Adds weight times the derivatives of cell_dissipation in the unknowns to w_bar and returns those in X
+  /// and the law.
   CellSensitivity reverse_cell_dissipation(const CellGeometry<double> &geometry,
                                            const CellValues<double>   &w,
-                                           const NortonHoff<double>   &law,
+                                           const MaterialLaw<double>  &law,
                                            double                      weight,
                                            CellValues<double>         &w_bar);
 
@@ -123,7 +121,7 @@ namespace retroforge
 
   void compute_cell_tangent(const CellGeometry<double> &geometry,
                             const CellValues<double>   &w,
-                            const NortonHoff<double>   &law,
+                            const MaterialLaw<double>  &law,
                             CellTangent                &tangent);
 
   /// Four cells at once, one per lane of a vector register: what the assembly of the whole matrix uses.
@@ -143,7 +141,7 @@ namespace retroforge
   /// @param elimination  where each lane's part that must be kept goes
   void compute_cell_tangents(const std::array<CellGeometry<double>, n_lanes>        &geometry,
                              const std::array<CellValues<double>, n_lanes>          &w,
-                             const NortonHoff<double>                               &law,
+                             const MaterialLaw<double>                              &law,
                              Linearisation                                           linearisation,
                              TangentPack                                            &tangent,
                              const std::array<BubbleElimination<double> *, n_lanes> &elimination);
@@ -152,5 +150,5 @@ namespace retroforge
   /// solved by Newton to rounding. Starts from w.beta.
   Vec3 solve_bubble(const CellGeometry<double> &geometry,
                     const CellValues<double>   &w,
-                    const NortonHoff<double>   &law);
+                    const MaterialLaw<double>  &law);
 } // namespace retroforge

@@ -91,12 +91,15 @@ namespace retroforge
   template <typename Number>
   Number cell_functional(const CellGeometry<Number> &geometry,
                          const CellValues<Number>   &w,
-                         const NortonHoff<Number>   &law)
+                         const MaterialLaw<Number>  &law)
   {
     const SubStrainRates<Number> rates(geometry, w.V, w.beta);
     Number                       potential(0.);
     for (const auto &eps : rates.eps)
-      potential += law.potential(law.q(double_contraction(eps, eps)));
+    {
+      const Number eps2 = double_contraction(eps, eps);
+      potential += law(eps2) * law.potential_ratio(eps2);
+    }
     const Number p_mean = 0.25 * (w.P[0] + w.P[1] + w.P[2] + w.P[3]);
     const Number bubble = w.beta * pressure_gradient(geometry, w.P);
     return geometry.volume * (0.25 * potential - p_mean * divergence(geometry, w.V) + 0.25 * bubble);
@@ -105,7 +108,7 @@ namespace retroforge
   template <typename Number>
   CellValues<Number> cell_residual(const CellGeometry<Number> &geometry,
                                    const CellValues<Number>   &w,
-                                   const NortonHoff<Number>   &law)
+                                   const MaterialLaw<Number>  &law)
   {
     const Number                 quarter = 0.25 * geometry.volume;
     const SubStrainRates<Number> rates(geometry, w.V, w.beta);
@@ -115,8 +118,7 @@ namespace retroforge
     stress_sum.fill(Number(0.));
     for (unsigned int a = 0; a < 4; ++a)
     {
-      const Number factor =
-        quarter * law.stress_factor(law.q(double_contraction(rates.eps[a], rates.eps[a])));
+      const Number          factor = quarter * law(double_contraction(rates.eps[a], rates.eps[a]));
       std::array<Number, 6> s;
       for (unsigned int k = 0; k < 6; ++k)
       {
@@ -138,14 +140,14 @@ namespace retroforge
   template <typename Number>
   Number cell_dissipation(const CellGeometry<Number> &geometry,
                           const CellValues<Number>   &w,
-                          const NortonHoff<Number>   &law)
+                          const MaterialLaw<Number>  &law)
   {
     const SubStrainRates<Number> rates(geometry, w.V, w.beta);
     Number                       power(0.);
     for (const auto &eps : rates.eps)
     {
       const Number eps2 = double_contraction(eps, eps);
-      power += law.stress_factor(law.q(eps2)) * eps2;
+      power += law(eps2) * eps2;
     }
     return 0.25 * geometry.volume * power;
   }

@@ -22,16 +22,16 @@ namespace retroforge
   };
 
   /// Derivative of lambda·cell_residual in X by differences, of the method that `how` says (not exact).
-  Four<Vec3> difference_cell_residual(const Four<Vec3>         &X,
-                                      const CellValues<double> &w,
-                                      const CellValues<double> &lambda,
-                                      const NortonHoff<double> &law,
-                                      const ShapeDerivatives   &how);
+  Four<Vec3> difference_cell_residual(const Four<Vec3>          &X,
+                                      const CellValues<double>  &w,
+                                      const CellValues<double>  &lambda,
+                                      const MaterialLaw<double> &law,
+                                      const ShapeDerivatives    &how);
 
   /// Derivative of weight * cell_dissipation in X, likewise.
-  Four<Vec3> difference_cell_dissipation(const Four<Vec3>         &X,
-                                         const CellValues<double> &w,
-                                         const NortonHoff<double> &law,
-                                         double                    weight,
-                                         const ShapeDerivatives   &how);
+  Four<Vec3> difference_cell_dissipation(const Four<Vec3>          &X,
+                                         const CellValues<double>  &w,
+                                         const MaterialLaw<double> &law,
+                                         double                     weight,
+                                         const ShapeDerivatives    &how);
 } // namespace retroforge

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/core/numbers.h>
 #include <retroforge/geometry/smooth_projection.h>
 
 #include <memory>
@@ -13,11 +14,18 @@ namespace retroforge
   template <typename Number>
   struct DieState
   {
-    Vector3<Number> velocity;     ///< [mm/s]
-    Vector3<Number> displacement; ///< from the position at the start of the run [mm]
-    Number          friction;     ///< alpha of tau = -alpha K |dv|^(m-1) dv [mm^(-m)]
-    /// Of its surface, where a design has moved them or a derivative in them is wanted; null: as made [mm].
-    std::shared_ptr<const NodalVectors<Number>> vertices;
+    Vector3<Number> velocity;              ///< [mm/s]
+    Vector3<Number> displacement;          ///< from the position at the start of the run [mm]
+    Number          friction = Number(0.); ///< alpha of tau = -alpha K |dv|^(m-1) dv [mm^(-m)]
+    /// Of its surface, where a design has moved them or a derivative in them is wanted; empty: as made [mm].
+    NodalVectors<Number> vertices = {};
+
+    template <typename Self>
+    static auto members(Self &self)
+    {
+      auto &[velocity, displacement, friction, vertices] = self;
+      return std::tie(velocity, displacement, friction, vertices);
+    }
   };
 
   /// How the facets of a triangulated die are understood.
@@ -84,9 +92,9 @@ namespace retroforge
     Projection<Number>
     project(const Vector3<Number> &X, const DieState<Number> &state, const DieFeature &feature) const
     {
-      if (state.vertices)
-        return project_on_surface(state.vertices.get(), feature, X, state.displacement);
-      return project(X, state.displacement, feature);
+      if (state.vertices.empty())
+        return project(X, state.displacement, feature);
+      return project_on_surface(&state.vertices, feature, X, state.displacement);
     }
 
     /// The same die with its surface's vertices elsewhere [mm].

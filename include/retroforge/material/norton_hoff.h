@@ -2,9 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/core/dual.h>
-
-#include <deal.II/base/parameter_handler.h>
+#include <retroforge/core/numbers.h>
 
 namespace retroforge
 {
@@ -13,29 +11,55 @@ namespace retroforge
   template <typename Number>
   struct NortonHoff
   {
-    Number K  = 1.; ///< consistency [MPa s^m]
-    Number m  = 1.; ///< strain-rate sensitivity, in (0, 1], dimensionless
-    Number e0 = 0.; ///< strain rate of the regularisation [1/s]
+    Number K  = Number(0.); ///< consistency [MPa s^m]
+    Number m  = Number(0.); ///< strain-rate sensitivity, in (0, 1], dimensionless
+    Number e0 = Number(0.); ///< strain rate of the regularisation [1/s]
 
-    /// q for  eps2 = eps:eps  [1/s^2].
+    NortonHoff() = default;
+    NortonHoff(const Number &K, const Number &m, const Number &e0) : K(K), m(m), e0(e0) {}
+
+    template <typename Self>
+    static auto members(Self &self)
+    {
+      auto &[K, m, e0] = self;
+      return std::tie(K, m, e0);
+    }
+
+    static std::vector<NumberInfo> info()
+    {
+      return {{"K", "MPa s^m"}, {"m", "", false, 1.}, {"e0", "1/s", true}};
+    }
+
+    /// Whether the stress depends on a number, called as in info().
+    bool depends_on(const std::string &name) const { return name != "e0" || !is_linear(); }
+
+    /// Whether the stress is proportional to the strain rate.
+    bool is_linear() const { return value_of(m) == 1.; }
+
+    /// Factor  2 K q^((m-1)/2)  of  s = factor * eps  [MPa s] at  eps2 = eps:eps  [1/s^2].
+    Number operator()(const Number &eps2) const { return 2. * K * power(q(eps2), Number(0.5 * (m - 1.))); }
+
+    /// Potential over factor  q/(2 (m+1))  [1/s^2].
+    Number potential_ratio(const Number &eps2) const { return q(eps2) / (2. * (m + 1.)); }
+
+    /// d log(factor) / d eps2  [s^2].
+    Number slope(const Number &eps2) const { return is_linear() ? Number(0.) : Number((m - 1.) / q(eps2)); }
+
+    /// Adds to `bar` the derivatives in K, m and e0 of a scalar whose derivative in log(factor) is `log_bar`.
+    void reverse(const double eps2, const double log_bar, NortonHoff<double> &bar) const
+    {
+      bar.K += log_bar / K;
+      bar.m += log_bar * 0.5 * log_or_zero(q(eps2));
+      bar.e0 += log_bar * slope(eps2) * 3. * e0;
+    }
+
+    /// The linear law with the same stress at an equivalent strain rate.
+    NortonHoff newtonian(const Number &rate) const
+    {
+      return {K * power(Number(3. * rate * rate), Number(0.5 * (m - 1.))), Number(1.), Number(0.)};
+    }
+
+  private:
     Number q(const Number &eps2) const { return 2. * eps2 + 3. * e0 * e0; }
-
-    /// Factor  2 K q^((m-1)/2)  of  s = factor * eps  [MPa s].
-    Number stress_factor(const Number &q) const { return 2. * K * power(q, Number(0.5 * (m - 1.))); }
-
-    /// Potential K/(m+1) q^((m+1)/2)  [MPa/s].
-    Number potential(const Number &q) const { return K / (m + 1.) * power(q, Number(0.5 * (m + 1.))); }
-  };
-
-  struct MaterialParameters
-  {
-    double consistency         = 1.693;
-    double sensitivity         = 0.139;
-    double minimal_strain_rate = 1e-3;
-
-    void add_parameters(dealii::ParameterHandler &prm);
-    void check() const;
-
-    NortonHoff<double> law() const { return {consistency, sensitivity, minimal_strain_rate}; }
   };
 } // namespace retroforge

@@ -48,7 +48,4 @@ namespace retroforge
       return sums[0];
     }
   };
-
-  /// Adds the derivatives of  deformation * int s:eps + friction * sum_k tau_k·dv_k S^f_k.
-  void reverse_powers(const StageView<double> &view, double deformation, double friction, StageBar &bar);
 } // namespace retroforge

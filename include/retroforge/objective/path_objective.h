@@ -20,25 +20,6 @@
 /// reverse_integrals() adds what follows from a_i, and dt_bar() is added to PhysicsBar::dt on one rank.
 namespace retroforge
 {
-  /// The last stage of an increment and its solution.
-  template <typename Number>
-  struct StageView
-  {
-    const Stage<Number> &stage;
-    const Field<Number> &W;
-    const ActiveSet     &active;
-  };
-
-  /// Where derivatives go. Sums are this rank's part, as those of reverse_residual.
-  struct StageBar
-  {
-    Field<double>        &W;
-    NodalVectors<double> &X; ///< positions of the stage
-    ContactSetBar        &contact;
-    PhysicsBar           &physics;
-    ShapeDerivatives      shape = {}; ///< of the energy's derivative in X
-  };
-
   /// One increment as objectives see it, the same on every rank.
   template <typename Number>
   struct PathRow

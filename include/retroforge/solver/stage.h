@@ -27,21 +27,27 @@ namespace retroforge
   template <typename Number>
   struct Physics
   {
-    NortonHoff<Number>            law;
+    MaterialLaw<Number>           law;
     ContactLaw<Number>            contact;
     std::vector<DieState<Number>> dies;
+
+    template <typename Self>
+    static auto members(Self &self)
+    {
+      auto &[law, contact, dies] = self;
+      return std::tie(law, contact, dies);
+    }
   };
 
+  /// Zero derivatives in the states of dies, their vertices included.
+  std::vector<DieState<double>> no_derivatives(const std::vector<Die> &dies);
+
   /// Derivatives of a scalar in what Physics holds, and in the increment's times.
-  struct PhysicsBar
+  struct PhysicsBar : Physics<double>
   {
-    double             e0 = 0., dt = 0.;
-    ContactSensitivity contact;
+    double dt = 0., tau = 0.;
 
-    explicit PhysicsBar(const std::size_t n_dies) { contact.dies.resize(n_dies); }
-
-    /// Takes up derivatives in the dies' vertices, too.
-    explicit PhysicsBar(const std::vector<Die> &dies);
+    explicit PhysicsBar(const std::vector<Die> &dies) { this->dies = no_derivatives(dies); }
   };
 
   /// Which pairs count as h > 0; empty: decide from the velocity. A replay passes what was recorded.
@@ -86,28 +92,30 @@ namespace retroforge
   /// beta of every cell from V and P (Field::beta is overwritten, and gathered).
   void recover_bubbles(const Stage<double> &stage, Field<double> &W);
 
-  /// Derivatives of  lambda·residual  at fixed W: X_bar += ..., contact data and physics likewise.
-  /// Sums are this rank's part; completed by the caller once per increment.
-  void reverse_residual(const Stage<double>    &stage,
-                        const Field<double>    &W,
-                        const ActiveSet        &active,
-                        const Field<double>    &lambda,
-                        NodalVectors<double>   &X_bar,
-                        ContactSetBar          &contact_bar,
-                        PhysicsBar             &physics_bar,
-                        const ShapeDerivatives &shape = {});
+  /// A stage and its solution.
+  template <typename Number>
+  struct StageView
+  {
+    const Stage<Number> &stage;
+    const Field<Number> &W;
+    const ActiveSet     &active;
+  };
 
-  /// Derivatives of  weight * (deformation power + friction power)  in W, X, contact data and physics, this
-  /// rank's part.
-  void reverse_power(const Stage<double>    &stage,
-                     const Field<double>    &W,
-                     const ActiveSet        &active,
-                     double                  weight,
-                     Field<double>          &W_bar,
-                     NodalVectors<double>   &X_bar,
-                     ContactSetBar          &contact_bar,
-                     PhysicsBar             &physics_bar,
-                     const ShapeDerivatives &shape = {});
+  /// Where derivatives go. Sums are this rank's part, completed by the caller once per increment.
+  struct StageBar
+  {
+    Field<double>        &W;
+    NodalVectors<double> &X; ///< positions of the stage
+    ContactSetBar        &contact;
+    PhysicsBar           &physics;
+    ShapeDerivatives      shape = {}; ///< how derivatives of cells in X are found
+  };
+
+  /// Adds the derivatives of  lambda·residual  at fixed W to all but bar.W.
+  void reverse_residual(const StageView<double> &view, const Field<double> &lambda, StageBar &bar);
+
+  /// Adds the derivatives of  deformation * (deformation power) + friction * (friction power).
+  void reverse_power(const StageView<double> &view, double deformation, double friction, StageBar &bar);
 
   template <typename Number>
   Stage<Number>::Stage(const Scene                &scene,

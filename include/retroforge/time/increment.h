@@ -41,7 +41,7 @@ namespace retroforge
   {
     NodalVectors<double> X;       ///< dPhi/dX, complete on every rank
     std::vector<double>  strain;  ///< dPhi/dq of each cell, complete on every rank; empty: Phi has none
-    ProcessBar           process; ///< this rank's part
+    Process<double>      process; ///< this rank's part
   };
 
   /// Adds what costate j's Phi takes from the last stage of the increment, this rank's part.

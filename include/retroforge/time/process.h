@@ -6,19 +6,32 @@
 
 namespace retroforge
 {
-  /// Everything about the process that a design can change, constant over a run.
-  /// `dies[d].displacement` is the die's offset at the start; its position later is offset + velocity * time.
-  /// Time follows the stroke: the path of the leading die, at its speed.
+  /// One increment's place: from `stroke` on by `step` [mm], both fixed by decision; the times follow.
+  struct StrokeStep
+  {
+    double stroke, step;
+  };
+
+  /// Everything about the process that a design can change, constant over a run. Derivatives of a scalar in
+  /// it are another such aggregate. `dies[d].displacement` is the die's offset at the start; its position
+  /// later is offset + velocity * time. Time follows the stroke: the path of the leading die, at its speed.
   template <typename Number>
   struct Process
   {
-    NortonHoff<Number>            law;
+    MaterialLaw<Number>           law;
     ContactLaw<Number>            contact;
     std::vector<DieState<Number>> dies;
     unsigned int                  leading_die = 0;
     /// Path of the leading die over the stroke, which is that of the nominal design: not 1 where this die
     /// follows a billet whose height has changed.
     Number stretch = Number(1.);
+
+    template <typename Self>
+    static auto members(Self &self)
+    {
+      auto &[law, contact, dies, leading_die, stretch] = self;
+      return std::tie(law, contact, dies, leading_die, stretch);
+    }
 
     Number speed() const;
 
@@ -29,26 +42,16 @@ namespace retroforge
     Physics<Number> at_stroke(double stroke) const;
   };
 
-  /// One increment's place: from `stroke` on by `step` [mm], both fixed by decision; the times follow.
-  struct StrokeStep
-  {
-    double stroke, step;
-  };
+  /// Pull-back of at_stroke, dt = time(step) and tau = approach dt: adds to process_bar.
+  void reverse_at_stroke(const Process<double> &process,
+                         const StrokeStep      &step,
+                         double                 approach,
+                         const PhysicsBar      &bar,
+                         Process<double>       &process_bar);
 
-  /// Derivatives of a scalar with respect to a Process.
-  struct ProcessBar
-  {
-    double                        K = 0., m = 0., e0 = 0., rho = 0., v0 = 0., stretch = 0.;
-    std::vector<DieState<double>> dies;
-    /// In the vertices of each die; empty for planes and dies never touched.
-    std::vector<NodalVectors<double>> die_vertices;
+  /// Zero derivatives in a process of these dies.
+  Process<double> no_process_derivatives(const std::vector<Die> &dies);
 
-    explicit ProcessBar(const std::size_t n_dies) : dies(n_dies, DieState<double>{Vec3(), Vec3(), 0., {}}) {}
-
-    /// Pull-back of at_stroke, dt = time(step) and tau = approach dt.
-    void add(const PhysicsBar &bar, const Process<double> &process, const StrokeStep &step, double approach);
-
-    /// Completes the sums of all ranks.
-    void sum(MPI_Comm comm);
-  };
+  /// Completes the sums of all ranks.
+  void sum_over_ranks(Process<double> &process_bar, MPI_Comm comm);
 } // namespace retroforge

@@ -28,26 +28,26 @@ namespace
   Parameters cylinder_scene()
   {
     Parameters p;
-    p.billet.shape                 = "cylinder";
-    p.billet.radius                = 20.;
-    p.billet.height                = 24.;
-    p.billet.symmetry_planes       = {Vec3({0., -1., 0.}), Vec3({-std::sqrt(0.75), 0.5, 0.})};
-    p.billet.element_size          = 7.;
-    p.dies                         = {DieParameters("lower"), DieParameters("upper")};
-    p.dies[0].facing               = Vec3({0., 0., 1.});
-    p.dies[1].facing               = Vec3({0., 0., -1.});
-    p.dies[1].point                = Vec3({0., 0., 24.});
-    p.dies[1].velocity             = Vec3({0., 0., -100.});
-    p.dies[0].friction             = 0.4;
-    p.dies[1].friction             = 0.3;
-    p.material.minimal_strain_rate = 0.3;
-    p.press.stroke                 = 3.;
-    p.press.increments             = 4;
-    p.contact.penetration          = 1e-2;
-    p.contact.slip_fraction        = 0.1;
-    p.newton.tolerance             = 1e-12;
-    p.adjoint.tolerance            = 1e-13;
-    p.linear_solver.method         = "direct";
+    p.billet.shape           = "cylinder";
+    p.billet.radius          = 20.;
+    p.billet.height          = 24.;
+    p.billet.symmetry_planes = {Vec3({0., -1., 0.}), Vec3({-std::sqrt(0.75), 0.5, 0.})};
+    p.billet.element_size    = 7.;
+    p.dies                   = {DieParameters("lower"), DieParameters("upper")};
+    p.dies[0].facing         = Vec3({0., 0., 1.});
+    p.dies[1].facing         = Vec3({0., 0., -1.});
+    p.dies[1].point          = Vec3({0., 0., 24.});
+    p.dies[1].velocity       = Vec3({0., 0., -100.});
+    p.dies[0].friction       = 0.4;
+    p.dies[1].friction       = 0.3;
+    p.material.law.e0        = 0.3;
+    p.press.stroke           = 3.;
+    p.press.increments       = 4;
+    p.contact.penetration    = 1e-2;
+    p.contact.slip_fraction  = 0.1;
+    p.newton.tolerance       = 1e-12;
+    p.adjoint.tolerance      = 1e-13;
+    p.linear_solver.method   = "direct";
     return p;
   }
 

@@ -75,24 +75,18 @@ namespace retroforge
   std::pair<Process<Number>, NodalVectors<Number>>
   along(const RecordedRun &run, const Direction &direction, const double t)
   {
-    const Process<double> &at = run.process;
-    Process<Number>        process{{Number(at.law.K), Number(at.law.m), Number(at.law.e0)},
-                            {Number(at.contact.rho), Number(at.contact.v0)},
-                            {},
-                            at.leading_die};
+    const Process<double> &at      = run.process;
+    Process<Number>        process = converted<Number>(at);
     for (unsigned int d = 0; d < at.dies.size(); ++d)
     {
-      const double     upper = d == 1 ? 1. : 0.;
-      DieState<Number> state;
+      const double      upper = d == 1 ? 1. : 0.;
+      DieState<Number> &state = process.dies[d];
       state.velocity =
         moved<Number>(at.dies[d].velocity, upper * direction.speed_dot * at.dies[d].velocity, t);
       state.displacement =
         moved<Number>(Vec3(), upper * direction.offset_dot * run.parameters.dies[d].facing, t);
-      state.friction = Number(at.dies[d].friction);
       if (d < direction.vertices_dot.size() && !direction.vertices_dot[d].empty())
-        state.vertices = std::make_shared<const NodalVectors<Number>>(
-          moved<Number>(run.scene.dies[d].surface()->vertices(), direction.vertices_dot[d], t));
-      process.dies.push_back(state);
+        state.vertices = moved<Number>(run.scene.dies[d].surface()->vertices(), direction.vertices_dot[d], t);
     }
     return {process, moved<Number>(run.scene.mesh.X, direction.X_dot, t)};
   }
@@ -104,7 +98,7 @@ namespace retroforge
       sum += result.X_0[k] * direction.X_dot[k];
     for (unsigned int d = 0; d < direction.vertices_dot.size(); ++d)
       for (std::size_t k = 0; k < direction.vertices_dot[d].size(); ++k)
-        sum += result.process.die_vertices[d][k] * direction.vertices_dot[d][k];
+        sum += result.process.dies[d].vertices[k] * direction.vertices_dot[d][k];
     const auto &die = result.process.dies[1];
     return sum + direction.speed_dot * (die.velocity * run.process.dies[1].velocity) +
            direction.offset_dot * (die.displacement * run.parameters.dies[1].facing);

@@ -20,15 +20,15 @@ namespace retroforge
     p.dies[1].velocity    = Vec3({0, 0, -100});
     for (DieParameters &die : p.dies)
       die.friction = 0.4;
-    p.material.minimal_strain_rate = 0.3;
-    p.press.stroke                 = 3.;
-    p.press.increments             = 4;
-    p.contact.approach             = 2.;
-    p.contact.penetration          = 1e-2;
-    p.contact.slip_fraction        = 0.1;
-    p.newton.tolerance             = 1e-13;
-    p.adjoint.tolerance            = 1e-13;
-    p.linear_solver.method         = "direct";
+    p.material.law.e0       = 0.3;
+    p.press.stroke          = 3.;
+    p.press.increments      = 4;
+    p.contact.approach      = 2.;
+    p.contact.penetration   = 1e-2;
+    p.contact.slip_fraction = 0.1;
+    p.newton.tolerance      = 1e-13;
+    p.adjoint.tolerance     = 1e-13;
+    p.linear_solver.method  = "direct";
     return p;
   }
 

@@ -203,7 +203,7 @@ namespace retroforge
                           const ContactSetBar                 &bar,
                           const Term                           omitted,
                           NodalVectors<double>                &X_bar,
-                          ContactSensitivity                  &sensitivity)
+                          std::vector<DieState<double>>       &dies_bar)
   {
     const std::vector<double>             ramps_bar = reverse_ramps(contact, ramp, bar, omitted);
     std::map<unsigned int, CornerNormals> normals;
@@ -215,7 +215,7 @@ namespace retroforge
       const ContactPair &pair   = contact.pairs[p];
       const Die         &die    = dies[pair.die];
       const double delta_bar    = bar.delta[p] + ramps_bar[p] * ramp.derivative(contact.projections[p].delta);
-      Vec3        &displacement = sensitivity.dies[pair.die].displacement;
+      Vec3        &displacement = dies_bar[pair.die].displacement;
       Vec3         at_point;
       if (die.surface() && pair.feature.kind == 0)
       {
@@ -227,7 +227,7 @@ namespace retroforge
                        bar.n[p],
                        omitted,
                        at_point,
-                       sensitivity.die_vertices[pair.die]);
+                       dies_bar[pair.die].vertices);
         displacement -= at_point;
       }
       else
@@ -238,7 +238,7 @@ namespace retroforge
                             bar.n[p],
                             at_point,
                             displacement,
-                            die.surface() ? &sensitivity.die_vertices[pair.die] : nullptr);
+                            die.surface() ? &dies_bar[pair.die].vertices : nullptr);
       pair.point.add(at_point, X_bar);
     }
   }
@@ -262,8 +262,8 @@ namespace retroforge
       areas_bar.Sf[p] = omitted == Term::friction_area ? 0. : node.Sf;
       contact_bar.delta[p] += node.delta;
       contact_bar.n[p] += node.n;
-      bar.contact.tau += node.tau;
-      bar.contact.dies[stage.contact.pairs[p].die].velocity -= node.u;
+      bar.tau += node.tau;
+      bar.dies[stage.contact.pairs[p].die].velocity -= node.u;
     }
     reverse_contact_areas(
       stage.scene.mesh, stage.scene.topology, stage.contact, stage.X, areas_bar, X_bar, contact_bar);
@@ -344,7 +344,7 @@ namespace retroforge
                                 const IncrementRecord      &record,
                                 const Term                  omitted,
                                 NodalVectors<double>       &G,
-                                ProcessBar                 &process_bar)
+                                Process<double>            &process_bar)
   {
     const Scene             &scene   = problem.scene;
     const Physics<double>    physics = problem.process.at_stroke(record.stroke);
@@ -398,16 +398,16 @@ namespace retroforge
     if (omitted == Term::dt)
       bar.dt = 0.;
     if (omitted == Term::tau)
-      bar.contact.tau = 0.;
-    reverse_set(
-      scene.dies, physics.dies, contact, record.contact.ramp, X, contact_bar, omitted, G, bar.contact);
-    process_bar.add(bar, problem.process, {record.stroke, record.step}, record.contact.approach);
+      bar.tau = 0.;
+    reverse_set(scene.dies, physics.dies, contact, record.contact.ramp, X, contact_bar, omitted, G, bar.dies);
+    reverse_at_stroke(
+      problem.process, {record.stroke, record.step}, record.contact.approach, bar, process_bar);
   }
 
   inline AdjointResult sweep(RecordedRun &problem, const Term omitted)
   {
     AdjointResult        result{NodalVectors<double>(problem.forged.X.size()),
-                         ProcessBar(problem.scene.dies.size())};
+                         no_process_derivatives(problem.scene.dies)};
     NodalVectors<double> X = problem.forged.X;
     for (unsigned int i = problem.records.size(); i-- > 0;)
     {

@@ -88,10 +88,10 @@ std::array<double, n_inputs> values(const ContactNodeBar &bar)
            bar.S,
            bar.Sf,
            bar.alpha,
-           bar.K,
-           bar.m,
-           bar.rho,
-           bar.v0}};
+           bar.law.K,
+           bar.law.m,
+           bar.contact.rho,
+           bar.contact.v0}};
 }
 
 void check_potential(const NodeCase<double> &c, Errors &errors)
@@ -313,13 +313,11 @@ void check_mesh(const CornerScene &scene, Random &random, const Moved &moved, Er
     vertices_dot.emplace_back();
     if (!scene.dies[d].surface())
       continue;
-    auto vertices = std::make_shared<NodalVectors<Dual>>();
     for (const Vec3 &x : scene.dies[d].surface()->vertices())
     {
       vertices_dot[d].push_back(moved.vertices ? random.vector() : Vec3());
-      vertices->push_back(with_direction(x, vertices_dot[d].back()));
+      states[d].vertices.push_back(with_direction(x, vertices_dot[d].back()));
     }
-    states[d].vertices = vertices;
   }
   const auto contact = scene.contact(scene.states, scene.X);
   const auto moving  = scene.contact(states, X);
@@ -341,27 +339,26 @@ void check_mesh(const CornerScene &scene, Random &random, const Moved &moved, Er
     for (unsigned int i = 0; i < 3; ++i)
       forward += bar.n[p][i] * moving.projections[p].n[i].dx(0);
   }
-  NodalVectors<double> X_bar(scene.X.size());
-  ContactSensitivity   sensitivity;
-  sensitivity.dies.resize(scene.dies.size());
-  for (const Die &die : scene.dies)
-    sensitivity.die_vertices.emplace_back(die.surface() ? die.surface()->vertices().size() : 0);
+  NodalVectors<double>          X_bar(scene.X.size());
+  std::vector<DieState<double>> dies_bar(scene.dies.size());
+  for (unsigned int d = 0; d < scene.dies.size(); ++d)
+    dies_bar[d].vertices.resize(scene.dies[d].surface() ? scene.dies[d].surface()->vertices().size() : 0);
   reverse_contact_areas(scene.mesh, scene.topology, contact, scene.X, areas_bar, X_bar, bar);
-  reverse_contact_set(scene.dies, scene.states, contact, scene.ramp, scene.X, bar, X_bar, sensitivity);
+  reverse_contact_set(scene.dies, scene.states, contact, scene.ramp, scene.X, bar, X_bar, dies_bar);
   double backward = dot(X_dot, X_bar);
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
-    backward += dot(displacement_dot[d], sensitivity.dies[d].displacement) +
-                dot(vertices_dot[d], sensitivity.die_vertices[d]);
+    backward +=
+      dot(displacement_dot[d], dies_bar[d].displacement) + dot(vertices_dot[d], dies_bar[d].vertices);
   errors.compare(moved.name(), backward, forward);
   // All vertices moved alike are a displacement of the die.
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
     if (scene.dies[d].surface())
     {
       Vec3 sum;
-      for (const Vec3 &x : sensitivity.die_vertices[d])
+      for (const Vec3 &x : dies_bar[d].vertices)
         sum += x;
       for (unsigned int i = 0; i < 3; ++i)
-        errors.compare("vertices' derivatives summed", sum[i], sensitivity.dies[d].displacement[i]);
+        errors.compare("vertices' derivatives summed", sum[i], dies_bar[d].displacement[i]);
     }
 }
 

@@ -172,9 +172,9 @@ void compare_inputs(const std::string     &what,
   for (unsigned int i = 0; i < 12; ++i)
     X[i] = reference.dx(i);
   errors.compare(what + " in X", flatten(s.X), X);
-  errors.compare(what + " in K", s.K, reference.dx(12));
-  errors.compare(what + " in m", s.m, reference.dx(13));
-  errors.compare(what + " in e0", s.e0, reference.dx(14));
+  errors.compare(what + " in K", s.law.K, reference.dx(12));
+  errors.compare(what + " in m", s.law.m, reference.dx(13));
+  errors.compare(what + " in e0", s.law.e0, reference.dx(14));
 }
 
 void check_reverse_residual(const Case &c, Errors &errors)

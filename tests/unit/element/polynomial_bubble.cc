@@ -129,7 +129,7 @@ public:
         eps += w[order_[i]] * values_[velocity_].symmetric_gradient(i, q);
         p += w[order_[i]] * values_[pressure_].value(i, q);
       }
-      const auto stress = law.stress_factor(law.q(eps * eps)) * eps;
+      const auto stress = law(eps * eps) * eps;
       for (unsigned int i = 0; i < 19; ++i)
         r[order_[i]] +=
           (stress * values_[velocity_].symmetric_gradient(i, q) - p * values_[velocity_].divergence(i, q) -

@@ -115,11 +115,11 @@ namespace
     const Vec3           X_dot = random.vector(), u_dot = random.vector(), n_bar = random.vector();
     const double         delta_bar = random.scalar();
     NodalVectors<double> v_dot;
-    auto                 vertices = std::make_shared<NodalVectors<Dual>>();
+    NodalVectors<Dual>   vertices;
     for (const Vec3 &v : die.surface()->vertices())
     {
       v_dot.push_back(random.vector());
-      vertices->push_back(with_direction(v, v_dot.back()));
+      vertices.push_back(with_direction(v, v_dot.back()));
     }
     const DieState<Dual> state{{}, with_direction(displacement, u_dot), Dual(0.), vertices};
     const auto           p       = die.project(with_direction(X, X_dot), state, feature);
@@ -147,9 +147,9 @@ namespace
     for (std::size_t v = 0; v < die.surface()->vertices().size(); ++v)
       v_dot.push_back(random.vector());
     const auto value = [&](const double t) {
-      auto vertices = std::make_shared<NodalVectors<double>>(die.surface()->vertices());
+      NodalVectors<double> vertices = die.surface()->vertices();
       for (std::size_t v = 0; v < v_dot.size(); ++v)
-        (*vertices)[v] += t * v_dot[v];
+        vertices[v] += t * v_dot[v];
       const auto p = die.project(Vec3(X + t * X_dot), DieState<double>{{}, {}, 0., vertices}, feature);
       return delta_bar * p.delta + n_bar * p.n;
     };

@@ -28,13 +28,13 @@ Parameters flat_dies(const double penetration)
   p.dies[1].velocity    = Vec3({0, 0, -100});
   for (DieParameters &die : p.dies)
     die.friction = 0.4;
-  p.material.sensitivity         = 0.3;
-  p.material.minimal_strain_rate = 0.01;
-  p.press.stroke                 = 3.;
-  p.press.increments             = 4;
-  p.contact.penetration          = penetration;
-  p.newton.tolerance             = 1e-12;
-  p.linear_solver.method         = "direct";
+  p.material.sensitivity = 0.3;
+  p.material.law.e0      = 0.01;
+  p.press.stroke         = 3.;
+  p.press.increments     = 4;
+  p.contact.penetration  = penetration;
+  p.newton.tolerance     = 1e-12;
+  p.linear_solver.method = "direct";
   return p;
 }
 

@@ -207,7 +207,7 @@ struct PathProblem
       const ContactSet<double> set = contact(inputs, i);
       const Stage<double>      stage(scene, inputs.physics, set, inputs.states[i].Y);
       ContactSetBar            set_bar(pairs[i].size());
-      PhysicsBar               physics_bar(scene.dies.size());
+      PhysicsBar               physics_bar(scene.dies);
       StageBar                 stage_bar{bar.states[i].W, bar.states[i].Y, set_bar, physics_bar};
       objective.reverse_integrals({stage, inputs.states[i].W, active[i]}, rows_bar[i].integrals, stage_bar);
       reverse_contact_set(scene.dies,
@@ -217,22 +217,18 @@ struct PathProblem
                           inputs.states[i].X,
                           set_bar,
                           bar.states[i].X,
-                          physics_bar.contact);
-      bar.physics.law.K += physics_bar.contact.K;
-      bar.physics.law.m += physics_bar.contact.m;
-      bar.physics.law.e0 += physics_bar.e0;
-      bar.physics.contact.rho += physics_bar.contact.rho;
-      bar.physics.contact.v0 += physics_bar.contact.v0;
-      bar.tau += physics_bar.contact.tau * dt(inputs, i);
+                          physics_bar.dies);
+      add_numbers(physics_bar.law, bar.physics.law);
+      add_numbers(physics_bar.contact, bar.physics.contact);
+      bar.tau += physics_bar.tau * dt(inputs, i);
       if (dealii::Utilities::MPI::this_mpi_process(scene.partition.comm) == 0)
         physics_bar.dt += dt_bar(forward[i], rows_bar[i]);
-      bar.speed -=
-        (inputs.tau * physics_bar.contact.tau + physics_bar.dt) * steps[i] / (inputs.speed * inputs.speed);
+      bar.speed -= (inputs.tau * physics_bar.tau + physics_bar.dt) * steps[i] / (inputs.speed * inputs.speed);
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
       {
-        bar.physics.dies[d].velocity += physics_bar.contact.dies[d].velocity;
-        bar.physics.dies[d].displacement += physics_bar.contact.dies[d].displacement;
-        bar.physics.dies[d].friction += physics_bar.contact.dies[d].friction;
+        bar.physics.dies[d].velocity += physics_bar.dies[d].velocity;
+        bar.physics.dies[d].displacement += physics_bar.dies[d].displacement;
+        bar.physics.dies[d].friction += physics_bar.dies[d].friction;
       }
     }
     for (const auto &[name, entries] : bar.groups())

@@ -87,13 +87,8 @@ std::vector<double> differences(const Values &at, const double h)
 /// The direct method along the speed of the leading die.
 std::vector<Dual> tangent_in_speed(RecordedRun &run)
 {
-  const auto    constant = [](const Vec3 &v) { return Vector3<Dual>({Dual(v[0]), Dual(v[1]), Dual(v[2])}); };
-  Process<Dual> process{{Dual(run.process.law.K), Dual(run.process.law.m), Dual(run.process.law.e0)},
-                        {Dual(run.process.contact.rho), Dual(run.process.contact.v0)},
-                        {},
-                        run.process.leading_die};
-  for (const auto &die : run.process.dies)
-    process.dies.push_back({constant(die.velocity), constant(die.displacement), Dual(die.friction), {}});
+  const auto constant = [](const Vec3 &v) { return Vector3<Dual>({Dual(v[0]), Dual(v[1]), Dual(v[2])}); };
+  auto       process  = converted<Dual>(run.process);
   for (unsigned int i = 0; i < 3; ++i)
   {
     Dual &v           = process.dies[process.leading_die].velocity[i];

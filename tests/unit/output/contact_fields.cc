@@ -23,22 +23,22 @@ constexpr double size = 30., speed = 100.;
 Parameters frictionless_block()
 {
   Parameters p;
-  p.billet.size                  = Vec3({size, size, size});
-  p.billet.element_size          = 11;
-  p.billet.symmetry_planes       = {Vec3({-1, 0, 0}), Vec3({0, -1, 0})};
-  p.dies                         = {DieParameters("lower"), DieParameters("upper")};
-  p.dies[0].facing               = Vec3({0, 0, 1});
-  p.dies[1].point                = Vec3({0, 0, size});
-  p.dies[1].facing               = Vec3({0, 0, -1});
-  p.dies[1].velocity             = Vec3({0, 0, -speed});
-  p.material.minimal_strain_rate = 1e-6;
-  p.press.scheme                 = "euler";
-  p.press.stroke                 = 1.;
-  p.press.increments             = 1;
-  p.contact.approach             = 1.;
-  p.contact.penetration          = 1e-8;
-  p.newton.tolerance             = 1e-11;
-  p.linear_solver.method         = "direct";
+  p.billet.size            = Vec3({size, size, size});
+  p.billet.element_size    = 11;
+  p.billet.symmetry_planes = {Vec3({-1, 0, 0}), Vec3({0, -1, 0})};
+  p.dies                   = {DieParameters("lower"), DieParameters("upper")};
+  p.dies[0].facing         = Vec3({0, 0, 1});
+  p.dies[1].point          = Vec3({0, 0, size});
+  p.dies[1].facing         = Vec3({0, 0, -1});
+  p.dies[1].velocity       = Vec3({0, 0, -speed});
+  p.material.law.e0        = 1e-6;
+  p.press.scheme           = "euler";
+  p.press.stroke           = 1.;
+  p.press.increments       = 1;
+  p.contact.approach       = 1.;
+  p.contact.penetration    = 1e-8;
+  p.newton.tolerance       = 1e-11;
+  p.linear_solver.method   = "direct";
   return p;
 }
 

@@ -33,12 +33,8 @@ namespace
     /// Derivative of the residual along x. What fixed velocities do is no concern of the matrix.
     Field<double> derivative(const Field<double> &x) const
     {
-      Physics<Dual>      dual{{Dual(physics.law.K), Dual(physics.law.m), Dual(physics.law.e0)},
-                         {Dual(physics.contact.rho), Dual(physics.contact.v0)},
-                         {}};
+      const auto         dual = converted<Dual>(physics);
       NodalVectors<Dual> positions;
-      for (const auto &die : physics.dies)
-        dual.dies.push_back({number(die.velocity), number(die.displacement), Dual(die.friction), {}});
       for (const Vec3 &position : X)
         positions.push_back(number(position));
       const auto  contact_dual = make_contact_set(scene.mesh,

@@ -66,7 +66,7 @@ namespace retroforge
           eps2 += (i == j ? 1. : 2.) * sigma[i][j] * sigma[i][j];
         }
       const NortonHoff<Number> here{Number(law.K), Number(law.m), Number(law.e0)};
-      const Number             factor = here.stress_factor(here.q(eps2));
+      const Number             factor = here(eps2);
       for (unsigned int i = 0; i < 3; ++i)
       {
         for (unsigned int j = 0; j < 3; ++j)

@@ -88,8 +88,9 @@ namespace
       Field<double>        W_bar(scene.mesh);
       NodalVectors<double> X_bar(scene.mesh.n_nodes());
       ContactSetBar        contact_bar(contact.pairs.size());
-      PhysicsBar           physics_bar(scene.dies.size());
-      reverse_power(stage, W, active, 1., W_bar, X_bar, contact_bar, physics_bar);
+      PhysicsBar           physics_bar(scene.dies);
+      StageBar             bar{W_bar, X_bar, contact_bar, physics_bar};
+      reverse_power({stage, W, active}, 1., 1., bar);
       return W_bar.V;
     }
 
@@ -104,11 +105,6 @@ namespace
     Field<double>      W;
     ActiveSet          active;
   };
-
-  NortonHoff<Dual> dual(const NortonHoff<double> &law)
-  {
-    return {Dual(law.K), Dual(law.m), Dual(law.e0)};
-  }
 
   Vector3<Dual> dual(const Vec3 &v)
   {
@@ -150,8 +146,8 @@ namespace
 
   NodalVectors<double> by_automatic_differentiation(const Equilibrium &e)
   {
-    const auto             law = dual(e.physics.law);
-    const ContactLaw<Dual> contact{Dual(e.physics.contact.rho), Dual(e.physics.contact.v0)};
+    const auto law     = converted<Dual>(e.physics.law);
+    const auto contact = converted<Dual>(e.physics.contact);
     return gather(
       e,
       [&](const CellGeometry<double> &geometry,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/objective/contact_pullback.h>
+#include <retroforge/solver/contact_pullback.h>
 
 namespace retroforge
 {
@@ -10,23 +10,24 @@ namespace retroforge
     areas_bar_.Sf.assign(view.stage.contact.pairs.size(), 0.);
   }
 
-  void ContactPullback::add(const unsigned int p, const ContactNodeBar &node_bar)
+  void ContactPullback::add_at_fixed_velocity(const unsigned int p, const ContactNodeBar &node_bar)
   {
-    const ContactPair  &pair = view_.stage.contact.pairs[p];
-    ContactSensitivity &law  = bar_.physics.contact;
-    DieState<double>   &die  = law.dies[pair.die];
-    pair.point.add(node_bar.u, bar_.W.V);
-    die.velocity -= node_bar.u;
-    die.friction += node_bar.alpha;
     areas_bar_.S[p] += node_bar.S;
     areas_bar_.Sf[p] += node_bar.Sf;
     bar_.contact.delta[p] += node_bar.delta;
     bar_.contact.n[p] += node_bar.n;
-    law.tau += node_bar.tau;
-    law.K += node_bar.K;
-    law.m += node_bar.m;
-    law.rho += node_bar.rho;
-    law.v0 += node_bar.v0;
+    bar_.physics.tau += node_bar.tau;
+    add_numbers(node_bar.law, bar_.physics.law);
+    add_numbers(node_bar.contact, bar_.physics.contact);
+    DieState<double> &die = bar_.physics.dies[view_.stage.contact.pairs[p].die];
+    die.velocity -= node_bar.u;
+    die.friction += node_bar.alpha;
+  }
+
+  void ContactPullback::add(const unsigned int p, const ContactNodeBar &node_bar)
+  {
+    view_.stage.contact.pairs[p].point.add(node_bar.u, bar_.W.V);
+    add_at_fixed_velocity(p, node_bar);
   }
 
   void ContactPullback::add_excess(const unsigned int p, const ContactNode<double> &node, const double h_bar)

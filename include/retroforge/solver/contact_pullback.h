@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/objective/path_objective.h>
+#include <retroforge/solver/stage.h>
 
 namespace retroforge
 {
@@ -15,6 +15,9 @@ namespace retroforge
 
     /// Derivatives of a scalar in what contact_node(p) returned.
     void add(unsigned int p, const ContactNodeBar &node_bar);
+
+    /// The same, but none in the unknowns.
+    void add_at_fixed_velocity(unsigned int p, const ContactNodeBar &node_bar);
 
     /// Derivative in the excess h = u·n - a(delta) of pair p.
     void add_excess(unsigned int p, const ContactNode<double> &node, double h_bar);
