@@ -540,7 +540,7 @@ end
   {
     StepModel    model;
     const double step            = press.stroke / press.increments;
-    model.scheme                 = press.scheme == "euler" ? Scheme::euler : Scheme::midpoint;
+    model.scheme                 = Scheme::by_name(press.scheme);
     model.edges_touch            = contact.points == "nodes and edges";
     model.contact.approach       = contact.approach;
     model.contact.ramp.sharp     = contact.law == "sharp";

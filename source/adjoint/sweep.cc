@@ -88,7 +88,7 @@ namespace retroforge
                const std::size_t j, const StageView<double> &view, StageBar &bar) {
         for (std::size_t o = 0; o < run.objectives.size(); ++o)
         {
-          const double weight = combinations[j].weights[o];
+          const double weight = combinations[j].weights[o] * view.weight;
           if (!run.objectives[o].path || weight == 0.)
             continue;
           std::vector<double> weights = rows_bar[o][i].integrals;
@@ -142,7 +142,7 @@ namespace retroforge
     {
       const IncrementRecord &record = run.source(i);
       const unsigned int     before = leg->system.n_solves;
-      add(-run.process.time(record.step), record.solves.back().V, X);
+      X                             = leg->increment.retreat(run.process, X, record);
       leg->increment.reverse(
         run.process, X, record, source_of(run, rows, rows_bar, combinations, i), costates);
       sweep.linear_solves += leg->system.n_solves - before;
@@ -185,16 +185,13 @@ namespace retroforge
         leg                        = std::make_shared<Leg>(record.remesh->mesh, run.model, run.timings);
       }
       end = record.stroke + record.step;
-      X   = leg->increment.tangent(process, X, record, [&](const StageView<Dual> &view, const Dual &dt) {
-        const Dual time = process.time(record.stroke);
+      for (auto &of_objective : rows)
+        of_objective.push_back(row_of(record, process));
+      X = leg->increment.tangent(process, X, record, [&](const StageView<Dual> &view, const Dual &dt) {
         for (std::size_t o = 0; o < run.objectives.size(); ++o)
-          if (const auto &objective = run.objectives[o].path)
-            rows[o].push_back({sum_over_ranks(objective->integrals(view), run.model.comm),
-                               dt,
-                               time,
-                               record.stroke,
-                               record.step});
-        strain = accumulate_strain(leg->scene.mesh, view.stage.X, view.W, dt, strain);
+          if (run.objectives[o].path)
+            add_integrals(*run.objectives[o].path, view, rows[o].back());
+        strain = accumulate_strain(leg->scene.mesh, view.stage.X, view.W, Dual(view.weight * dt), strain);
       });
     }
     const auto        dies = process.at_stroke(end).dies;

@@ -143,13 +143,13 @@ namespace retroforge
 
   void FieldWriter::add(const IncrementEvent &event)
   {
-    const ForgingState &run   = event.state;
-    const Scene        &scene = run.leg->scene;
-    const LastStage     last(scene, process_, event.X_before, event.record);
-    const ContactFields contact = contact_fields(last.stage, run.W, event.record.solves.back().active);
+    const ForgingState &run     = event.state;
+    const Scene        &scene   = run.leg->scene;
+    const SolvedStage  &last    = event.solved.last();
+    const ContactFields contact = contact_fields(last.stage, run.W, last.active);
     const std::string   number = six_digits(run.increments), file = "fields_" + number + ".vtu";
     add_billet();
-    write(file, {scene.mesh, run.X, last.stage.X, run.W, run.strain, &displacement_, &contact});
+    write(file, {scene.mesh, run.X, last.X, run.W, run.strain, &displacement_, &contact});
     add_step(run.stroke, file, number, run.X);
   }
 

@@ -389,6 +389,7 @@ namespace retroforge
     hdf5::write_attribute(group, "newton", &increment.newton);
     hdf5::write_attribute(group, "krylov", &increment.krylov);
     hdf5::write_attribute(group, "linear_solves", &increment.linear_solves);
+    hdf5::write_string(group, "scheme", increment.scheme);
     write_contact(group, increment.contact);
     if (!increment.parameters.empty())
       hdf5::write_string(group, "parameters", increment.parameters);
@@ -433,6 +434,7 @@ namespace retroforge
     increment.stroke             = head.stroke;
     increment.step               = head.step;
     increment.parameters         = std::move(head.parameters);
+    increment.scheme             = hdf5::read_string(group, "scheme");
     increment.contact            = read_contact(group);
     increment.cuts               = hdf5::read_attribute<unsigned int>(group, "cuts");
     increment.deformation_energy = read_number(group, "deformation_energy");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
 #include <retroforge/element/strain_history.h>
 #include <retroforge/mesh/cell_transfer.h>
 #include <retroforge/mesh/mesh_quality.h>
@@ -15,6 +16,13 @@ namespace retroforge
   void PressParameters::add_parameters(dealii::ParameterHandler &prm)
   {
     using namespace dealii::Patterns;
+    std::string              choices;
+    std::vector<std::string> described;
+    for (const Scheme &known : Scheme::all())
+    {
+      choices += (choices.empty() ? "" : "|") + known.name;
+      described.push_back("`" + known.name + "` " + known.description);
+    }
     prm.enter_subsection("Press");
     prm.add_parameter(
       "leading die", leading_die, "Die whose path is the stroke; empty: the first that moves. Units: none.");
@@ -25,11 +33,7 @@ namespace retroforge
                       "billet's height, with which the energy is smooth in the design. Units: none.",
                       Integer(0));
     prm.add_parameter(
-      "scheme",
-      scheme,
-      "Time scheme: `midpoint` is of second order and solves twice per increment, `euler` of first order. "
-      "Units: none.",
-      Selection("midpoint|euler"));
+      "scheme", scheme, "Time scheme: " + join(described) + ". Units: none.", Selection(choices));
     prm.add_parameter(
       "smallest volume",
       smallest_volume,
@@ -154,13 +158,11 @@ namespace retroforge
   std::string Forging::attempt(const Process<double> &process,
                                const ForgingState    &state,
                                IncrementRecord       &record,
-                               NodalVectors<double>  &X_next,
-                               Field<double>         &solution) const
+                               SolvedIncrement       &solved) const
   {
-    solution = state.W;
     try
     {
-      X_next = state.leg->increment.forward(process, state.X, false, record, solution);
+      solved = state.leg->increment.forward(process, state.X, false, state.W, record);
     }
     catch (const NoEquilibrium &failure)
     {
@@ -171,9 +173,9 @@ namespace retroforge
       return "the linear systems of an increment have no solution; the flattest element is" +
              at(flattest_cell(state.leg->scene.mesh, state.X));
     }
-    std::string reason = too_much(*state.leg, state.X, X_next);
+    std::string reason = too_much(*state.leg, state.X, solved.X);
     if (reason.empty())
-      reason = slips_too_far(process, record, state.X, X_next);
+      reason = slips_too_far(process, record, state.X, solved.X);
     return reason;
   }
 
@@ -217,13 +219,15 @@ namespace retroforge
 
   void Forging::finish_increment(const Process<double> &process,
                                  const IncrementRecord &record,
-                                 NodalVectors<double>   X_next,
-                                 ForgingState          &state) const
+                                 const SolvedIncrement &solved,
+                                 ForgingState          &state,
+                                 const Watch           &watch) const
   {
-    const NodalVectors<double> position = state.leg->increment.stage_positions(process, state.X, record);
-    state.strain =
-      accumulate_strain(state.leg->scene.mesh, position, state.W, process.time(record.step), state.strain);
-    state.X = std::move(X_next);
+    const NodalVectors<double> X_before = std::exchange(state.X, solved.X);
+    for (const auto &stage : solved.stages)
+      state.strain = accumulate_strain(
+        state.leg->scene.mesh, stage->X, stage->W, stage->weight * solved.start->dt, state.strain);
+    state.W = solved.last().W;
     state.stroke += record.step;
     state.energy.deformation += record.deformation_energy;
     state.energy.friction += record.friction_energy;
@@ -239,6 +243,8 @@ namespace retroforge
     while (state.depth > 0 &&
            std::abs(done * (1 << (state.depth - 1)) - std::round(done * (1 << (state.depth - 1)))) < 1e-9)
       --state.depth;
+    if (watch)
+      watch({record, X_before, solved, state, process.time(state.stroke)});
   }
 
   void Forging::throw_stuck(const IncrementRecord &record, const std::string &reason) const
@@ -336,11 +342,10 @@ namespace retroforge
       record.stroke     = state.stroke;
       record.step       = std::min(whole() / (1 << state.depth), press_.stroke - state.stroke);
       record.parameters = std::exchange(state.parameters, "");
-      NodalVectors<double> X_next;
-      Field<double>        solution;
+      SolvedIncrement solved;
       for (;;)
       {
-        const std::string reason = attempt(process, state, record, X_next, solution);
+        const std::string reason = attempt(process, state, record, solved);
         if (reason.empty())
           break;
         if (remesher_.enabled() && !record.remesh && since_remeshing() > 0)
@@ -357,11 +362,7 @@ namespace retroforge
           throw_stuck(record, reason);
         }
       }
-      const NodalVectors<double> X_before = state.X;
-      state.W                             = std::move(solution);
-      finish_increment(process, record, std::move(X_next), state);
-      if (watch)
-        watch({record, X_before, state, process.time(state.stroke)});
+      finish_increment(process, record, solved, state, watch);
       check_progress(state);
       // With remeshing, the next increment begins with a repair.
       const bool last = !is_left(state);
@@ -388,11 +389,8 @@ namespace retroforge
         change_mesh(*record.remesh, state);
         state.X = record.remesh->mesh.X;
       }
-      const NodalVectors<double> X_before = state.X;
-      state.W                             = state.leg->increment.last_field(process, state.X, record);
-      finish_increment(process, record, state.leg->increment.advance(process, state.X, record), state);
-      if (watch)
-        watch({record, X_before, state, process.time(state.stroke)});
+      finish_increment(
+        process, record, state.leg->increment.recorded(process, state.X, record), state, watch);
     }
   }
 
@@ -408,14 +406,11 @@ namespace retroforge
       record.newton = record.krylov = record.linear_solves = 0;
       if (record.remesh)
         change_mesh(*record.remesh, state);
-      state.W                     = Field<double>(state.leg->scene.mesh);
-      state.W.V                   = record.solves[0].V;
-      state.W.P                   = record.solves[0].P;
-      NodalVectors<double> X_next = state.leg->increment.forward(process, state.X, true, record, state.W);
-      const NodalVectors<double> X_before = state.X;
-      finish_increment(process, record, std::move(X_next), state);
-      if (watch)
-        watch({record, X_before, state, process.time(state.stroke)});
+      Field<double> W(state.leg->scene.mesh);
+      W.V                          = record.solves[0].V;
+      W.P                          = record.solves[0].P;
+      const SolvedIncrement solved = state.leg->increment.forward(process, state.X, true, W, record);
+      finish_increment(process, record, solved, state, watch);
     }
   }
 } // namespace retroforge

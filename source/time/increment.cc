@@ -9,16 +9,6 @@ namespace retroforge
 {
   namespace
   {
-    template <typename Number>
-    NodalVectors<Number>
-    advanced(const NodalVectors<Number> &X, const Number &dt, const NodalVectors<Number> &V)
-    {
-      NodalVectors<Number> moved = X;
-      for (std::size_t k = 0; k < X.size(); ++k)
-        moved[k] += V[k] * dt;
-      return moved;
-    }
-
     double dot(const NodalVectors<double> &a, const NodalVectors<double> &b)
     {
       double sum = 0.;
@@ -66,9 +56,9 @@ namespace retroforge
     }
 
     /// A tangent is taken where the dies have the vertices they were made with.
-    Physics<double> values_of(const Physics<Dual> &physics)
+    Process<double> values_of(const Process<Dual> &process)
     {
-      auto values = converted<double>(physics);
+      auto values = converted<double>(process);
       for (auto &die : values.dies)
         die.vertices.clear();
       return values;
@@ -89,25 +79,40 @@ namespace retroforge
     }
   } // namespace
 
-  LastStage::LastStage(const Scene                &scene,
-                       const Process<double>      &process,
-                       const NodalVectors<double> &X_before,
-                       const IncrementRecord      &record)
-      : physics_(process.at_stroke(record.stroke))
-      , dt_(process.time(record.step))
-      , contact_(make_contact_set(scene.mesh,
-                                  scene.topology,
-                                  scene.dies,
-                                  physics_.dies,
-                                  record.pairs,
-                                  record.contact.ramp,
-                                  record.contact.approach * dt_,
-                                  X_before,
-                                  record.contact.approach_law(record.step),
-                                  record.contact.edge_stiffness))
-      , X_(record.solves.size() == 1 ? X_before : advanced(X_before, 0.5 * dt_, record.solves[0].V))
-      , stage(scene, physics_, contact_, X_)
+  template <typename Number>
+  IncrementStart<Number>::IncrementStart(const Scene                &scene,
+                                         const Process<Number>      &process,
+                                         const NodalVectors<Number> &X,
+                                         const IncrementRecord      &record)
+      : physics(process.at_stroke(record.stroke))
+      , dt(process.time(record.step))
+      , contact(make_contact_set(scene.mesh,
+                                 scene.topology,
+                                 scene.dies,
+                                 physics.dies,
+                                 record.pairs,
+                                 record.contact.ramp,
+                                 Number(record.contact.approach * dt),
+                                 X,
+                                 record.contact.approach_law(record.step),
+                                 record.contact.edge_stiffness))
   {
+  }
+
+  SolvedStage::SolvedStage(const Scene                  &scene,
+                           const IncrementStart<double> &start,
+                           NodalVectors<double>          positions,
+                           const SolveRecord            &solve,
+                           const double                  weight)
+      : X(std::move(positions))
+      , active(solve.active)
+      , weight(weight)
+      , stage(scene, start.physics, start.contact, X)
+      , W(scene.mesh)
+  {
+    W.V = solve.V;
+    W.P = solve.P;
+    recover_bubbles(stage, W);
   }
 
   Increment::Increment(const Scene            &scene,
@@ -117,24 +122,6 @@ namespace retroforge
                        Timings                &timings)
       : scene_(scene), model_(model), system_(system), newton_(scene, newton, system), timings_(timings)
   {
-  }
-
-  ContactSet<double> Increment::contact_set(const Physics<double>      &physics,
-                                            const NodalVectors<double> &X,
-                                            const IncrementRecord      &record,
-                                            const double                dt) const
-  {
-    const auto timing = timings_.scope("contact");
-    return make_contact_set(scene_.mesh,
-                            scene_.topology,
-                            scene_.dies,
-                            physics.dies,
-                            record.pairs,
-                            record.contact.ramp,
-                            record.contact.approach * dt,
-                            X,
-                            record.contact.approach_law(record.step),
-                            record.contact.edge_stiffness);
   }
 
   bool Increment::escaped(const Stage<double> &stage, const Field<double> &W) const
@@ -161,19 +148,76 @@ namespace retroforge
     return false;
   }
 
-  NodalVectors<double> Increment::forward(const Process<double>      &process,
-                                          const NodalVectors<double> &X,
-                                          const bool                  replay,
-                                          IncrementRecord            &record,
-                                          Field<double>              &W)
+  std::shared_ptr<const IncrementStart<double>> Increment::start_of(const Process<double>      &process,
+                                                                    const NodalVectors<double> &X,
+                                                                    const IncrementRecord      &record) const
+  {
+    const auto timing = timings_.scope("contact");
+    return std::make_shared<const IncrementStart<double>>(scene_, process, X, record);
+  }
+
+  const Scheme &Increment::scheme_of(const IncrementRecord &record) const
+  {
+    return record.scheme == model_.scheme.name ? model_.scheme : Scheme::by_name(record.scheme);
+  }
+
+  std::vector<SolveRecord> Increment::solve_stages(const IncrementStart<double> &start,
+                                                   const NodalVectors<double>   &X,
+                                                   const bool                    replay,
+                                                   const bool                    all_found,
+                                                   Field<double>                 W,
+                                                   IncrementRecord              &record)
+  {
+    const Scheme            &scheme = scheme_of(record);
+    std::vector<SolveRecord> solves;
+    const unsigned int       solves_before = system_.n_solves;
+    bool                     lost          = false;
+    for (unsigned int s = 0; s < scheme.n_stages() && !lost; ++s)
+    {
+      const NodalVectors<double> position = advanced(X, start.dt, scheme.a[s], solves);
+      const Stage<double>        stage(scene_, start.physics, start.contact, position);
+      const ActiveSet            frozen     = replay ? record.solves[s].active : ActiveSet();
+      const Start                known      = record.remesh && s == 0 ? Start::far : Start::near;
+      const NewtonStatistics     statistics = newton_.solve(stage, W, frozen, known);
+      record.newton += statistics.iterations;
+      record.krylov += statistics.krylov;
+      solves.push_back({W.V, W.P, replay ? frozen : stage.decide_active(W)});
+      lost = !replay && !all_found && escaped(stage, W);
+    }
+    record.linear_solves += system_.n_solves - solves_before;
+    if (lost)
+      solves.clear();
+    return solves;
+  }
+
+  void Increment::account(const SolvedIncrement &solved, IncrementRecord &record) const
+  {
+    record.deformation_energy = record.friction_energy = 0.;
+    record.forces.assign(scene_.dies.size(), Vec3());
+    for (const auto &stage : solved.stages)
+    {
+      const double time                  = stage->weight * solved.start->dt;
+      const auto [deformation, friction] = stage->stage.power(stage->W, stage->active);
+      record.deformation_energy += time * scene_.partition.sum(deformation);
+      record.friction_energy += time * scene_.partition.sum(friction);
+      const std::vector<Vec3> forces = die_forces(stage->stage, stage->W, stage->active);
+      for (unsigned int d = 0; d < forces.size(); ++d)
+        record.forces[d] += stage->weight * forces[d];
+    }
+  }
+
+  SolvedIncrement Increment::forward(const Process<double>      &process,
+                                     const NodalVectors<double> &X,
+                                     const bool                  replay,
+                                     const Field<double>        &W,
+                                     IncrementRecord            &record)
   {
     const Physics<double> physics = process.at_stroke(record.stroke);
-    const double          dt      = process.time(record.step);
-    const bool            two     = replay ? record.solves.size() == 2 : model_.scheme == Scheme::midpoint;
-    const auto frozen = [&](const unsigned int s) { return replay ? record.solves[s].active : ActiveSet(); };
-    std::vector<SolveRecord> solves(two ? 2 : 1);
     if (!replay)
+    {
+      record.scheme  = model_.scheme.name;
       record.contact = model_.contact;
+    }
     // A run that is resumed must not differ from one that was not.
     system_.reset();
     std::size_t n_watched = 0;
@@ -189,80 +233,59 @@ namespace retroforge
         all_found = reach > model_.reach && record.pairs.size() == n_watched;
         n_watched = record.pairs.size();
       }
-      const ContactSet<double> contact       = contact_set(physics, X, record, dt);
-      Field<double>            trial         = W;
-      NodalVectors<double>     position      = X;
-      bool                     repeat        = false;
-      const unsigned int       solves_before = system_.n_solves;
-      for (unsigned int s = 0; s < solves.size() && !repeat; ++s)
-      {
-        if (s == 1)
-          position = advanced(X, 0.5 * dt, trial.V);
-        const Stage<double>    stage(scene_, physics, contact, position);
-        const Start            start      = record.remesh && s == 0 ? Start::far : Start::near;
-        const NewtonStatistics statistics = newton_.solve(stage, trial, frozen(s), start);
-        record.newton += statistics.iterations;
-        record.krylov += statistics.krylov;
-        const ActiveSet active = replay ? frozen(s) : stage.decide_active(trial);
-        repeat                 = !replay && !all_found && escaped(stage, trial);
-        solves[s]              = {trial.V, trial.P, active};
-        if (s + 1 == solves.size() && !repeat)
-        {
-          // The next increment starts from what the record holds, resumed or not.
-          trial                              = recorded_field(stage, solves[s]);
-          const auto [deformation, friction] = stage.power(trial, active);
-          record.deformation_energy          = dt * scene_.partition.sum(deformation);
-          record.friction_energy             = dt * scene_.partition.sum(friction);
-          record.forces                      = die_forces(stage, trial, active);
-        }
-      }
-      record.linear_solves += system_.n_solves - solves_before;
-      if (repeat)
+      const auto start  = start_of(process, X, record);
+      auto       solves = solve_stages(*start, X, replay, all_found, W, record);
+      if (solves.empty())
         continue;
-      record.solves = std::move(solves);
-      W             = std::move(trial);
-      return advanced(X, dt, W.V);
+      record.solves          = std::move(solves);
+      SolvedIncrement solved = recorded(start, X, record);
+      account(solved, record);
+      return solved;
     }
   }
 
-  NodalVectors<double> Increment::advance(const Process<double>      &process,
-                                          const NodalVectors<double> &X,
-                                          const IncrementRecord      &record) const
+  std::shared_ptr<const SolvedStage> Increment::recorded_stage(const IncrementStart<double> &start,
+                                                               const NodalVectors<double>   &X,
+                                                               const IncrementRecord        &record,
+                                                               const unsigned int            s) const
   {
-    return advanced(X, process.time(record.step), record.solves.back().V);
+    return std::make_shared<const SolvedStage>(scene_,
+                                               start,
+                                               advanced(X, start.dt, scheme_of(record).a[s], record.solves),
+                                               record.solves[s],
+                                               scheme_of(record).b[s]);
   }
 
-  Field<double> Increment::last_field(const Process<double>      &process,
+  SolvedIncrement Increment::recorded(std::shared_ptr<const IncrementStart<double>> start,
+                                      const NodalVectors<double>                   &X,
+                                      const IncrementRecord                        &record) const
+  {
+    const Scheme   &scheme = scheme_of(record);
+    SolvedIncrement solved{start, {}, advanced(X, start->dt, scheme.b, record.solves)};
+    for (unsigned int s = 0; s < scheme.n_stages(); ++s)
+      if (scheme.b[s] != 0.)
+        solved.stages.push_back(recorded_stage(*start, X, record, s));
+    return solved;
+  }
+
+  SolvedIncrement Increment::recorded(const Process<double>      &process,
                                       const NodalVectors<double> &X,
                                       const IncrementRecord      &record) const
   {
-    const Physics<double>      physics = process.at_stroke(record.stroke);
-    const ContactSet<double>   none;
-    const NodalVectors<double> position = stage_positions(process, X, record);
-    return recorded_field(Stage<double>(scene_, physics, none, position), record.solves.back());
+    return recorded(start_of(process, X, record), X, record);
+  }
+
+  NodalVectors<double> Increment::retreat(const Process<double>      &process,
+                                          const NodalVectors<double> &X_next,
+                                          const IncrementRecord      &record) const
+  {
+    return advanced(X_next, -process.time(record.step), scheme_of(record).b, record.solves);
   }
 
   void Increment::forget()
   {
     system_.reset();
-    for (auto &lambdas : earlier_lambdas_)
-      lambdas.clear();
-  }
-
-  Field<double> Increment::recorded_field(const Stage<double> &stage, const SolveRecord &solve) const
-  {
-    Field<double> W(scene_.mesh);
-    W.V = solve.V;
-    W.P = solve.P;
-    recover_bubbles(stage, W);
-    return W;
-  }
-
-  NodalVectors<double> Increment::stage_positions(const Process<double>      &process,
-                                                  const NodalVectors<double> &X,
-                                                  const IncrementRecord      &record) const
-  {
-    return record.solves.size() == 1 ? X : advanced(X, 0.5 * process.time(record.step), record.solves[0].V);
+    earlier_lambdas_.clear();
   }
 
   namespace
@@ -279,9 +302,10 @@ namespace retroforge
     /// Derivatives of one scalar that an increment collects from its stages.
     struct IncrementBar
     {
-      ContactSetBar        contact;
-      PhysicsBar           physics;
-      NodalVectors<double> X; ///< positions of the stage reversed last
+      ContactSetBar contact;
+      PhysicsBar    physics;
+      /// In the positions of each stage: of those that follow the one that is reversed.
+      std::vector<NodalVectors<double>> Y;
     };
   } // namespace
 
@@ -291,45 +315,56 @@ namespace retroforge
                           const StageSource          &source,
                           std::vector<Costate>       &costates)
   {
-    const MPI_Comm            comm    = scene_.partition.comm;
-    const bool                first   = dealii::Utilities::MPI::this_mpi_process(comm) == 0;
-    const Physics<double>     physics = process.at_stroke(record.stroke);
-    const double              dt      = process.time(record.step);
-    const ContactSet<double>  contact = contact_set(physics, X, record, dt);
-    std::vector<IncrementBar> bars(costates.size(),
-                                   {ContactSetBar(record.pairs.size()), PhysicsBar(scene_.dies), {}});
-    for (unsigned int s = record.solves.size(); s-- > 0;)
+    const MPI_Comm                comm   = scene_.partition.comm;
+    const bool                    first  = dealii::Utilities::MPI::this_mpi_process(comm) == 0;
+    const Scheme                 &scheme = scheme_of(record);
+    const unsigned int            n      = scheme.n_stages();
+    const auto                    shared = start_of(process, X, record);
+    const IncrementStart<double> &start  = *shared;
+    std::vector<IncrementBar>     bars(
+      costates.size(),
+      {ContactSetBar(record.pairs.size()), PhysicsBar(scene_.dies), std::vector<NodalVectors<double>>(n)});
+    earlier_lambdas_.resize(n);
+    for (unsigned int s = n; s-- > 0;)
     {
-      const bool                 last     = s + 1 == record.solves.size();
-      const SolveRecord         &solve    = record.solves[s];
-      const NodalVectors<double> position = s == 0 ? X : stage_positions(process, X, record);
-      const Stage<double>        stage(scene_, physics, contact, position);
-      const Field<double>        W = recorded_field(stage, solve);
-      const StageView<double>    view{stage, W, solve.active};
-      // X_{i+1} = X_i + dt V, and for the first of two stages  Y = X_i + dt/2 V.
-      const double fraction = last ? 1. : 0.5;
-      system_.assemble(stage, W, solve.active);
+      const auto              at   = recorded_stage(start, X, record, s);
+      const StageView<double> view = at->view();
+      system_.assemble(at->stage, at->W, at->active);
       earlier_lambdas_[s].resize(costates.size());
       for (std::size_t j = 0; j < costates.size(); ++j)
       {
-        IncrementBar               &bar     = bars[j];
-        Costate                    &costate = costates[j];
-        const NodalVectors<double> &next    = last ? costate.X : bar.X;
-        NodalVectors<double>        position_bar(X.size());
-        Field<double>               rhs(scene_.mesh);
+        IncrementBar        &bar     = bars[j];
+        Costate             &costate = costates[j];
+        NodalVectors<double> position_bar(X.size());
+        Field<double>        rhs(scene_.mesh);
+        StageBar             stage_bar{rhs, position_bar, bar.contact, bar.physics, model_.shape_derivatives};
+        // The velocity leads to X' = X + dt sum b_s V_s and to the Y_r = X + dt sum a_rs V_s that follow.
+        std::vector<std::pair<double, const NodalVectors<double> *>> led_to;
+        if (scheme.b[s] != 0.)
+          led_to.emplace_back(scheme.b[s], &costate.X);
+        for (unsigned int r = s + 1; r < n; ++r)
+          if (scheme.a[r][s] != 0.)
+            led_to.emplace_back(scheme.a[r][s], &bar.Y[r]);
         if (first)
-          bar.physics.dt += fraction * dot(next, W.V);
-        StageBar stage_bar{rhs, position_bar, bar.contact, bar.physics, model_.shape_derivatives};
-        if (last)
+          for (const auto &[weight, there] : led_to)
+            bar.physics.dt += weight * dot(*there, at->W.V);
+        if (scheme.b[s] != 0.)
         {
           source(j, view, stage_bar);
           if (!costate.strain.empty())
-            bar.physics.dt += reverse_accumulate_strain(
-              scene_.mesh, position, W, dt, owned_part(costate.strain, scene_.partition), rhs, position_bar);
+            bar.physics.dt +=
+              scheme.b[s] * reverse_accumulate_strain(scene_.mesh,
+                                                      at->X,
+                                                      at->W,
+                                                      scheme.b[s] * start.dt,
+                                                      owned_part(costate.strain, scene_.partition),
+                                                      rhs,
+                                                      position_bar);
           sum_over_ranks(rhs, comm);
         }
-        for (std::size_t k = 0; k < X.size(); ++k)
-          rhs.V[k] += fraction * dt * next[k];
+        for (const auto &[weight, there] : led_to)
+          for (std::size_t k = 0; k < X.size(); ++k)
+            rhs.V[k] += weight * start.dt * (*there)[k];
         Field<double> minus_rhs(scene_.mesh), lambda;
         minus_rhs.add(-1., rhs);
         auto &guesses = earlier_lambdas_[s][j];
@@ -339,35 +374,32 @@ namespace retroforge
         reverse_residual(view, lambda, stage_bar);
         if (s == 0)
           reverse_contact_set(scene_.dies,
-                              physics.dies,
-                              contact,
+                              start.physics.dies,
+                              start.contact,
                               record.contact.ramp,
                               X,
                               bar.contact,
                               position_bar,
                               bar.physics.dies);
         sum_over_ranks(position_bar, comm);
-        for (std::size_t k = 0; k < X.size(); ++k)
-          costate.X[k] += position_bar[k];
-        bar.X = std::move(position_bar);
+        bar.Y[s] = std::move(position_bar);
       }
     }
     for (std::size_t j = 0; j < costates.size(); ++j)
+    {
+      for (unsigned int s = n; s-- > 0;)
+        for (std::size_t k = 0; k < X.size(); ++k)
+          costates[j].X[k] += bars[j].Y[s][k];
       reverse_at_stroke(
         process, {record.stroke, record.step}, record.contact.approach, bars[j].physics, costates[j].process);
+    }
   }
 
-  Field<Dual> Increment::tangent_field(const Stage<Dual>          &stage,
-                                       const NodalVectors<double> &X,
-                                       const ContactSet<double>   &contact,
-                                       const Physics<double>      &physics,
-                                       const SolveRecord          &solve)
+  Field<Dual> Increment::tangent_field(const Stage<Dual> &stage, const SolvedStage &at)
   {
-    const Stage<double> value_stage(scene_, physics, contact, X);
-    const Field<double> W     = recorded_field(value_stage, solve);
-    Field<Dual>         still = make_dual(W, Field<double>(scene_.mesh));
-    const Field<Dual>   R     = stage.residual(still, solve.active);
-    Field<double>       minus_R_dot(scene_.mesh), W_dot;
+    const Field<Dual> still = make_dual(at.W, Field<double>(scene_.mesh));
+    const Field<Dual> R     = stage.residual(still, at.active);
+    Field<double>     minus_R_dot(scene_.mesh), W_dot;
     for (std::size_t k = 0; k < R.V.size(); ++k)
     {
       minus_R_dot.V[k] = -dot_of(R.V[k]);
@@ -375,9 +407,9 @@ namespace retroforge
     }
     for (std::size_t c = 0; c < R.beta.size(); ++c)
       minus_R_dot.beta[c] = -dot_of(R.beta[c]);
-    system_.assemble(value_stage, W, solve.active);
+    system_.assemble(at.stage, at.W, at.active);
     system_.solve(minus_R_dot, model_.adjoint_tolerance, W_dot);
-    return make_dual(W, W_dot);
+    return make_dual(at.W, W_dot);
   }
 
   NodalVectors<Dual> Increment::tangent(const Process<Dual>      &process,
@@ -385,33 +417,19 @@ namespace retroforge
                                         const IncrementRecord    &record,
                                         const TangentWatch       &watch)
   {
-    const Physics<Dual>      physics       = process.at_stroke(record.stroke);
-    const Dual               dt            = process.time(record.step);
-    const ContactSet<Dual>   contact       = make_contact_set(scene_.mesh,
-                                                      scene_.topology,
-                                                      scene_.dies,
-                                                      physics.dies,
-                                                      record.pairs,
-                                                      record.contact.ramp,
-                                                      Dual(record.contact.approach * dt),
-                                                      X,
-                                                      record.contact.approach_law(record.step),
-                                                      record.contact.edge_stiffness);
-    const Physics<double>    physics_value = values_of(physics);
-    const ContactSet<double> contact_value = contact_set(physics_value, values_of(X), record, dt.val());
-    NodalVectors<Dual>       position      = X;
-    for (unsigned int s = 0;; ++s)
+    const NodalVectors<double> X_value     = values_of(X);
+    const auto                 start_value = start_of(values_of(process), X_value, record);
+    const IncrementStart<Dual> start(scene_, process, X, record);
+    const Scheme              &scheme = scheme_of(record);
+    std::vector<Field<Dual>>   W;
+    for (unsigned int s = 0; s < scheme.n_stages(); ++s)
     {
-      const Stage<Dual> stage(scene_, physics, contact, position);
-      const Field<Dual> W =
-        tangent_field(stage, values_of(position), contact_value, physics_value, record.solves[s]);
-      if (s + 1 < record.solves.size())
-      {
-        position = advanced(X, Dual(0.5 * dt), W.V);
-        continue;
-      }
-      watch({stage, W, record.solves[s].active}, dt);
-      return advanced(X, dt, W.V);
+      const NodalVectors<Dual> position = advanced(X, start.dt, scheme.a[s], W);
+      const Stage<Dual>        stage(scene_, start.physics, start.contact, position);
+      W.push_back(tangent_field(stage, *recorded_stage(*start_value, X_value, record, s)));
+      if (scheme.b[s] != 0.)
+        watch({stage, W.back(), record.solves[s].active, scheme.b[s]}, start.dt);
     }
+    return advanced(X, start.dt, scheme.b, W);
   }
 } // namespace retroforge

@@ -13,6 +13,15 @@ namespace retroforge
   }
 
   template <typename Number>
+  PathRow<Number> row_of(const IncrementRecord &record, const Process<Number> &process)
+  {
+    return {{}, process.time(record.step), process.time(record.stroke), record.stroke, record.step};
+  }
+
+  template PathRow<double> row_of(const IncrementRecord &, const Process<double> &);
+  template PathRow<Dual>   row_of(const IncrementRecord &, const Process<Dual> &);
+
+  template <typename Number>
   FinalView<Number> final_view(const FinalObjective                &objective,
                                const Scene                         &scene,
                                const NodalVectors<Number>          &X,
@@ -37,16 +46,13 @@ namespace retroforge
 
   void ObjectiveTrace::add(const IncrementEvent &event)
   {
-    const LastStage         last(event.state.leg->scene, process_, event.X_before, event.record);
-    const StageView<double> view{last.stage, event.state.W, event.record.solves.back().active};
-    const double            dt = process_.time(event.record.step);
     for (std::size_t j = 0; j < objectives_.size(); ++j)
       if (const auto &objective = objectives_[j].path)
-        rows_[j].push_back({sum_over_ranks(objective->integrals(view), model_.comm),
-                            dt,
-                            process_.time(event.record.stroke),
-                            event.record.stroke,
-                            event.record.step});
+      {
+        rows_[j].push_back(row_of<double>(event.record, process_));
+        for (const auto &stage : event.solved.stages)
+          add_integrals(*objective, stage->view(), rows_[j].back());
+      }
   }
 
   std::vector<double>

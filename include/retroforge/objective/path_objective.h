@@ -9,8 +9,8 @@
 
 /// @file
 /// Objectives of what happens during a forging, in two levels:
-///   a_ik = integrals of increment i over the workpiece, at its last stage,
-///   Phi  = F( sum_i g(a_i, dt_i, t_i) ).
+///   a_ik = integrals of increment i over the workpiece, the mean of its stages as the time scheme weighs
+///   them, Phi  = F( sum_i g(a_i, dt_i, t_i) ).
 /// The integrals are all that touches the mesh: each objective writes their reverse in closed form. g and F
 /// are functions of a few numbers, and their derivatives come from dual numbers. A run keeps the rows a_i
 /// (some doubles per increment), so that nothing is evaluated twice and smooth maxima can be scaled by the
@@ -75,6 +75,16 @@ namespace retroforge
   /// Completes integrals: sums over the ranks of `comm`, the derivatives of dual numbers included.
   std::vector<double> sum_over_ranks(std::vector<double> parts, MPI_Comm comm);
   std::vector<Dual>   sum_over_ranks(std::vector<Dual> parts, MPI_Comm comm);
+
+  /// Adds to a row what one stage of its increment gives to its integrals.
+  template <typename Number>
+  void add_integrals(const PathObjective &objective, const StageView<Number> &view, PathRow<Number> &row)
+  {
+    const auto whole = sum_over_ranks(objective.integrals(view), view.stage.scene.partition.comm);
+    row.integrals.resize(whole.size(), Number(0.));
+    for (std::size_t k = 0; k < whole.size(); ++k)
+      row.integrals[k] += view.weight * whole[k];
+  }
 
   PathRow<double>  values_of(const PathRow<Dual> &row);
   PathRows<double> values_of(const PathRows<Dual> &rows);

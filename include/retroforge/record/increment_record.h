@@ -37,6 +37,7 @@ namespace retroforge
     std::string parameters;
     /// Made just before the increment; null when it goes on with the mesh there was.
     std::shared_ptr<const RemeshRecord> remesh;
+    std::string                         scheme; ///< in time, by its name
     ContactNumerics                     contact;
     std::vector<ContactPair>            pairs;
     std::vector<SolveRecord>            solves;           ///< one per stage of the scheme

@@ -22,6 +22,7 @@
 ///     /increment_000000 ...   attributes: run, n_nodes, stroke, step, cuts, deformation_energy,
 ///                             friction_energy, newton, krylov, linear_solves, sharp (the ramp is), and
 ///                             contact [5] double: approach, layer, step, width of the ramp, edge_stiffness
+///       scheme                                  text          name of the time scheme
 ///       parameters                              text          only where other settings hold from here on
 ///       forces                [n_dies][3]             double [N]
 ///       V                     [n_solves][n_nodes][3]  double [mm/s]

@@ -99,6 +99,7 @@ namespace retroforge
     const Stage<Number> &stage;
     const Field<Number> &W;
     const ActiveSet     &active;
+    double               weight = 1.; ///< in integrals over the increment
   };
 
   /// Where derivatives go. Sums are this rank's part, completed by the caller once per increment.

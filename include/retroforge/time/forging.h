@@ -12,7 +12,7 @@ namespace retroforge
     std::string  leading_die;
     double       stroke          = 10.;
     unsigned int increments      = 0;
-    std::string  scheme          = "midpoint";
+    std::string  scheme          = Scheme::all().front().name;
     double       smallest_volume = 0.2;
     double       largest_move    = 0.5;
     double       largest_slip    = 1.;
@@ -50,7 +50,8 @@ namespace retroforge
   {
     const IncrementRecord      &record;
     const NodalVectors<double> &X_before; ///< on the mesh of the increment
-    const ForgingState         &state;    ///< after the increment
+    const SolvedIncrement      &solved;
+    const ForgingState         &state; ///< after the increment
     double                      time;
   };
 
@@ -103,8 +104,7 @@ namespace retroforge
     std::string attempt(const Process<double> &process,
                         const ForgingState    &state,
                         IncrementRecord       &record,
-                        NodalVectors<double>  &X_next,
-                        Field<double>         &solution) const;
+                        SolvedIncrement       &solved) const;
     std::string
     too_much(const Leg &leg, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const;
     std::string       slips_too_far(const Process<double>      &process,
@@ -115,10 +115,12 @@ namespace retroforge
     /// Throws Error where a run can only go on to no good: it takes too many increments, or loses its volume.
     void check_progress(const ForgingState &state) const;
     void remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
+    /// Takes the state to the increment's end, and tells `watch`.
     void finish_increment(const Process<double> &process,
                           const IncrementRecord &record,
-                          NodalVectors<double>   X_next,
-                          ForgingState          &state) const;
+                          const SolvedIncrement &solved,
+                          ForgingState          &state,
+                          const Watch           &watch) const;
 
     /// Stroke of an increment that is not cut [mm].
     double whole() const { return model_.step.contact.step; }

@@ -6,20 +6,15 @@
 #include <retroforge/record/increment_record.h>
 #include <retroforge/solver/newton.h>
 #include <retroforge/time/process.h>
+#include <retroforge/time/scheme.h>
 
 namespace retroforge
 {
-  enum class Scheme
-  {
-    euler,   ///< X_{i+1} = X_i + dt V(X_i)
-    midpoint ///< X_{i+1} = X_i + dt V(X_i + dt/2 V(X_i))
-  };
-
   /// What of a scene's numerical model is neither mesh nor process. Of a recorded increment, scheme and
   /// contact are those of the record.
   struct StepModel
   {
-    Scheme           scheme = Scheme::midpoint;
+    Scheme           scheme = Scheme::all().front();
     ContactNumerics  contact;
     bool             edges_touch       = true;  ///< middles of edges are contact points of curved dies
     double           reach             = 0.;    ///< nodes nearer than this to a die are watched [mm]
@@ -44,30 +39,54 @@ namespace retroforge
     Process<double>      process; ///< this rank's part
   };
 
-  /// Adds what costate j's Phi takes from the last stage of the increment, this rank's part.
+  /// Adds what costate j's Phi takes from a stage of the increment, this rank's part.
   using StageSource = std::function<void(std::size_t j, const StageView<double> &, StageBar &)>;
 
-  /// What looks on while a tangent passes: the last stage, and the increment's time dt.
+  /// What looks on while a tangent passes: each stage that integrals weigh, and the increment's time dt.
   using TangentWatch = std::function<void(const StageView<Dual> &, const Dual &)>;
 
-  /// The last stage of a recorded increment, where objectives are taken.
-  class LastStage
+  /// What the stages of an increment share, as found at its start.
+  template <typename Number>
+  struct IncrementStart
   {
-  public:
-    /// @param X_before  positions before the increment
-    LastStage(const Scene                &scene,
-              const Process<double>      &process,
-              const NodalVectors<double> &X_before,
-              const IncrementRecord      &record);
+    Physics<Number>    physics;
+    Number             dt; ///< [s]
+    ContactSet<Number> contact;
 
-  private:
-    Physics<double>      physics_;
-    double               dt_;
-    ContactSet<double>   contact_;
-    NodalVectors<double> X_;
+    IncrementStart(const Scene                &scene,
+                   const Process<Number>      &process,
+                   const NodalVectors<Number> &X,
+                   const IncrementRecord      &record);
+  };
 
-  public:
-    const Stage<double> stage;
+  /// A stage in equilibrium, with what its view refers to. Bubbles are recovered from nothing: a resumed run
+  /// has the same bits.
+  struct SolvedStage
+  {
+    const NodalVectors<double> X;
+    const ActiveSet            active;
+    const double               weight; ///< b_s of the scheme
+    const Stage<double>        stage;
+    Field<double>              W;
+
+    SolvedStage(const Scene                  &scene,
+                const IncrementStart<double> &start,
+                NodalVectors<double>          X,
+                const SolveRecord            &solve,
+                double                        weight);
+    SolvedStage(const SolvedStage &) = delete; // its members refer to each other
+
+    StageView<double> view() const { return {stage, W, active, weight}; }
+  };
+
+  /// An increment when it is done: the stages that integrals weigh, and where it leads to.
+  struct SolvedIncrement
+  {
+    std::shared_ptr<const IncrementStart<double>>   start;
+    std::vector<std::shared_ptr<const SolvedStage>> stages;
+    NodalVectors<double>                            X;
+
+    const SolvedStage &last() const { return *stages.back(); }
   };
 
   /// One increment of time: forward, its tangent, and its reverse.
@@ -81,13 +100,18 @@ namespace retroforge
               Timings                &timings);
 
     /// From X_i to X_{i+1}. @param record  in: stroke, step; with `replay`, the recorded decisions are
-    /// obeyed. Out: contact, pairs, solves, energies, forces; iterations are added.
-    /// @param W  in: initial guess, out: the last stage's solution
-    NodalVectors<double> forward(const Process<double>      &process,
-                                 const NodalVectors<double> &X,
-                                 bool                        replay,
-                                 IncrementRecord            &record,
-                                 Field<double>              &W);
+    /// obeyed. Out: scheme, contact, pairs, solves, energies, forces; iterations are added.
+    /// @param W  initial guess
+    SolvedIncrement forward(const Process<double>      &process,
+                            const NodalVectors<double> &X,
+                            bool                        replay,
+                            const Field<double>        &W,
+                            IncrementRecord            &record);
+
+    /// The same from what was recorded, to the bit: nothing is solved.
+    SolvedIncrement recorded(const Process<double>      &process,
+                             const NodalVectors<double> &X,
+                             const IncrementRecord      &record) const;
 
     /// Derivative of X_{i+1} along (X, process), at a recorded increment.
     NodalVectors<Dual> tangent(const Process<Dual>      &process,
@@ -104,38 +128,38 @@ namespace retroforge
                  const StageSource          &source,
                  std::vector<Costate>       &costates);
 
-    /// X_{i+1} of a recorded increment, to the bit.
-    NodalVectors<double> advance(const Process<double>      &process,
-                                 const NodalVectors<double> &X,
+    /// X_i of a recorded increment from X_{i+1}, but for rounding.
+    NodalVectors<double> retreat(const Process<double>      &process,
+                                 const NodalVectors<double> &X_next,
                                  const IncrementRecord      &record) const;
-
-    /// Solution of the last stage of a recorded increment, its bubbles recovered from nothing: the same bits
-    /// as at the end of forward.
-    Field<double> last_field(const Process<double>      &process,
-                             const NodalVectors<double> &X,
-                             const IncrementRecord      &record) const;
 
     /// Forgets what earlier systems left: preconditioner and starts. Results then depend on the input only.
     void forget();
 
-    /// Positions of the last stage, where objectives are taken.
-    NodalVectors<double> stage_positions(const Process<double>      &process,
-                                         const NodalVectors<double> &X,
-                                         const IncrementRecord      &record) const;
-
   private:
-    NewtonStatistics   solve_stage(const Stage<double> &stage, const ActiveSet &frozen, Field<double> &W);
-    ContactSet<double> contact_set(const Physics<double>      &physics,
-                                   const NodalVectors<double> &X,
-                                   const IncrementRecord      &record,
-                                   double                      dt) const;
-    bool               escaped(const Stage<double> &stage, const Field<double> &W) const;
-    Field<double>      recorded_field(const Stage<double> &stage, const SolveRecord &solve) const;
-    Field<Dual>        tangent_field(const Stage<Dual>          &stage,
-                                     const NodalVectors<double> &X,
-                                     const ContactSet<double>   &contact,
-                                     const Physics<double>      &physics,
-                                     const SolveRecord          &solve);
+    std::shared_ptr<const IncrementStart<double>> start_of(const Process<double>      &process,
+                                                           const NodalVectors<double> &X,
+                                                           const IncrementRecord      &record) const;
+    /// That of the record, which is the model's unless the run was restarted with another.
+    const Scheme &scheme_of(const IncrementRecord &record) const;
+    /// @return nothing where a node ran into a die unwatched
+    std::vector<SolveRecord> solve_stages(const IncrementStart<double> &start,
+                                          const NodalVectors<double>   &X,
+                                          bool                          replay,
+                                          bool                          all_found,
+                                          Field<double>                 W,
+                                          IncrementRecord              &record);
+    /// Energies and forces of the increment.
+    void                               account(const SolvedIncrement &solved, IncrementRecord &record) const;
+    SolvedIncrement                    recorded(std::shared_ptr<const IncrementStart<double>> start,
+                                                const NodalVectors<double>                   &X,
+                                                const IncrementRecord                        &record) const;
+    std::shared_ptr<const SolvedStage> recorded_stage(const IncrementStart<double> &start,
+                                                      const NodalVectors<double>   &X,
+                                                      const IncrementRecord        &record,
+                                                      unsigned int                  s) const;
+    bool                               escaped(const Stage<double> &stage, const Field<double> &W) const;
+    Field<Dual>                        tangent_field(const Stage<Dual> &stage, const SolvedStage &at);
 
     const Scene     &scene_;
     const StepModel &model_;
@@ -143,6 +167,6 @@ namespace retroforge
     Newton           newton_;
     Timings         &timings_;
     /// Of each stage and costate, from the increments reversed last: where the next adjoint system starts.
-    std::array<std::vector<std::vector<Field<double>>>, 2> earlier_lambdas_;
+    std::vector<std::vector<std::vector<Field<double>>>> earlier_lambdas_;
   };
 } // namespace retroforge

@@ -7,6 +7,10 @@
 
 namespace retroforge
 {
+  /// An increment as objectives of the path see it, its integrals still to be added.
+  template <typename Number>
+  PathRow<Number> row_of(const IncrementRecord &record, const Process<Number> &process);
+
   /// What an objective of the end sees: its target moves with the die's vertices.
   template <typename Number>
   FinalView<Number> final_view(const FinalObjective                &objective,

@@ -21,7 +21,7 @@ namespace retroforge
     ramp,          // w'(delta)
     lambda_bubble, // bubble part of lambda in lambda·dR/dX
     power_bubble,  // dPhi / dbeta
-    first_stage,   // the solve at X_i that the midpoint comes from
+    first_stage,   // the solve at X_i that later stages come from
     dt,            // of the increment, by the die's speed
     tau,           // approach time, by the die's speed
     curvature,     // dn / dX of a smooth die
@@ -269,10 +269,11 @@ namespace retroforge
       stage.scene.mesh, stage.scene.topology, stage.contact, stage.X, areas_bar, X_bar, contact_bar);
   }
 
-  /// Derivatives of dt * power; returns those in W.
+  /// Derivatives of weight * dt * power; returns those in W.
   inline Field<double> reverse_energy(const Stage<double>  &stage,
                                       const Field<double>  &W,
                                       const ActiveSet      &active,
+                                      const double          weight,
                                       const double          dt,
                                       const Term            omitted,
                                       NodalVectors<double> &X_bar,
@@ -284,8 +285,11 @@ namespace retroforge
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
       CellValues<double> w_bar = {};
-      const auto         s     = reverse_cell_dissipation(
-        cell_geometry(positions_of_cell(mesh, stage.X, c)), W.on_cell(mesh, c), stage.physics.law, dt, w_bar);
+      const auto         s     = reverse_cell_dissipation(cell_geometry(positions_of_cell(mesh, stage.X, c)),
+                                              W.on_cell(mesh, c),
+                                              stage.physics.law,
+                                              weight * dt,
+                                              w_bar);
       for (unsigned int a = 0; a < 4; ++a)
       {
         X_bar[mesh.cells[c][a]] += s.X[a];
@@ -296,13 +300,13 @@ namespace retroforge
     }
     const auto reverse_node = [&](const unsigned int p) {
       const auto node = reverse_friction_power(
-        stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, dt);
+        stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, weight * dt);
       stage.contact.pairs[p].point.add(node.u, W_bar.V);
       return node;
     };
     reverse_contact(stage, omitted, reverse_node, X_bar, contact_bar, bar);
     const auto [deformation, friction] = stage.power(W, active);
-    bar.dt += deformation + friction;
+    bar.dt += weight * (deformation + friction);
     return W_bar;
   }
 
@@ -337,7 +341,7 @@ namespace retroforge
     reverse_contact(stage, omitted, reverse_node, X_bar, contact_bar, bar);
   }
 
-  /// Reverse of one midpoint increment for the energy, as Increment::reverse has it, without the omitted
+  /// Reverse of one increment for the energy, as Increment::reverse has it, without the omitted
   /// term.
   inline void reverse_increment(RecordedRun                &problem,
                                 const NodalVectors<double> &X,
@@ -346,10 +350,10 @@ namespace retroforge
                                 NodalVectors<double>       &G,
                                 Process<double>            &process_bar)
   {
-    const Scene             &scene   = problem.scene;
-    const Physics<double>    physics = problem.process.at_stroke(record.stroke);
-    const double             dt      = record.step / problem.process.speed();
-    const ContactSet<double> contact = make_contact_set(scene.mesh,
+    const Scene                      &scene   = problem.scene;
+    const Physics<double>             physics = problem.process.at_stroke(record.stroke);
+    const double                      dt      = problem.process.time(record.step);
+    const ContactSet<double>          contact = make_contact_set(scene.mesh,
                                                         scene.topology,
                                                         scene.dies,
                                                         physics.dies,
@@ -359,28 +363,33 @@ namespace retroforge
                                                         X,
                                                         record.contact.approach_law(record.step),
                                                         record.contact.edge_stiffness);
-    ContactSetBar            contact_bar(record.pairs.size());
-    PhysicsBar               bar(scene.dies);
-    NodalVectors<double>     next = G; // dPhi/d(where the stage's velocity leads): X_{i+1}, then Y
-    for (unsigned int s = 2; s-- > 0;)
+    ContactSetBar                     contact_bar(record.pairs.size());
+    PhysicsBar                        bar(scene.dies);
+    const Scheme                     &scheme = problem.model.step.scheme;
+    const NodalVectors<double>        next   = G; // dPhi/dX_{i+1}
+    std::vector<NodalVectors<double>> Y_bar(scheme.n_stages());
+    for (unsigned int s = scheme.n_stages(); s-- > 0;)
     {
-      const double               reach = s == 1 ? dt : 0.5 * dt;
-      const SolveRecord         &solve = record.solves[s];
-      const NodalVectors<double> position =
-        s == 0 ? X : problem.leg->increment.stage_positions(problem.process, X, record);
-      const Stage<double> stage(scene, physics, contact, position);
-      Field<double>       W(scene.mesh), rhs(scene.mesh), minus_rhs(scene.mesh), lambda;
+      const SolveRecord         &solve    = record.solves[s];
+      const NodalVectors<double> position = advanced(X, dt, scheme.a[s], record.solves);
+      const Stage<double>        stage(scene, physics, contact, position);
+      Field<double>              W(scene.mesh), rhs(scene.mesh), minus_rhs(scene.mesh), lambda;
       W.V = solve.V;
       W.P = solve.P;
       recover_bubbles(stage, W);
       NodalVectors<double> X_bar(X.size());
-      if (s == 1)
-        rhs = reverse_energy(stage, W, solve.active, dt, omitted, X_bar, contact_bar, bar);
-      for (std::size_t k = 0; k < X.size(); ++k)
-      {
-        bar.dt += reach / dt * (next[k] * W.V[k]);
-        rhs.V[k] += reach * next[k];
-      }
+      if (scheme.b[s] != 0.)
+        rhs = reverse_energy(stage, W, solve.active, scheme.b[s], dt, omitted, X_bar, contact_bar, bar);
+      const auto lead_to = [&](const double weight, const NodalVectors<double> &there) {
+        for (std::size_t k = 0; k < there.size(); ++k)
+        {
+          bar.dt += weight * (there[k] * W.V[k]);
+          rhs.V[k] += weight * dt * there[k];
+        }
+      };
+      lead_to(scheme.b[s], next);
+      for (unsigned int r = s + 1; r < scheme.n_stages(); ++r)
+        lead_to(scheme.a[r][s], Y_bar[r]);
       minus_rhs.add(-1., rhs);
       problem.leg->system.assemble(stage, W, solve.active);
       problem.leg->system.solve(minus_rhs, problem.model.step.adjoint_tolerance, lambda);
@@ -389,7 +398,7 @@ namespace retroforge
       reverse_equilibrium(stage, W, solve.active, lambda, omitted, X_bar, contact_bar, bar);
       for (std::size_t k = 0; k < X.size(); ++k)
         G[k] += X_bar[k];
-      next = X_bar;
+      Y_bar[s] = X_bar;
     }
     if (omitted == Term::gap)
       contact_bar.delta.assign(record.pairs.size(), 0.);
@@ -412,8 +421,7 @@ namespace retroforge
     for (unsigned int i = problem.records.size(); i-- > 0;)
     {
       const IncrementRecord &record = problem.records[i];
-      for (std::size_t k = 0; k < X.size(); ++k)
-        X[k] -= record.step / problem.process.speed() * record.solves.back().V[k];
+      X                             = problem.leg->increment.retreat(problem.process, X, record);
       reverse_increment(problem, X, record, omitted, result.X_0, result.process);
     }
     return result;

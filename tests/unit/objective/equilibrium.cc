@@ -45,27 +45,10 @@ PathRows<double> rows(const RecordedRun &run, const PathObjective &objective)
   NodalVectors<double> X = run.scene.mesh.X;
   for (const IncrementRecord &record : run.records)
   {
-    const Physics<double>      physics = run.process.at_stroke(record.stroke);
-    const double               speed = run.process.speed(), dt = record.step / speed;
-    const NodalVectors<double> position = run.leg->increment.stage_positions(run.process, X, record);
-    const Field<double>        W        = run.leg->increment.last_field(run.process, X, record);
-    const auto                 contact  = make_contact_set(run.scene.mesh,
-                                          run.scene.topology,
-                                          run.scene.dies,
-                                          physics.dies,
-                                          record.pairs,
-                                          record.contact.ramp,
-                                          record.contact.approach * dt,
-                                          X,
-                                          record.contact.layer);
-    const Stage<double>        stage(run.scene, physics, contact, position);
-    rows.push_back(
-      {sum_over_ranks(objective.integrals({stage, W, record.solves.back().active}), MPI_COMM_WORLD),
-       dt,
-       record.stroke / speed,
-       record.stroke,
-       record.step});
-    X = run.leg->increment.advance(run.process, X, record);
+    const SolvedIncrement solved = run.leg->increment.recorded(run.process, X, record);
+    rows.push_back(row_of(record, run.process));
+    add_integrals(objective, solved.last().view(), rows.back());
+    X = solved.X;
   }
   return rows;
 }

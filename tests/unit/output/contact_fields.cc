@@ -49,9 +49,10 @@ struct LastFields
       : run(p)
       , record(run.records.back())
       , X(positions_before(run))
-      , W(run.leg->increment.last_field(run.process, X, record))
-      , last(run.scene, run.process, X, record)
-      , fields(contact_fields(last.stage, W, record.solves.back().active))
+      , solved(run.leg->increment.recorded(run.process, X, record))
+      , last(solved.last())
+      , W(last.W)
+      , fields(contact_fields(last.stage, W, last.active))
   {
   }
 
@@ -59,15 +60,16 @@ struct LastFields
   {
     NodalVectors<double> X = run.scene.mesh.X;
     for (std::size_t i = 0; i + 1 < run.records.size(); ++i)
-      X = run.leg->increment.advance(run.process, X, run.records[i]);
+      X = run.leg->increment.recorded(run.process, X, run.records[i]).X;
     return X;
   }
 
   RecordedRun            run;
   const IncrementRecord &record;
   NodalVectors<double>   X;
-  Field<double>          W;
-  LastStage              last;
+  SolvedIncrement        solved;
+  const SolvedStage     &last;
+  const Field<double>   &W;
   ContactFields          fields;
 };
 

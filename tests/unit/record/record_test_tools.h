@@ -92,6 +92,7 @@ namespace retroforge
     increment.krylov             = 10 * i;
     increment.linear_solves      = i + 2;
     increment.parameters         = i % 4 == 1 ? "set K = 1\nset n = " + std::to_string(i) + "\n" : "";
+    increment.scheme             = i % 2 == 0 ? "midpoint" : "euler";
     increment.contact            = {number(), number(), number(), {number(), i % 2 == 0}, number()};
     for (unsigned int d = 0; d < header.die_facets.size(); ++d)
       increment.forces.push_back(Vec3({number(), number(), number()}));
@@ -173,13 +174,14 @@ namespace retroforge
 
   inline bool same(const IncrementRecord &a, const IncrementRecord &b)
   {
-    bool equal =
-      same_bits(a.stroke, b.stroke) && same_bits(a.step, b.step) && a.cuts == b.cuts &&
-      same_bits(a.deformation_energy, b.deformation_energy) &&
-      same_bits(a.friction_energy, b.friction_energy) && a.newton == b.newton && a.krylov == b.krylov &&
-      a.linear_solves == b.linear_solves && same_bits(a.forces, b.forces) && a.parameters == b.parameters &&
-      same(a.contact, b.contact) && !a.remesh == !b.remesh && (!a.remesh || same(*a.remesh, *b.remesh)) &&
-      a.pairs.size() == b.pairs.size() && a.solves.size() == b.solves.size();
+    bool equal = same_bits(a.stroke, b.stroke) && same_bits(a.step, b.step) && a.cuts == b.cuts &&
+                 same_bits(a.deformation_energy, b.deformation_energy) &&
+                 same_bits(a.friction_energy, b.friction_energy) && a.newton == b.newton &&
+                 a.krylov == b.krylov && a.linear_solves == b.linear_solves &&
+                 same_bits(a.forces, b.forces) && a.parameters == b.parameters && a.scheme == b.scheme &&
+                 same(a.contact, b.contact) && !a.remesh == !b.remesh &&
+                 (!a.remesh || same(*a.remesh, *b.remesh)) && a.pairs.size() == b.pairs.size() &&
+                 a.solves.size() == b.solves.size();
     for (std::size_t p = 0; equal && p < a.pairs.size(); ++p)
       equal = a.pairs[p].point == b.pairs[p].point && a.pairs[p].die == b.pairs[p].die &&
               a.pairs[p].touching == b.pairs[p].touching && a.pairs[p].feature == b.pairs[p].feature;
