@@ -372,9 +372,9 @@ end
     };
     add("Billet/shape", BilletParameters::read_by_shape());
     for (const DieParameters &die : dies)
-      add("Die " + die.name + "/shape", DieParameters::read_by_shape());
+      add("Die " + die.name + "/shape", Choice<DieKind>::read_by(die_kinds()));
     for (const ObjectiveParameters &objective : objectives.all)
-      add("Objective " + objective.name + "/type", ObjectiveParameters::read_by_type());
+      add("Objective " + objective.name + "/type", Choice<ObjectiveType>::read_by(objective_types()));
     add("Remeshing/when", {{"increments", {"every"}}});
     add("Adjoint/derivatives",
         {{"semi-analytic", {"perturbation"}}, {"semi-analytic central", {"perturbation"}}});

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/objective/box.h>
 #include <retroforge/scene_checks.h>
 #include <retroforge/solver/rigid_modes.h>
 
@@ -61,7 +62,7 @@ namespace retroforge
     {
       const double least = 0.1 * parameters.edge_length(scene.mesh);
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
-        if (const double depth = parameters.dies[d].depth;
+        if (const double depth = parameters.dies[d].shape->depth_of_contact();
             scene.dies[d].surface() && depth > 0. && depth < least)
           throw Error(
             "Die " + parameters.dies[d].name + "/depth of contact",

@@ -121,18 +121,8 @@ namespace retroforge
       if (speed > 0.)
         all.push_back({prefix + "speed", "mm/s", Kind::speed, speed, speed, d});
       all.push_back({prefix + "offset", "mm", Kind::offset, 0., width, d});
-      for (const std::string &measure : die.measures())
-      {
-        const double value = die.measure(measure);
-        all.push_back({prefix + measure,
-                       measure == "draft angle" ? "degrees" : "mm",
-                       Kind::die_shape,
-                       value,
-                       value,
-                       d,
-                       0,
-                       measure});
-      }
+      for (const auto &[key, measure] : die.shape->measures())
+        all.push_back({prefix + key, measure.unit, Kind::die_shape, measure.value, measure.value, d, 0, key});
     }
   } // namespace
 
@@ -303,7 +293,7 @@ namespace retroforge
     }
     for (unsigned int d = 0; d < dies_.size(); ++d)
       if (!measures[d].empty())
-        process.dies[d].vertices = dies_[d].vertices(measures[d]);
+        process.dies[d].vertices = dies_[d].shape->vertices(dies_[d].place(), measures[d]);
     follow_billet(mu, process);
     return process;
   }

@@ -10,7 +10,7 @@ namespace retroforge
   {
     static const std::vector<Scheme> schemes = {
       {"midpoint", "is of second order and solves twice per increment", {{}, {0.5}}, {0., 1.}},
-      {"euler", "is of first order", {{}}, {1.}}};
+      {"euler", "of first order", {{}}, {1.}}};
     return schemes;
   }
 

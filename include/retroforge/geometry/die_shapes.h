@@ -4,6 +4,7 @@
 
 #include <retroforge/geometry/triangle_surface.h>
 
+#include <string>
 #include <vector>
 
 /// @file
@@ -24,6 +25,13 @@ namespace retroforge
     std::vector<Triangle> triangles;
   };
 
+  /// What users call a number of a shape, and what it means.
+  struct Measure
+  {
+    std::string name, meaning, unit;
+    double      value = 0.;
+  };
+
   /// What a cavity looks like in section.
   template <typename Number>
   struct CavityProfile
@@ -32,6 +40,16 @@ namespace retroforge
     Number draft  = 7.;  ///< of the wall against the z axis [degrees]
     Number edge   = 2.;  ///< radius of the edge between face and wall [mm]
     Number fillet = 2.;  ///< radius between wall and floor [mm]
+
+    /// f(measure, number) of each.
+    template <typename Self, typename F>
+    static void for_each_measure(Self &self, const F &f)
+    {
+      f(Measure{"depth", "Of the floor below the face.", "mm"}, self.depth);
+      f(Measure{"draft angle", "Of the wall against the axis.", "degrees"}, self.draft);
+      f(Measure{"edge radius", "Between face and wall.", "mm"}, self.edge);
+      f(Measure{"fillet radius", "Between wall and floor.", "mm"}, self.fillet);
+    }
   };
 
   /// A hub with three arms at 0, 120 and 240 degrees from the x axis. Plan measures hold where the wall,
@@ -46,6 +64,19 @@ namespace retroforge
     Number                corner = 8.;  ///< radius in plan between hub and arm [mm]
     Number                outer  = 80.; ///< radius of the face [mm]
     CavityProfile<Number> profile;
+
+    static const char *section() { return "Tripod"; } ///< in parameter files
+
+    template <typename Self, typename F>
+    static void for_each_measure(Self &self, const F &f)
+    {
+      f(Measure{"hub radius", "In the plane of the face.", "mm"}, self.hub);
+      f(Measure{"arm width", "In the plane of the face.", "mm"}, self.width);
+      f(Measure{"arm length", "From the axis to the round end of an arm.", "mm"}, self.length);
+      f(Measure{"corner radius", "In plan, between hub and arm.", "mm"}, self.corner);
+      f(Measure{"outer radius", "Of the face.", "mm"}, self.outer);
+      CavityProfile<Number>::for_each_measure(self.profile, f);
+    }
   };
 
   /// A bell: a body of revolution around the z axis.
@@ -55,6 +86,16 @@ namespace retroforge
     Number                mouth = 60.; ///< radius where the wall, prolonged, meets the face [mm]
     Number                outer = 90.; ///< radius of the face [mm]
     CavityProfile<Number> profile{60., 25., 8., 12.};
+
+    static const char *section() { return "Bell"; } ///< in parameter files
+
+    template <typename Self, typename F>
+    static void for_each_measure(Self &self, const F &f)
+    {
+      f(Measure{"mouth radius", "In the plane of the face.", "mm"}, self.mouth);
+      f(Measure{"outer radius", "Of the face.", "mm"}, self.outer);
+      CavityProfile<Number>::for_each_measure(self.profile, f);
+    }
   };
 
   /// Into how many segments the arcs of a shape are divided, in the order in which they are asked for. A

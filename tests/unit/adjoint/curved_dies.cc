@@ -57,25 +57,25 @@ namespace
     p.billet.element_size = 5.;
     for (DieParameters &die : p.dies)
     {
-      die.shape           = "tripod";
-      die.chord_error     = 0.3;
-      die.feature_angle   = 40.; // for facets as coarse as these
-      die.largest_sagitta = 1.;
-      die.tripod          = {10., 10., 46., 4., 60., {5., 20., 2., 2.}};
+      auto &tripod           = die.shape.choose<TripodDie>();
+      tripod.chord_error     = 0.3;
+      tripod.feature_angle   = 40.; // for facets as coarse as these
+      tripod.largest_sagitta = 1.;
+      tripod.shape           = {10., 10., 46., 4., 60., {5., 20., 2., 2.}};
     }
     return p;
   }
 
   Parameters bell_scene()
   {
-    Parameters p              = cylinder_scene();
-    p.dies[1].shape           = "bell";
-    p.dies[1].chord_error     = 0.3;
-    p.dies[1].feature_angle   = 40.;
-    p.dies[1].largest_sagitta = 1.;
-    p.dies[1].bell            = {30., 50., {6., 60., 2., 14.}};
-    p.dies[1].point           = Vec3({0., 0., 18.9});
-    p.press.stroke            = 2.4;
+    Parameters p         = cylinder_scene();
+    auto      &bell      = p.dies[1].shape.choose<BellDie>();
+    bell.chord_error     = 0.3;
+    bell.feature_angle   = 40.;
+    bell.largest_sagitta = 1.;
+    bell.shape           = {30., 50., {6., 60., 2., 14.}};
+    p.dies[1].point      = Vec3({0., 0., 18.9});
+    p.press.stroke       = 2.4;
     return p;
   }
 
@@ -244,8 +244,8 @@ int main(int argc, char **argv)
   compare_plane();
   const Parameters tripods = tripod_scene(), bell = bell_scene(), under_punch = punch_scene();
   Parameters       facets = bell, nodes = tripods;
-  facets.dies[1].surface_law       = "facets";
-  nodes.contact.points             = "nodes";
+  facets.dies[1].shape.choose<BellDie>().surface_law = "facets";
+  nodes.contact.points                               = "nodes";
   const std::vector<double> errors = {check("tripods", Problem(tripods)),
                                       check("bell", Problem(bell)),
                                       check("punch with a sharp edge and a rounding",

@@ -5,6 +5,8 @@
 #include <retroforge/adjoint/sweep.h>
 #include <retroforge/parameters.h>
 
+#include <optional>
+
 namespace retroforge
 {
   /// A small block under a tilted die, with a soft penalty: nodes arrive one by one, and no term is small.
@@ -36,10 +38,18 @@ namespace retroforge
   struct RecordedRun
   {
     /// @param judged  the objectives; those of the parameters when it is empty
-    RecordedRun(const Parameters &all, std::vector<Die> dies, Objectives judged = {})
+    /// @param scheme  in time; that of the parameters when there is none
+    RecordedRun(const Parameters            &all,
+                std::vector<Die>             dies,
+                Objectives                   judged = {},
+                const std::optional<Scheme> &scheme = {})
         : parameters(settled(all))
         , process(parameters.process(all.billet.size[2]))
-        , model{std::move(dies), parameters.step_model(), all.newton, all.linear_solver, MPI_COMM_WORLD}
+        , model{std::move(dies),
+                step_model(parameters, scheme),
+                all.newton,
+                all.linear_solver,
+                MPI_COMM_WORLD}
         , leg(std::make_shared<Leg>(make_billet(all.billet, MPI_COMM_WORLD), model, timings))
         , scene(leg->scene)
         , remesher(parameters.remeshing,
@@ -56,6 +66,13 @@ namespace retroforge
         records.push_back(event.record);
         trace.add(event);
       });
+    }
+
+    static StepModel step_model(const Parameters &parameters, const std::optional<Scheme> &scheme)
+    {
+      StepModel model = parameters.step_model();
+      model.scheme    = scheme.value_or(model.scheme);
+      return model;
     }
 
     static Parameters settled(Parameters all)

@@ -28,7 +28,7 @@ Parameters flat_dies(const double penetration)
   p.dies[1].velocity    = Vec3({0, 0, -100});
   for (DieParameters &die : p.dies)
     die.friction = 0.4;
-  p.material.sensitivity = 0.3;
+  p.material.law.m       = 0.3;
   p.material.law.e0      = 0.01;
   p.press.stroke         = 3.;
   p.press.increments     = 4;

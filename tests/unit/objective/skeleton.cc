@@ -3,7 +3,7 @@
 
 // What a new objective needs, from nothing to its test: copy this file. The objective is the height of the
 // workpiece's centre of mass, whose value on a block is known by hand and whose reverse is compared with dual
-// numbers and with the Taylor expansion. To put it into parameter files, name it in ObjectiveParameters.
+// numbers and with the Taylor expansion. To put it into parameter files, give it a type in objective_type.cc.
 
 #include <deal.II/base/mpi.h>
 

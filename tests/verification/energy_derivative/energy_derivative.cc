@@ -37,9 +37,9 @@ namespace
     p.dies[1].velocity    = Vec3({0, 0, -100});
     for (DieParameters &die : p.dies)
       die.friction = 0.4;
-    p.material.sensitivity = 0.139;
-    p.press.stroke         = 1.;
-    p.press.increments     = 2;
+    p.material.law.m   = 0.139;
+    p.press.stroke     = 1.;
+    p.press.increments = 2;
     return p;
   }
 
