@@ -12,9 +12,10 @@
 #include <tuple>
 #include <type_traits>
 
+/// @file
 /// Aggregates of numbers, visited one number after the other, so that sums, copies to another number type and
 /// products of derivatives are loops. An aggregate `template <typename Number> struct A` has
-///   template <typename Self> static auto members(Self &self) { auto &[a, b] = self; return std::tie(a, b); }
+/// `template <typename Self> static auto members(Self &self) { auto &[a, b] = self; return std::tie(a, b); }`
 /// where the structured binding does not compile when a member is forgotten. Members are numbers, vectors of
 /// space, lists, aggregates, and integers, which are decisions: they are copied, and have no derivative.
 namespace retroforge
