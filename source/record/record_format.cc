@@ -16,7 +16,7 @@ namespace retroforge
 {
   namespace
   {
-    constexpr unsigned int format = 6;
+    constexpr unsigned int format = 7;
 
     static_assert(sizeof(Vec3) == 3 * sizeof(double),
                   "nodal vectors are read and written as arrays of numbers");

@@ -133,50 +133,69 @@ namespace retroforge
     return "";
   }
 
-  std::string Forging::slips_too_far(const Process<double>      &process,
-                                     const IncrementRecord      &record,
-                                     const NodalVectors<double> &X,
-                                     const NodalVectors<double> &X_next) const
+  namespace
+  {
+    /// Of an increment, that bring it down to what is allowed when it is `excess` times as long.
+    unsigned int halvings(const double excess)
+    {
+      return std::max(1, static_cast<int>(std::ceil(std::log2(excess))));
+    }
+  } // namespace
+
+  double Forging::largest_slip(const Process<double>      &process,
+                               const IncrementRecord      &record,
+                               const NodalVectors<double> &X,
+                               const NodalVectors<double> &X_next,
+                               std::string                &where) const
   {
     if (!remesher_.enabled())
-      return "";
-    const auto      dies = process.at_stroke(record.stroke).dies;
-    const SizeField size = remesher_.size_field(dies);
-    const double    time = process.time(record.step);
+      return 0.;
+    const auto      dies    = process.at_stroke(record.stroke).dies;
+    const SizeField size    = remesher_.size_field(dies);
+    const double    time    = process.time(record.step);
+    double          largest = 0.;
     for (const ContactPair &pair : record.pairs)
       if (pair.point.is_node() && model_.dies[pair.die].surface())
       {
         const NodeIndex k    = pair.point.nodes[0];
         const Vec3      path = X_next[k] - X[k] - time * dies[pair.die].velocity;
-        if (path.norm() > press_.largest_slip * size(X[k]))
-          return "a node would slip along die " + model_.dies[pair.die].name +
-                 " by more than Press/largest slip" + at(X[k]);
+        const double    slip = path.norm() / size(X[k]);
+        if (slip <= largest)
+          continue;
+        largest = slip;
+        where   = "die " + model_.dies[pair.die].name + " by more than Press/largest slip" + at(X[k]);
       }
-    return "";
+    return largest;
   }
 
-  std::string Forging::attempt(const Process<double> &process,
-                               const ForgingState    &state,
-                               IncrementRecord       &record,
-                               SolvedIncrement       &solved) const
+  Refusal Forging::attempt(const Process<double> &process,
+                           const ForgingState    &state,
+                           Guess                 &guess,
+                           IncrementRecord       &record,
+                           SolvedIncrement       &solved) const
   {
     try
     {
-      solved = state.leg->increment.forward(process, state.X, false, state.W, record);
+      solved = state.leg->increment.forward(process, state.X, false, guess, record);
     }
     catch (const NoEquilibrium &failure)
     {
-      return failure.what();
+      return {failure.what()};
     }
     catch (const NoLinearSolution &)
     {
-      return "the linear systems of an increment have no solution; the flattest element is" +
-             at(flattest_cell(state.leg->scene.mesh, state.X));
+      return {"the linear systems of an increment have no solution; the flattest element is" +
+              at(flattest_cell(state.leg->scene.mesh, state.X))};
     }
-    std::string reason = too_much(*state.leg, state.X, solved.X);
-    if (reason.empty())
-      reason = slips_too_far(process, record, state.X, solved.X);
-    return reason;
+    guess.W.V   = record.solves.front().V;
+    guess.W.P   = record.solves.front().P;
+    guess.known = Start::near;
+    if (const std::string reason = too_much(*state.leg, state.X, solved.X); !reason.empty())
+      return {reason};
+    std::string  where;
+    const double slip = largest_slip(process, record, state.X, solved.X, where) / press_.largest_slip;
+    // Velocities hardly depend on the increment's length: what it must be is known at once.
+    return slip > 1. ? Refusal{"a node would slip along " + where, halvings(slip), false} : Refusal{};
   }
 
   namespace
@@ -227,7 +246,9 @@ namespace retroforge
     for (const auto &stage : solved.stages)
       state.strain = accumulate_strain(
         state.leg->scene.mesh, stage->X, stage->W, stage->weight * solved.start->dt, state.strain);
-    state.W = solved.last().W;
+    std::string where;
+    state.W    = solved.last().W;
+    state.slip = largest_slip(process, record, X_before, state.X, where) / record.step;
     state.stroke += record.step;
     state.energy.deformation += record.deformation_energy;
     state.energy.friction += record.friction_energy;
@@ -239,8 +260,8 @@ namespace retroforge
     const double whole = record.contact.step, done = (state.stroke - state.numerics_stroke) / whole;
     while (whole / (1 << state.depth) > record.step * (1. + 1e-9) && state.depth < 30)
       ++state.depth;
-    // Back to longer steps once a whole number of them fits.
-    while (state.depth > 0 &&
+    // Back to longer steps once a whole number of them fits, and nothing slips too far in them.
+    while (state.depth > 0 && state.slip * whole / (1 << (state.depth - 1)) <= press_.largest_slip &&
            std::abs(done * (1 << (state.depth - 1)) - std::round(done * (1 << (state.depth - 1)))) < 1e-9)
       --state.depth;
     if (watch)
@@ -343,23 +364,25 @@ namespace retroforge
       record.step       = std::min(whole() / (1 << state.depth), press_.stroke - state.stroke);
       record.parameters = std::exchange(state.parameters, "");
       SolvedIncrement solved;
+      Guess           guess{state.W, record.remesh ? Start::far : Start::near};
       for (;;)
       {
-        const std::string reason = attempt(process, state, record, solved);
-        if (reason.empty())
+        const Refusal refusal = attempt(process, state, guess, record, solved);
+        if (refusal.reason.empty())
           break;
-        if (remesher_.enabled() && !record.remesh && since_remeshing() > 0)
+        if (refusal.of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0)
         {
           renew();
+          guess = {state.W, Start::far};
           continue;
         }
-        record.step *= 0.5;
-        ++record.cuts;
+        record.step = std::ldexp(record.step, -static_cast<int>(refusal.halvings));
+        record.cuts += refusal.halvings;
         if (record.step < whole() * std::ldexp(1., -static_cast<int>(press_.max_cuts)) * (1. - 1e-9))
         {
           // A fold that is closing is the true reason.
           check_fold(state);
-          throw_stuck(record, reason);
+          throw_stuck(record, refusal.reason);
         }
       }
       finish_increment(process, record, solved, state, watch);
@@ -406,10 +429,10 @@ namespace retroforge
       record.newton = record.krylov = record.linear_solves = 0;
       if (record.remesh)
         change_mesh(*record.remesh, state);
-      Field<double> W(state.leg->scene.mesh);
-      W.V                          = record.solves[0].V;
-      W.P                          = record.solves[0].P;
-      const SolvedIncrement solved = state.leg->increment.forward(process, state.X, true, W, record);
+      Guess guess{Field<double>(state.leg->scene.mesh)};
+      guess.W.V                    = record.solves[0].V;
+      guess.W.P                    = record.solves[0].P;
+      const SolvedIncrement solved = state.leg->increment.forward(process, state.X, true, guess, record);
       finish_increment(process, record, solved, state, watch);
     }
   }

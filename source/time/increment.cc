@@ -165,9 +165,10 @@ namespace retroforge
                                                    const NodalVectors<double>   &X,
                                                    const bool                    replay,
                                                    const bool                    all_found,
-                                                   Field<double>                 W,
+                                                   const Guess                  &guess,
                                                    IncrementRecord              &record)
   {
+    Field<double>            W = guess.W;
     const Scheme            &scheme = scheme_of(record);
     std::vector<SolveRecord> solves;
     const unsigned int       solves_before = system_.n_solves;
@@ -177,7 +178,7 @@ namespace retroforge
       const NodalVectors<double> position = advanced(X, start.dt, scheme.a[s], solves);
       const Stage<double>        stage(scene_, start.physics, start.contact, position);
       const ActiveSet            frozen     = replay ? record.solves[s].active : ActiveSet();
-      const Start                known      = record.remesh && s == 0 ? Start::far : Start::near;
+      const Start                known      = s == 0 ? guess.known : Start::near;
       const NewtonStatistics     statistics = newton_.solve(stage, W, frozen, known);
       record.newton += statistics.iterations;
       record.krylov += statistics.krylov;
@@ -209,7 +210,7 @@ namespace retroforge
   SolvedIncrement Increment::forward(const Process<double>      &process,
                                      const NodalVectors<double> &X,
                                      const bool                  replay,
-                                     const Field<double>        &W,
+                                     const Guess                &guess,
                                      IncrementRecord            &record)
   {
     const Physics<double> physics = process.at_stroke(record.stroke);
@@ -234,7 +235,7 @@ namespace retroforge
         n_watched = record.pairs.size();
       }
       const auto start  = start_of(process, X, record);
-      auto       solves = solve_stages(*start, X, replay, all_found, W, record);
+      auto       solves = solve_stages(*start, X, replay, all_found, guess, record);
       if (solves.empty())
         continue;
       record.solves          = std::move(solves);

@@ -29,7 +29,7 @@ namespace retroforge
     virtual void add_parameters(dealii::ParameterHandler &) {}
 
     /// Looks for the dies and patches that settings name. @param where  their section, for messages
-    virtual void check_names(const std::string & /*where*/, const ObjectiveContext &) const {}
+    virtual void check_names([[maybe_unused]] const std::string &where, const ObjectiveContext &) const {}
 
     /// Fills in `path` or `at_end`, and what makes its value that of the whole part.
     /// @throws Error  for a target that is not there, an empty window, exponents out of range

@@ -32,8 +32,15 @@ namespace retroforge
   /// How well the start of Newton's method is known.
   enum class Start
   {
-    near, ///< the solution of the increment before, on the same mesh
+    near, ///< the solution of the increment before, or of a longer one, on the same mesh
     far   ///< interpolated from another mesh: strain rates are wrong here and there
+  };
+
+  /// Where Newton's method begins.
+  struct Guess
+  {
+    Field<double> W;
+    Start         known = Start::near;
   };
 
   /// Solves the equilibrium of a stage for W by Newton's method, with a line search on the power functional:

@@ -33,6 +33,7 @@ namespace retroforge
     double               volume   = 0.; ///< at the start of the run [mm^3]
     double               repaired = 0.; ///< taken away where the surface crossed itself [mm^3]
     unsigned int         depth    = 0;  ///< an increment is the whole one / 2^depth
+    double               slip     = 0.; ///< of the last increment: largest one along a curved die, in edges [mm^-1]
 
     /// Where the present numerics began to hold: stroke [mm] and increments before.
     double       numerics_stroke     = 0.;
@@ -43,6 +44,14 @@ namespace retroforge
     unsigned int                     increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;
     std::vector<unsigned int>        remeshed;       ///< the increments, from 0, that began on a new mesh
     std::vector<std::vector<double>> strains_before; ///< of each remeshing, on the mesh it left
+  };
+
+  /// Why an increment must be shorter.
+  struct Refusal
+  {
+    std::string  reason;          ///< empty: it need not be
+    unsigned int halvings = 1;    ///< that will do
+    bool         of_mesh  = true; ///< a better mesh may be enough
   };
 
   /// What is known at the end of an increment.
@@ -100,17 +109,21 @@ namespace retroforge
     void change_mesh(const RemeshRecord &remesh, ForgingState &state) const;
 
   private:
-    /// Solves an increment of record.step. @return why it must be shorter, or nothing
-    std::string attempt(const Process<double> &process,
-                        const ForgingState    &state,
-                        IncrementRecord       &record,
-                        SolvedIncrement       &solved) const;
+    /// Solves an increment of record.step. @param guess  out: what was found, for a shorter increment
+    Refusal attempt(const Process<double> &process,
+                    const ForgingState    &state,
+                    Guess                 &guess,
+                    IncrementRecord       &record,
+                    SolvedIncrement       &solved) const;
     std::string
     too_much(const Leg &leg, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const;
-    std::string       slips_too_far(const Process<double>      &process,
-                                    const IncrementRecord      &record,
-                                    const NodalVectors<double> &X,
-                                    const NodalVectors<double> &X_next) const;
+
+    /// Of nodes along curved dies, over the edge length wanted there. @param where  of the largest one
+    double            largest_slip(const Process<double>      &process,
+                                   const IncrementRecord      &record,
+                                   const NodalVectors<double> &X,
+                                   const NodalVectors<double> &X_next,
+                                   std::string                &where) const;
     [[noreturn]] void throw_stuck(const IncrementRecord &record, const std::string &reason) const;
     /// Throws Error where a run can only go on to no good: it takes too many increments, or loses its volume.
     void check_progress(const ForgingState &state) const;

@@ -101,11 +101,11 @@ namespace retroforge
 
     /// From X_i to X_{i+1}. @param record  in: stroke, step; with `replay`, the recorded decisions are
     /// obeyed. Out: scheme, contact, pairs, solves, energies, forces; iterations are added.
-    /// @param W  initial guess
+    /// @param guess  where the first stage begins
     SolvedIncrement forward(const Process<double>      &process,
                             const NodalVectors<double> &X,
                             bool                        replay,
-                            const Field<double>        &W,
+                            const Guess                &guess,
                             IncrementRecord            &record);
 
     /// The same from what was recorded, to the bit: nothing is solved.
@@ -147,7 +147,7 @@ namespace retroforge
                                           const NodalVectors<double>   &X,
                                           bool                          replay,
                                           bool                          all_found,
-                                          Field<double>                 W,
+                                          const Guess                  &guess,
                                           IncrementRecord              &record);
     /// Energies and forces of the increment.
     void                               account(const SolvedIncrement &solved, IncrementRecord &record) const;

@@ -344,7 +344,7 @@ def contents(folder):
 
 def full_disk(folder):
     """A small file system of our own, where the machine lets us have one."""
-    for size, name, more in (("4k", "first files", ""), ("88k", "fields", ""),
+    for size, name, more in (("4k", "first files", ""), ("92k", "fields", ""),
                              ("128k", "record", "--set 'Output/fields every=0' --set Press/increments=60")):
         disk, saved = os.path.join(folder, f"disk_{size}"), os.path.join(folder, f"saved_{size}")
         os.mkdir(disk)

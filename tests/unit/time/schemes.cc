@@ -44,7 +44,7 @@ namespace
     p.press.largest_move     = 10.;
     p.press.largest_loss     = 0.1;
     p.contact.penetration    = 1e-9;
-    p.newton.tolerance       = 1e-12;
+    p.newton.tolerance       = 1e-10;
     p.linear_solver.method   = "direct";
     return p;
   }
