@@ -4,11 +4,13 @@
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/core/parameter_input.h>
 #include <retroforge/core/parameter_list.h>
+#include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/parameters.h>
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 
 namespace retroforge
@@ -436,12 +438,26 @@ end
                 "name one of them, or leave it empty for the first die that moves");
   }
 
-  double Parameters::height(const double size) const
+  BilletSize Parameters::size_of(const TetMesh &mesh) const
   {
-    return billet.shape == "file" ? size : billet.whole_height();
+    const double side = std::cbrt(volume(mesh.cells, mesh.X));
+    if (billet.shape != "file")
+      return {side, billet.whole_height()};
+    const Vec3 &velocity = dies[leading_die()].velocity;
+    const Vec3  way      = velocity / velocity.norm();
+    double      lowest = std::numeric_limits<double>::max(), highest = std::numeric_limits<double>::lowest();
+    for (const Vec3 &x : mesh.X)
+    {
+      lowest  = std::min(lowest, x * way);
+      highest = std::max(highest, x * way);
+    }
+    const bool halved = std::any_of(mesh.patches.begin(), mesh.patches.end(), [&](const Patch &patch) {
+      return patch.symmetry && std::abs(patch.symmetry->normal * way) > 1. - 1e-6;
+    });
+    return {side, (halved ? 2. : 1.) * (highest - lowest)};
   }
 
-  void Parameters::check_derived(const double size) const
+  void Parameters::check_derived(const BilletSize &size) const
   {
     const auto is_sound = [](const double x) { return x > 1e-50 && x < 1e50; };
     const auto require  = [](const bool sound, const std::string &where, const std::string &what) {
@@ -458,17 +474,18 @@ end
             "the reach of contact (approach, layer, ramp width)");
     const Process<double> made = process(size);
     require(is_sound(made.speed()), "Dies", "the speed of the leading die");
-    require(is_sound(mean_pressure(size)), "Material", "the flow stress");
+    require(is_sound(mean_pressure(size.height)), "Material", "the flow stress");
     require(is_sound(made.contact.rho), "Contact", "the penalty (with the speed and the material)");
     // In words of Contact/penetration, and within its bounds.
-    const double penetration = mean_pressure(size) / (made.contact.rho * made.speed());
+    const double penetration = mean_pressure(size.height) / (made.contact.rho * made.speed());
     if (contact.penalty > 0. && !(penetration >= 1e-14 && penetration <= 1.))
       throw Error("Contact/penalty",
                   "is " + as_text(contact.penalty) + " MPa s/mm, with which nodes sink in at " +
                     as_text(penetration) + " times the leading die's speed",
                   "as for Contact/penetration that must be from 1e-14 to 1",
                   "leave it 0 and set Contact/penetration");
-    const double n_cells = remeshing.element_size > 0. ? 8. * std::pow(size / remeshing.element_size, 3) : 0.;
+    const double n_cells =
+      remeshing.element_size > 0. ? 8. * std::pow(size.side / remeshing.element_size, 3) : 0.;
     if (!(n_cells <= 1e9))
       throw Error("Remeshing/element size",
                   "is " + as_text(remeshing.element_size) + ", which makes about " + as_text(n_cells) +
@@ -477,9 +494,9 @@ end
                   "choose a larger element size, or 0 for that of the billet");
   }
 
-  Parameters &Parameters::settle(const double size)
+  Parameters &Parameters::settle(const BilletSize &size)
   {
-    const double smooth_step = 2.5e-3 * height(size);
+    const double smooth_step = 2.5e-3 * size.height;
     if (press.increments == 0)
     {
       constexpr double most   = 1e9;
@@ -494,17 +511,17 @@ end
     check_derived(size);
     const Process<double> made = process(size);
     edge_stiffness_ =
-      std::min(1., mean_pressure(size) / (contact.edge_sinking * made.speed()) / made.contact.rho);
+      std::min(1., mean_pressure(size.height) / (contact.edge_sinking * made.speed()) / made.contact.rho);
     return *this;
   }
 
-  double Parameters::mean_pressure(const double size) const
+  double Parameters::mean_pressure(const double height) const
   {
-    const double rate = dies[leading_die()].velocity.norm() / height(size);
+    const double rate = dies[leading_die()].velocity.norm() / height;
     return material.law(1.5 * rate * rate) * 1.5 * rate;
   }
 
-  Process<double> Parameters::process(const double size) const
+  Process<double> Parameters::process(const BilletSize &size) const
   {
     Process<double> process;
     process.law         = material.law;
@@ -513,7 +530,7 @@ end
       process.dies.push_back(die.initial_state());
     const double speed = process.speed();
     process.contact.rho =
-      contact.penalty > 0. ? contact.penalty : mean_pressure(size) / (contact.penetration * speed);
+      contact.penalty > 0. ? contact.penalty : mean_pressure(size.height) / (contact.penetration * speed);
     process.contact.v0 = contact.slip_fraction * speed;
     return process;
   }

@@ -82,7 +82,7 @@ namespace retroforge
   void Scan::make_lines(MPI_Comm comm)
   {
     const TetMesh            billet  = make_billet(parameters_.billet, comm);
-    const double             size    = std::cbrt(volume(billet.cells, billet.X));
+    const BilletSize         size    = parameters_.size_of(billet);
     const Process<double>    nominal = parameters_.settle(size).process(size);
     const std::string       &chosen  = parameters_.scan.parameter;
     std::vector<std::string> names   = parameters_.design.all_names();

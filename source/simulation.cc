@@ -160,7 +160,7 @@ namespace retroforge
       , parameters_(read(command, echo_))
       , resumption_(resumption(command, echo_, parameters_))
       , billet_(make_first_mesh(first_parameters(parameters_, resumption_), timings_, comm))
-      , nominal_(parameters_.settle(billet_size()).process(billet_size()))
+      , nominal_(parameters_.settle(parameters_.size_of(billet_)).process(parameters_.size_of(billet_)))
       , design_(parameters_.design.all_names(),
                 parameters_.billet,
                 parameters_.dies,
@@ -189,11 +189,6 @@ namespace retroforge
   }
 
   Simulation::~Simulation() = default;
-
-  double Simulation::billet_size() const
-  {
-    return std::cbrt(volume(billet_.cells, billet_.X));
-  }
 
   void Simulation::check_outputs() const
   {
@@ -452,7 +447,7 @@ namespace retroforge
       for (const RecordedInput &input : resumption_->inputs)
       {
         stretches.push_back({input, as_solved(Parameters::of_record(input.parameters), command_)});
-        stretches.back().parameters.settle(billet_size());
+        stretches.back().parameters.settle(parameters_.size_of(billet_));
       }
     else
     {
@@ -766,7 +761,7 @@ namespace retroforge
       design_,
       mu_,
       judged,
-      billet_size(),
+      parameters_.size_of(billet_).side,
       oracle,
       kept_check(),
       [&](const std::vector<CheckRow> &so_far, const unsigned int done, const unsigned int all) {

@@ -71,6 +71,13 @@ namespace retroforge
     void add_parameters(dealii::ParameterHandler &prm);
   };
 
+  /// What parameters that are left open follow from.
+  struct BilletSize
+  {
+    double side;   ///< cube root of the mesh's volume [mm]
+    double height; ///< of the whole billet; of one from a file, along the way of the leading die [mm]
+  };
+
   /// All that a parameter file says.
   struct Parameters
   {
@@ -109,12 +116,12 @@ namespace retroforge
 
     /// Chooses the number of increments where it is left open, and checks what follows from the parameters.
     /// @throws Error  where steps, contact or penalty come out zero or infinite
-    /// @param size  cube root of the mesh's volume [mm], for billets whose height is not a parameter
-    Parameters &settle(double size);
+    Parameters &settle(const BilletSize &size);
 
     /// The process as the file has it; automatic values are resolved here and fixed from then on.
-    /// @param size  as for settle()
-    Process<double> process(double size) const;
+    Process<double> process(const BilletSize &size) const;
+    /// The same for a sector as for the whole it is part of, but for `side`.
+    BilletSize size_of(const TetMesh &billet) const;
     /// Of settled parameters.
     StepModel step_model() const;
     /// Of settled parameters.  @throws Error
@@ -131,12 +138,11 @@ namespace retroforge
 
     double edge_stiffness_ = 1.; ///< of edges' penalty over the nodes', once settled
 
-    double height(double size) const;
     /// Of a frictionless upsetting [MPa].
-    double       mean_pressure(double size) const;
+    double       mean_pressure(double height) const;
     void         check_all();
     void         find_without_effect(const std::vector<ParameterEntry> &entries);
-    void         check_derived(double size) const;
+    void         check_derived(const BilletSize &size) const;
     unsigned int leading_die() const;
   };
 } // namespace retroforge

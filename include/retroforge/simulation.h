@@ -76,8 +76,7 @@ namespace retroforge
     void                 write_sensitivity();
     std::vector<Stretch> make_stretches() const;
     /// Results that cannot be written are no reason to stop at the end of a run.  @throws Error
-    void   check_outputs() const;
-    double billet_size() const;
+    void check_outputs() const;
     /// How often the objective's value stands in the whole part; NaN where it says nothing of that.
     double copies(const NamedObjective &objective) const;
     /// The recorded increments, from memory or from the record's file.

@@ -151,19 +151,28 @@ namespace retroforge
 
   namespace
   {
-    /// (pair of a node, pair of an edge at it), in a fixed order.
-    std::vector<std::pair<unsigned int, unsigned int>> touched_by_edges(const std::vector<ContactPair> &pairs)
+    /// (pair of a node, pair of an edge at it), in a fixed order; as often as the edge stands at the node in
+    /// the whole, so that a sector's nodes touch as those of the whole do.
+    std::vector<std::array<unsigned int, 2>> touched_by_edges(const Topology                 &topology,
+                                                              const std::vector<ContactPair> &pairs)
     {
       std::map<std::pair<unsigned int, NodeIndex>, unsigned int> of_node;
       for (unsigned int p = 0; p < pairs.size(); ++p)
         if (pairs[p].point.is_node())
           of_node[{pairs[p].die, pairs[p].point.nodes[0]}] = p;
-      std::vector<std::pair<unsigned int, unsigned int>> touched;
+      std::vector<std::array<unsigned int, 2>> touched;
       for (unsigned int p = 0; p < pairs.size(); ++p)
-        if (!pairs[p].point.is_node())
-          for (const NodeIndex k : pairs[p].point.nodes)
-            if (const auto found = of_node.find({pairs[p].die, k}); found != of_node.end())
-              touched.emplace_back(found->second, p);
+        if (const ContactPoint &point = pairs[p].point; !point.is_node())
+        {
+          const std::array<NodeIndex, 2> ends{{point.nodes[0], point.nodes[1]}};
+          const auto                    &edges = topology.surface_edges;
+          const auto                     edge  = std::lower_bound(edges.begin(), edges.end(), ends);
+          AssertThrow(edge != edges.end() && *edge == ends, dealii::ExcInternalError());
+          for (unsigned int i = 0; i < 2; ++i)
+            if (const auto found = of_node.find({pairs[p].die, ends[i]}); found != of_node.end())
+              touched.insert(
+                touched.end(), topology.edge_images[edge - edges.begin()][i], {{found->second, p}});
+        }
       return touched;
     }
 
@@ -174,18 +183,17 @@ namespace retroforge
                                                  const std::vector<double> &ramps_bar)
     {
       std::vector<double> own_bar = ramps_bar, at;
-      const auto          touched = touched_by_edges(contact.pairs);
       for (unsigned int p = 0; p < contact.pairs.size(); ++p)
         at.push_back(ramp(contact.projections[p].delta, contact.pairs[p].touching));
       std::vector<double> before; // of the node, at each step
-      for (const auto &[node, edge] : touched)
+      for (const auto &[node, edge] : contact.touched_by_edges)
       {
         before.push_back(at[node]);
         at[node] += (1. - at[node]) * at[edge];
       }
-      for (std::size_t i = touched.size(); i-- > 0;)
+      for (std::size_t i = contact.touched_by_edges.size(); i-- > 0;)
       {
-        const auto &[node, edge] = touched[i];
+        const auto &[node, edge] = contact.touched_by_edges[i];
         own_bar[edge] += (1. - before[i]) * own_bar[node];
         own_bar[node] *= 1. - at[edge];
       }
@@ -219,7 +227,8 @@ namespace retroforge
         dies[pair.die].project(pair.point.mean(X), states[pair.die], pair.feature));
       contact.ramps.push_back(ramp(contact.projections.back().delta, pair.touching));
     }
-    for (const auto &[node, edge] : touched_by_edges(pairs))
+    contact.touched_by_edges = touched_by_edges(topology, pairs);
+    for (const auto &[node, edge] : contact.touched_by_edges)
       contact.ramps[node] += (1. - contact.ramps[node]) * contact.ramps[edge];
     // A face is visited from its first pair of each die.
     for (unsigned int p = 0; p < pairs.size(); ++p)

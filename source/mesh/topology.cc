@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/mesh/topology.h>
+#include <retroforge/mesh/whole_part.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace retroforge
@@ -89,14 +92,50 @@ namespace retroforge
         directions.push_back(normal / normal.norm());
     }
 
-    Rows<Vec3> fixed_directions_of_nodes(const TetMesh &mesh)
+    // Those of symmetry, ascending.
+    Rows<unsigned int> planes_at_nodes(const TetMesh &mesh)
     {
       std::vector<std::pair<unsigned int, unsigned int>> pairs;
       for (const auto &face : mesh.faces)
         if (!mesh.is_surface(face))
           for (const NodeIndex node : face.nodes)
             pairs.emplace_back(node, face.patch);
-      const auto patches = make_rows(std::move(pairs), mesh.n_nodes());
+      return make_rows(std::move(pairs), mesh.n_nodes());
+    }
+
+    // What lies on all of some planes stands in the whole: 1 / the number of images of one piece of it.
+    double n_images(const TetMesh &mesh, const std::vector<unsigned int> &patches)
+    {
+      const double copies = patches.empty() ? 1. : n_copies(symmetry_planes(mesh, patches));
+      return std::isfinite(copies) ? copies : 1.;
+    }
+
+    std::vector<std::array<unsigned int, 2>>
+    images_of_edges(const TetMesh &mesh, const std::vector<std::array<NodeIndex, 2>> &edges)
+    {
+      const auto                               planes = planes_at_nodes(mesh);
+      std::vector<std::array<unsigned int, 2>> images(edges.size(), {{1, 1}});
+      for (std::size_t e = 0; e < edges.size(); ++e)
+      {
+        const auto a = planes[edges[e][0]], b = planes[edges[e][1]];
+        if (a.size() + b.size() == 0)
+          continue;
+        std::vector<unsigned int> common;
+        std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
+        const double of_edge = n_images(mesh, common);
+        for (unsigned int i = 0; i < 2; ++i)
+        {
+          const auto  &at   = i == 0 ? a : b;
+          const double node = n_images(mesh, {at.begin(), at.end()});
+          images[e][i]      = std::max(1., std::round(node / of_edge));
+        }
+      }
+      return images;
+    }
+
+    Rows<Vec3> fixed_directions_of_nodes(const TetMesh &mesh)
+    {
+      const auto patches = planes_at_nodes(mesh);
 
       Rows<Vec3> rows;
       for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
@@ -112,6 +151,7 @@ namespace retroforge
   Topology::Topology(const TetMesh &mesh)
       : surface_faces(surface_faces_at_nodes(mesh))
       , surface_edges(edges_of_surface(mesh))
+      , edge_images(images_of_edges(mesh, surface_edges))
       , cells(cells_at_nodes(mesh))
       , neighbours(neighbours_of_nodes(mesh, cells))
       , fixed_directions(fixed_directions_of_nodes(mesh))

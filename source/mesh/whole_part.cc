@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace retroforge
 {
@@ -19,15 +20,23 @@ namespace retroforge
     }
   } // namespace
 
-  std::vector<Plane> symmetry_planes(const TetMesh &mesh)
+  std::vector<Plane> symmetry_planes(const TetMesh &mesh, const std::vector<unsigned int> &patches)
   {
     std::vector<Plane> planes;
-    for (const Patch &patch : mesh.patches)
-      if (patch.symmetry && std::none_of(planes.begin(), planes.end(), [&](const Plane &other) {
+    for (const unsigned int p : patches)
+      if (const Patch &patch = mesh.patches[p];
+          patch.symmetry && std::none_of(planes.begin(), planes.end(), [&](const Plane &other) {
             return (other.normal - patch.symmetry->normal).norm() < tolerance;
           }))
         planes.push_back(*patch.symmetry);
     return planes;
+  }
+
+  std::vector<Plane> symmetry_planes(const TetMesh &mesh)
+  {
+    std::vector<unsigned int> all(mesh.patches.size());
+    std::iota(all.begin(), all.end(), 0);
+    return symmetry_planes(mesh, all);
   }
 
   double n_copies(const std::vector<Plane> &planes)

@@ -168,7 +168,7 @@ namespace retroforge
                                                    const Guess                  &guess,
                                                    IncrementRecord              &record)
   {
-    Field<double>            W = guess.W;
+    Field<double>            W      = guess.W;
     const Scheme            &scheme = scheme_of(record);
     std::vector<SolveRecord> solves;
     const unsigned int       solves_before = system_.n_solves;

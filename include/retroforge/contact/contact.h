@@ -97,10 +97,12 @@ namespace retroforge
     /// w(delta) of each pair; of a node, where edges at it may touch in its place, 1 - (1 - w) product (1 -
     /// w_edge).
     std::vector<Number> ramps;
-    std::vector<Face>   friction_faces;
-    Number              tau = 1.; ///< approach time [s]
-    ApproachLaw         approach;
-    double              edge_stiffness = 1.; ///< of edges' penalty over the nodes'
+    /// (pair of a node, pair of an edge at it) of this product's factors.
+    std::vector<std::array<unsigned int, 2>> touched_by_edges;
+    std::vector<Face>                        friction_faces;
+    Number                                   tau = 1.; ///< approach time [s]
+    ApproachLaw                              approach;
+    double                                   edge_stiffness = 1.; ///< of edges' penalty over the nodes'
   };
 
   /// S, of edges times their stiffness, and S^f [mm^2] of each pair.

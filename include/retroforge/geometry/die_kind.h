@@ -30,7 +30,8 @@ namespace retroforge
     /// @param chosen  name of the kind the die is of, this one or another     @throws Error
     virtual void check([[maybe_unused]] const std::string &section,
                        [[maybe_unused]] const std::string &chosen) const
-    {}
+    {
+    }
 
     /// @throws Error  for a file or measures that make no surface
     virtual Die make(const DiePlace &place) const = 0;

@@ -33,6 +33,9 @@ namespace retroforge
     Rows<unsigned int> surface_faces;
     /// The edges of these faces, each once, the smaller node first, ascending.
     std::vector<std::array<NodeIndex, 2>> surface_edges;
+    /// How often each of these edges stands at its first and at its second node in the whole that the planes
+    /// of symmetry cut: once away from planes, twice where the node lies on a plane and the edge does not.
+    std::vector<std::array<unsigned int, 2>> edge_images;
     /// Cells at each node, ascending.
     Rows<CellIndex> cells;
     /// Nodes that share a cell with each node, itself included, ascending.

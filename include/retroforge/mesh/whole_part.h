@@ -20,7 +20,10 @@ namespace retroforge
     bool is_model() const { return copies == 1.; }
   };
 
-  /// The planes of symmetry of a mesh, each once.
+  /// The planes of symmetry among some patches of a mesh, each once.
+  std::vector<Plane> symmetry_planes(const TetMesh &mesh, const std::vector<unsigned int> &patches);
+
+  /// Those of the mesh.
   std::vector<Plane> symmetry_planes(const TetMesh &mesh);
 
   /// 1 for no plane, 2 for one; 2 pi over the angle between two, 4 pi over the solid angle between three.

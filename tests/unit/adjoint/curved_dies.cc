@@ -246,11 +246,11 @@ int main(int argc, char **argv)
   Parameters       facets = bell, nodes = tripods;
   facets.dies[1].shape.choose<BellDie>().surface_law = "facets";
   nodes.contact.points                               = "nodes";
-  const std::vector<double> errors = {check("tripods", Problem(tripods)),
-                                      check("bell", Problem(bell)),
-                                      check("punch with a sharp edge and a rounding",
+  const std::vector<double> errors                   = {check("tripods", Problem(tripods)),
+                                                        check("bell", Problem(bell)),
+                                                        check("punch with a sharp edge and a rounding",
                                             Problem(under_punch, {under_punch.dies[0].die(), punch(24.8)})),
-                                      check("bell of facets", Problem(facets)),
-                                      check("tripods felt by nodes alone", Problem(nodes))};
+                                                        check("bell of facets", Problem(facets)),
+                                                        check("tripods felt by nodes alone", Problem(nodes))};
   std::cout << "FIGURE curved_die_gradient_error " << *std::max_element(errors.begin(), errors.end()) << "\n";
 }

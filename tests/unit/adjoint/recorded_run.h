@@ -44,7 +44,7 @@ namespace retroforge
                 Objectives                   judged = {},
                 const std::optional<Scheme> &scheme = {})
         : parameters(settled(all))
-        , process(parameters.process(all.billet.size[2]))
+        , process(parameters.process({all.billet.size[2], all.billet.size[2]}))
         , model{std::move(dies),
                 step_model(parameters, scheme),
                 all.newton,
@@ -78,7 +78,7 @@ namespace retroforge
     static Parameters settled(Parameters all)
     {
       all.remeshing.when = "never"; // one mesh for all of a run
-      all.settle(all.billet.size[2]);
+      all.settle({all.billet.size[2], all.billet.size[2]});
       return all;
     }
 

@@ -6,7 +6,8 @@
 // are symmetric, sorted and include the node; Euler's formula  nodes - edges + faces - cells = 1  of a ball
 // holds; the fixed directions are orthonormal and span the normals of all planes the node is on; three of
 // them has only the corner at the centre of the cube, and one node on the axis of the half sector. By hand, a
-// tetrahedron with two planes through its edge 0-3: nodes 0 and 3 have two directions, 1 and 2 one.
+// tetrahedron with two planes through its edge 0-3: nodes 0 and 3 have two directions, 1 and 2 one; in the
+// whole the edge 1-2 stands twice at its nodes, and those on one plane stand twice where the planes meet.
 
 #include <deal.II/base/mpi.h>
 
@@ -139,5 +140,9 @@ int main(int argc, char **argv)
   std::cout << ", surface faces:";
   for (NodeIndex node = 0; node < 4; ++node)
     std::cout << " " << topology.surface_faces[node].size();
-  std::cout << "\n";
+  std::cout << "\nimages of its surface edges at their ends:";
+  for (std::size_t e = 0; e < topology.surface_edges.size(); ++e)
+    std::cout << " " << topology.surface_edges[e][0] << "-" << topology.surface_edges[e][1] << ": "
+              << topology.edge_images[e][0] << " " << topology.edge_images[e][1]
+              << (e + 1 < topology.surface_edges.size() ? "," : "\n");
 }
