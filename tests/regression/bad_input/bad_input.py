@@ -7,44 +7,16 @@
 and what was computed before the trouble can still be read. Usage: bad_input.py RETROFORGE"""
 import csv
 import itertools
-import json
 import os
 import re
 import struct
-import subprocess
 import sys
-import tempfile
 
-PROGRAM = os.path.abspath(sys.argv[1])
-ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
-               "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+import whole_runs  # noqa: E402
+from whole_runs import PROGRAM, ROOT, contents, judge, prm, start, summary_of, text_of, write  # noqa: E402
 
-CASE = """
-subsection Billet
-  set shape           = box
-  set size            = 10, 10, 10
-  set element size    = 4
-  set symmetry planes = -1, 0, 0; 0, -1, 0
-end
-subsection Dies
-  set names = lower, upper
-end
-subsection Die lower
-  set point    = 0, 0, 0
-  set facing   = 0, 0, 1
-  set friction = 0.3
-end
-subsection Die upper
-  set point    = 0, 0, 10
-  set facing   = 0, 0, -1
-  set velocity = 0, 0, -100
-  set friction = 0.3
-end
-subsection Press
-  set stroke     = 1
-  set increments = 3
-end
-"""
+CASE = prm(whole_runs.cube(10, 4, 1, 3))
 
 # A pyramid of two tetrahedra; {cells} names their nodes.
 MSH = """$MeshFormat
@@ -237,15 +209,12 @@ MISTAKES = {
     "too few Newton steps": (settings("Newton/max iterations=1"), r"Newton"),
 }
 
-failures = []
+
+def run(arguments, command="gradient"):
+    return start([PROGRAM, command, *arguments])
 
 
-def run(arguments, folder, command="gradient"):
-    return subprocess.run([PROGRAM, command] + arguments, cwd=folder, env=ENVIRONMENT, capture_output=True, text=True,
-                          timeout=300, check=False)
-
-
-def judge(name, done, pattern):
+def judge_message(name, done, pattern):
     message = done.stderr.strip()
     faults = []
     if done.returncode <= 0:
@@ -256,126 +225,101 @@ def judge(name, done, pattern):
         faults.append("not of the form where: what; rule; remedy")
     if not re.search(pattern, message, re.DOTALL):
         faults.append(f"does not say {pattern}")
-    print(f"{'ok    ' if not faults else 'FAILED'} {name}\n         {message}")
-    for fault in faults:
-        print(f"         ^ {fault}")
-    if faults:
-        failures.append(name)
-
-
-def judge_that(name, good, otherwise):
-    print(f"{'ok    ' if good else 'FAILED'} {name}" + ("" if good else f": {otherwise}"))
-    if not good:
-        failures.append(name)
+    judge(name, not faults, "; ".join(faults))
+    print(f"         {message}")
 
 
 def whole_history(name, path, at_least):
     """The lines of a history, each of which must be whole."""
     with open(path, encoding="utf-8") as file:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))
-    good = len(rows) - 1 >= at_least and all(len(row) == len(rows[0]) for row in rows)
-    print(f"{'ok    ' if good else 'FAILED'} {name}: {len(rows) - 1} increments in {os.path.basename(path)}")
-    if not good:
-        failures.append(name)
+    judge(f"{name}: {len(rows) - 1} increments in {os.path.basename(path)}",
+          len(rows) - 1 >= at_least and all(len(row) == len(rows[0]) for row in rows))
 
 
-def interrupted(folder):
+def interrupted():
     """Newton fails in the second increment, once a node arrives: the first increment must be on file."""
     done = run(["case.prm", "--output", "stopped"] + settings(
-        "Press/stroke=9", "Press/increments=6", "Press/max cuts=0", "Press/largest move=0.3"), folder)
-    judge("stopped on the way", done, r"Press/stroke")
-    whole_history("what was computed before is kept", os.path.join(folder, "stopped", "history.csv"), 1)
-    record = os.path.join(folder, "stopped", "record")
+        "Press/stroke=9", "Press/increments=6", "Press/max cuts=0", "Press/largest move=0.3"))
+    judge_message("stopped on the way", done, r"Press/stroke")
+    whole_history("what was computed before is kept", "stopped/history.csv", 1)
+    record = "stopped/record"
     kept = [f for f in os.listdir(record) if f.startswith("increment_")] if os.path.isdir(record) else []
-    judge_that("its record too", len(kept) >= 1, f"{len(kept)} increments in {record}")
+    judge("its record too", len(kept) >= 1, f"{len(kept)} increments in {record}")
 
 
-def resumed(folder):
+def resumed():
     """What --resume refuses: nothing to resume, other parameters, another billet, files that are no records."""
     short = settings("Press/stroke=0.9", "Press/max cuts=0")
-    judge("nothing to resume", run(["case.prm", "--output", "new", "--resume"], folder), "new")
-    judge_that("and no folder made", not os.path.exists(os.path.join(folder, "new")), "there is one")
-    run(["case.prm", "--output", "done"] + short, folder)
-    before = contents(os.path.join(folder, "done"))
+    judge_message("nothing to resume", run(["case.prm", "--output", "new", "--resume"]), "new")
+    judge("and no folder made", not os.path.exists("new"), "there is one")
+    run(["case.prm", "--output", "done"] + short)
+    before = contents("done")
     for name, value in (("Material/consistency", "2"), ("Press/stroke", "0.2"), ("Die upper/friction", "0.2"),
                         ("Billet/element size", "3")):
-        judge(f"resumed with another {name}",
-              run(["case.prm", "--output", "done", "--resume"] + short + settings(f"{name}={value}"), folder), name)
-    judge("another run in its folder", run(["case.prm", "--output", "done"] + short, folder), r"done.*already.*--overwrite")
-    judge("a scan in its folder", run(["case.prm", "--output", "done"], folder, "scan"), r"done.*already")
-    judge("a scan that goes on with a run", run(["case.prm", "--output", "done", "--resume"], folder, "scan"), r"done.*run")
-    judge_that("none of them changed a file", contents(os.path.join(folder, "done")) == before, "the folder differs")
-    same = run(["case.prm", "--output", "done", "--resume"] + short + settings("Output/fields every=0", "Design/parameters=material/m"),
-               folder)
-    judge_that("resumed with other output and design", same.returncode == 0, same.stderr)
-    record = os.path.join(folder, "done", "record.h5")
+        judge_message(f"resumed with another {name}",
+                      run(["case.prm", "--output", "done", "--resume"] + short + settings(f"{name}={value}")), name)
+    judge_message("another run in its folder", run(["case.prm", "--output", "done"] + short), r"done.*already.*--overwrite")
+    judge_message("a scan in its folder", run(["case.prm", "--output", "done"], "scan"), r"done.*already")
+    judge_message("a scan that goes on with a run", run(["case.prm", "--output", "done", "--resume"], "scan"), r"done.*run")
+    judge("none of them changed a file", contents("done") == before, "the folder differs")
+    same = run(["case.prm", "--output", "done", "--resume"] + short + settings("Output/fields every=0", "Design/parameters=material/m"))
+    judge("resumed with other output and design", same.returncode == 0, same.stderr)
+    record = "done/record.h5"
     with open(record, "rb") as file:
         whole = file.read()
     for name, content in (("truncated", whole[:len(whole) // 2]), ("foreign", b"not a record at all\n" * 100), ("empty", b"")):
         with open(record, "wb") as file:
             file.write(content)
-        judge(f"{name} record", run(["case.prm", "--output", "done", "--resume"] + short, folder), r"record\.h5")
+        judge_message(f"{name} record", run(["case.prm", "--output", "done", "--resume"] + short), r"record\.h5")
 
 
-def replaced(folder):
+def replaced():
     """--overwrite leaves nothing of the longer run before it, and what is not of a run."""
-    output, one = os.path.join(folder, "twice"), settings("Press/stroke=0.3", "Press/increments=1")
-    run(["case.prm", "--output", "twice"], folder)
+    output, one = "twice", settings("Press/stroke=0.3", "Press/increments=1")
+    run(["case.prm", "--output", "twice"])
     for name in ("mine.txt", "report.html"):
-        with open(os.path.join(output, name), "w", encoding="utf-8") as file:
-            file.write("mine\n")
+        write(os.path.join(output, name), "mine\n")
     before = set(os.listdir(output))
-    done = run(["case.prm", "--output", "twice", "--overwrite"] + one, folder, "simulate")
+    done = run(["case.prm", "--output", "twice", "--overwrite"] + one, "simulate")
     gone = before - set(os.listdir(output))
     of_increments = {f"{of}_00000{i}.vtu" for of in ("fields", "die_lower", "die_upper") for i in (2, 3)}
-    judge_that("--overwrite replaces all", done.returncode == 0 and gone == {"report.html", "sensitivity.vtu", *of_increments},
-               f"{done.stderr} removed {sorted(gone)}")
+    judge("--overwrite replaces all", done.returncode == 0 and gone == {"report.html", "sensitivity.vtu", *of_increments},
+          f"{done.stderr} removed {sorted(gone)}")
 
 
-def contents(folder):
-    """File -> bytes and time of change."""
-    found = {}
-    for place, _, names in os.walk(folder):
-        for path in (os.path.join(place, name) for name in names):
-            with open(path, "rb") as file:
-                found[path] = (file.read(), os.stat(path).st_mtime_ns)
-    return found
-
-
-def full_disk(folder):
+def full_disk():
     """A small file system of our own, where the machine lets us have one."""
     for size, name, more in (("4k", "first files", ""), ("92k", "fields", ""),
                              ("128k", "record", "--set 'Output/fields every=0' --set Press/increments=60")):
-        disk, saved = os.path.join(folder, f"disk_{size}"), os.path.join(folder, f"saved_{size}")
+        disk, saved = f"disk_{size}", f"saved_{size}"
         os.mkdir(disk)
         script = (f"mount -t tmpfs -o size={size} tmpfs {disk} || exit 77; "
                   f"{PROGRAM} gradient case.prm --output {disk}/run {more}; status=$?; cp -r {disk} {saved}; exit $status")
         try:
-            done = subprocess.run(["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", script], cwd=folder,
-                                  env=ENVIRONMENT, capture_output=True, text=True, timeout=300, check=False)
+            done = start(["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", script])
         except OSError:
             done = None
         if done is None or done.returncode == 77 or done.stderr.startswith("unshare"):
             print(f"skipped disk full at the {name}: no private file system can be mounted here")
             continue
-        judge(f"disk full at the {name}", done, re.escape(disk))
+        judge_message(f"disk full at the {name}", done, re.escape(disk))
         history = os.path.join(saved, "run", "history.csv")
         if size != "4k":
             whole_history(f"what was computed before is kept ({name})", history, 1)
 
 
-def any_line_ends(folder):
+def any_line_ends():
     """Files as other systems write them, names in an included file, continued lines, any case: all are read alike."""
     def energy_and_volume(name, text):
-        with open(os.path.join(folder, "variant.prm"), "wb") as file:
+        with open("variant.prm", "wb") as file:
             file.write(text.encode())
-        done = run(["variant.prm", "--output", "variant", "--overwrite"], folder, command="simulate")
+        done = run(["variant.prm", "--output", "variant", "--overwrite"], command="simulate")
         found = re.findall(r"^  (energy|volume) [0-9]", done.stdout, re.MULTILINE)
-        judge_that(name, done.returncode == 0 and found == ["energy", "volume"], done.stderr + str(found))
+        judge(name, done.returncode == 0 and found == ["energy", "volume"], done.stderr + str(found))
 
-    with open(os.path.join(folder, "names.prm"), "w", encoding="utf-8") as file:
-        file.write("subsection Objectives\nset names = energy, volume\nend\n")
-    case = CASE.replace("stroke     = 1", "stroke     = 0.1").replace("increments = 3", "increments = 1")
+    write("names.prm", "subsection Objectives\nset names = energy, volume\nend\n")
+    case = prm(whole_runs.cube(10, 4, 0.1, 1))
     both = case + "subsection Objectives\n  set names = energy, volume\nend\n"
     energy_and_volume("plain file", both)
     energy_and_volume("lines that end as on Windows", both.replace("\n", "\r\n"))
@@ -387,20 +331,18 @@ def any_line_ends(folder):
     energy_and_volume("names in another file", case + "include names.prm\n")
 
 
-def template(folder):
+def template():
     """What --print-parameters writes is a case, and is the manual's page."""
-    printed = subprocess.run([PROGRAM, "--print-parameters"], env=ENVIRONMENT, capture_output=True, text=True, check=False).stdout
-    with open(os.path.join(folder, "template.prm"), "w", encoding="utf-8") as file:
-        file.write(printed)
-    done = run(["template.prm", "--output", "template"] + settings("Press/stroke=0.1", "Billet/element size=20"), folder, command="simulate")
-    judge_that("the printed parameters are a case", done.returncode == 0, done.stderr)
-    page = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../doc/parameters/parameters.prm")
-    with open(page, encoding="utf-8") as file:
-        judge_that("doc/parameters/parameters.prm is up to date", file.read() == printed,
-                   "write it anew: retroforge --print-parameters > doc/parameters/parameters.prm")
+    printed = start([PROGRAM, "--print-parameters"]).stdout
+    write("template.prm", printed)
+    done = run(["template.prm", "--output", "template"] + settings("Press/stroke=0.1", "Billet/element size=20"), command="simulate")
+    judge("the printed parameters are a case", done.returncode == 0, done.stderr)
+    page = ROOT / "doc/parameters/parameters.prm"
+    judge("doc/parameters/parameters.prm is up to date", text_of(page) == printed,
+          "write it anew: retroforge --print-parameters > doc/parameters/parameters.prm")
 
 
-def told(folder):
+def told():
     """What is accepted and does not do what one may think is said."""
     short = settings("Press/stroke=0.1", "Press/increments=1")
     for name, more, pattern in (
@@ -415,74 +357,56 @@ def told(folder):
             ("weight in no sum", objective("energy", "weight=2"), r"note: Objective energy/weight = 2 has no effect: .*gradients = each"),
             ("die that nothing touches", settings("Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0"),
              r"warning: no node touched die side")):
-        done = run(["case.prm", "--output", "told", "--overwrite"] + short + more, folder, command="simulate")
-        judge_that(name, done.returncode == 0 and re.search(pattern, done.stdout), done.stdout + done.stderr)
-    done = run(["case.prm", "--output", "told", "--overwrite"] + short, folder, command="simulate")
-    judge_that("nothing to tell", not re.search("note|warning", done.stdout), done.stdout)
+        done = run(["case.prm", "--output", "told", "--overwrite"] + short + more, command="simulate")
+        judge(name, done.returncode == 0 and re.search(pattern, done.stdout), done.stdout + done.stderr)
+    done = run(["case.prm", "--output", "told", "--overwrite"] + short, command="simulate")
+    judge("nothing to tell", not re.search("note|warning", done.stdout), done.stdout)
 
 
-def scaled_mesh(folder):
+def scaled_mesh():
     """A mesh in metres and its scale are the mesh in millimetres."""
     results = []
     for mesh, more in (("cube", []), ("cube_in_metres", settings("Billet/scale=1000"))):
         done = run(["case.prm", "--output", mesh] + file_mesh(mesh) + settings("Press/stroke=0.1", "Press/increments=1") + more,
-                   folder, "simulate")
+                   "simulate")
         results.append(re.search(r"energy (\d+\.\d{6})", done.stdout))
-    judge_that("scale of a billet's file", all(results) and results[0][1] == results[1][1], done.stdout + done.stderr)
+    judge("scale of a billet's file", all(results) and results[0][1] == results[1][1], done.stdout + done.stderr)
 
 
-def per_cent_of_zero(folder):
+def per_cent_of_zero():
     """Where a parameter is 0, its per cent are of a length that is told: the width of the billet, from a file too."""
     offset = settings("Press/stroke=0.1", "Press/increments=1", "Design/parameters=die upper/offset")
     for name, more in (("box", []), ("file", file_mesh("cube"))):
-        done = run(["case.prm", "--output", "width", "--overwrite"] + offset + more, folder)
-        with open(os.path.join(folder, "width", "summary.json"), encoding="utf-8") as file:
-            scale = json.load(file)["parameters"][0].get("scale")
-        judge_that(f"per cent of an offset, billet of shape {name}", scale == 10 and "(of 10 mm)" in done.stdout, done.stdout + done.stderr)
+        done = run(["case.prm", "--output", "width", "--overwrite"] + offset + more)
+        scale = summary_of("width")["parameters"][0].get("scale")
+        judge(f"per cent of an offset, billet of shape {name}", scale == 10 and "(of 10 mm)" in done.stdout, done.stdout + done.stderr)
 
 
-def forbidden_output(folder):
+def forbidden_output():
     for file in ("summary.json", "sensitivity.vtu", "record.h5"):
-        os.makedirs(os.path.join(folder, "taken", file))
-        done = run(["case.prm", "--output", "taken"], folder)
-        judge(f"{file} is a folder", done, re.escape(file))
-        judge_that("and that is found before the run", "  1 " not in done.stdout, done.stdout)
-        os.rmdir(os.path.join(folder, "taken", file))
-    with open(os.path.join(folder, "a_file"), "w", encoding="utf-8") as file:
-        file.write("in the way\n")
-    judge("output below a file", run(["case.prm", "--output", "a_file/results"], folder), "a_file")
-    judge("output is not writable", run(["case.prm", "--output", "/proc/results"], folder), "/proc/results")
+        os.makedirs(os.path.join("taken", file))
+        done = run(["case.prm", "--output", "taken"])
+        judge_message(f"{file} is a folder", done, re.escape(file))
+        judge("and that is found before the run", "  1 " not in done.stdout, done.stdout)
+        os.rmdir(os.path.join("taken", file))
+    write("a_file", "in the way\n")
+    judge_message("output below a file", run(["case.prm", "--output", "a_file/results"]), "a_file")
+    judge_message("output is not writable", run(["case.prm", "--output", "/proc/results"]), "/proc/results")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        with open(os.path.join(folder, "case.prm"), "w", encoding="utf-8") as file:
-            file.write(CASE)
-        for name, content in MESHES.items():
-            with open(os.path.join(folder, f"{name}.msh"), "w", encoding="utf-8") as file:
-                file.write(content)
-        for name, content in STLS.items():
-            with open(os.path.join(folder, name), "wb") as file:
-                file.write(content)
-        judge("missing parameter file", run(["absent.prm"], folder), "absent.prm")
-        judge("unknown command", run(["case.prm"], folder, command="forge"), "forge")
-        for name, (arguments, pattern) in MISTAKES.items():
-            judge(name, run(["case.prm", "--output", "run", "--overwrite"] + arguments, folder), pattern)
-        with open(os.path.join(folder, "unclosed.prm"), "w", encoding="utf-8") as file:
-            file.write(CASE.rstrip()[:-3])
-        judge("section not closed", run(["unclosed.prm"], folder), "unclosed.prm")
-        any_line_ends(folder)
-        template(folder)
-        told(folder)
-        scaled_mesh(folder)
-        per_cent_of_zero(folder)
-        forbidden_output(folder)
-        interrupted(folder)
-        resumed(folder)
-        replaced(folder)
-        full_disk(folder)
-    print(f"{len(failures)} failed")
-    return 1 if failures else 0
+def mistakes():
+    for name, content in MESHES.items():
+        write(f"{name}.msh", content)
+    for name, content in STLS.items():
+        with open(name, "wb") as file:
+            file.write(content)
+    judge_message("missing parameter file", run(["absent.prm"]), "absent.prm")
+    judge_message("unknown command", run(["case.prm"], command="forge"), "forge")
+    for name, (arguments, pattern) in MISTAKES.items():
+        judge_message(name, run(["case.prm", "--output", "run", "--overwrite"] + arguments), pattern)
+    write("unclosed.prm", CASE.rstrip()[:-3])
+    judge_message("section not closed", run(["unclosed.prm"]), "unclosed.prm")
 
 
-sys.exit(main())
+whole_runs.main({"case.prm": CASE}, (mistakes, any_line_ends, template, told, scaled_mesh, per_cent_of_zero, forbidden_output, interrupted,
+                                     resumed, replaced, full_disk))

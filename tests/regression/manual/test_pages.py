@@ -5,9 +5,6 @@
 Scenes are excerpts of cases or run themselves; settings, options, scripts, files and names in the code exist; tables that a script prints
 are as it prints them.
 """
-import csv
-import json
-import os
 import pathlib
 import re
 import subprocess
@@ -16,13 +13,12 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT / "contrib"), str(ROOT / "contrib/python")]
+sys.path[:0] = [str(ROOT / "contrib"), str(ROOT / "contrib/python"), str(ROOT / "tests/regression")]
 
 import norton_hoff  # noqa: E402
 from retroforge_manual import generated  # noqa: E402
+import whole_runs  # noqa: E402
 
-PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/retroforge").resolve()
-ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 SHORT = {"Billet/element size": 15, "Press/stroke": 1, "Press/increments": 2, "Output/fields every": 0}
 
 PAGES = {str(path.relative_to(ROOT)): path.read_text(encoding="utf-8")
@@ -33,7 +29,7 @@ WORDS = re.compile(r"`([^`\n]+)`")
 
 
 def program(*words):
-    return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, check=False, env=ENVIRONMENT)
+    return whole_runs.start([whole_runs.PROGRAM, *map(str, words)])
 
 
 def simulate(scene, settings):
@@ -45,10 +41,8 @@ def simulate(scene, settings):
         done = program("simulate", case, "--output", f"{folder}/results", *words)
         if done.returncode != 0:
             raise AssertionError(done.stderr)
-        with open(f"{folder}/results/summary.json", encoding="utf-8") as file:
-            summary = json.load(file)
-        with open(f"{folder}/results/history.csv", encoding="utf-8") as file:
-            return summary, {name: float(value) for name, value in list(csv.DictReader(file))[-1].items()}
+        last = whole_runs.history_of(f"{folder}/results")[-1]
+        return whole_runs.summary_of(f"{folder}/results"), {name: float(value) for name, value in last.items()}
 
 
 def normal(text):
@@ -184,36 +178,9 @@ class Materials(unittest.TestCase):
     def test_flow_stress_of_the_program(self):
         """A cube between flat dies without friction: force over area is the flow stress that K and m came from."""
         K, m = norton_hoff.law_through(1., 75.7, 10., 110.7)
-        scene = f"""
-        subsection Billet
-          set shape = box
-          set size = 20, 20, 20
-          set element size = 10
-          set symmetry planes = -1, 0, 0; 0, -1, 0
-        end
-        subsection Dies
-          set names = lower, upper
-        end
-        subsection Die lower
-          set facing = 0, 0, 1
-        end
-        subsection Die upper
-          set point = 0, 0, 20
-          set facing = 0, 0, -1
-          set velocity = 0, 0, -100
-        end
-        subsection Material
-          set consistency = {K!r}
-          set strain rate sensitivity = {m!r}
-        end
-        subsection Press
-          set stroke = 0.2
-          set increments = 1
-        end
-        subsection Remeshing
-          set when = never
-        end
-        """
+        law = {"Material": {"consistency": K, "strain rate sensitivity": m}, "Remeshing": {"when": "never"},
+               **{f"Die {name}": {"friction": 0} for name in ("lower", "upper")}}
+        scene = whole_runs.prm(whole_runs.changed(whole_runs.cube(20, 10, 0.2, 1), law))
         _, last = simulate(scene, {"Output/fields every": 0})
         height = 19.9  # in the middle of the increment, where the force is taken
         area, rate = 20. * 20. * 20. / height, 100. / height

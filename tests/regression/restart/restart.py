@@ -7,108 +7,27 @@ A stretch killed and resumed, the whole resumed twice, and a stroke made longer 
 scene is refused by the names of all that differs, and nothing in the folder changes. A check that was stopped repeats nothing.
 
 By hand: 2 mm in 4 increments and on to 3 mm are 6 increments of 0.5 mm, as 3 mm in 6 are. Usage: restart.py RETROFORGE"""
-import csv
 import json
 import os
 import re
 import shutil
-import subprocess
 import sys
-import tempfile
 
-PROGRAM = os.path.abspath(sys.argv[1])
-ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from whole_runs import contents, changed, cube, history_of, judge, main, prm, run, summary_of, text_of, write  # noqa: E402
 
-CASE = """
-subsection Billet
-  set shape           = box
-  set size            = 20, 20, 20
-  set element size    = 7
-  set symmetry planes = -1, 0, 0; 0, -1, 0
-end
-subsection Dies
-  set names = lower, upper
-end
-subsection Die lower
-  set point    = 0, 0, 0
-  set facing   = 0, 0, 1
-  set friction = 0.3
-end
-subsection Die upper
-  set point    = 0, 0, 20
-  set facing   = 0.08, 0.05, -1
-  set velocity = 0, 0, -100
-  set friction = 0.3
-end
-subsection Press
-  set stroke       = 12
-  set increments   = 6
-  set largest move = 0.18
-  set max cuts     = 0
-end
-subsection Contact
-  set penetration = 1e-4
-end
-subsection Remeshing
-  set when = never
-end
-subsection Objectives
-  set names = energy, mean strain
-end
-subsection Design
-  set parameters = material/m, billet/height
-end
-subsection Check
-  set steps            = 1e-5, 1e-6
-  set taylor start     = 1e-3
-  set taylor halvings  = 2
-  set free differences = false
-end
-"""
+CASE = changed(cube(20, 7, 12, 6, **{"largest move": 0.18, "max cuts": 0}), {
+    "Die upper": {"facing": "0.08, 0.05, -1"}, "Contact": {"penetration": 1e-4}, "Remeshing": {"when": "never"},
+    "Objectives": {"names": "energy, mean strain"}, "Design": {"parameters": "material/m, billet/height"},
+    "Check": {"steps": "1e-5, 1e-6", "taylor start": 1e-3, "taylor halvings": 2, "free differences": "false"}})
 
 FINER = ("Remeshing/when=increments", "Remeshing/every=4", "Press/increments=20", "Press/largest move=0.042", "Press/max cuts=1")
 OTHER = (*FINER[:2], "Press/increments=60", "Press/scheme=euler", "Contact/layer=0.8", "Contact/approach=1.5", "Newton/tolerance=1e-10")
-
-failures = []
-
-
-def judge(name, good, detail=""):
-    print(f"passed {name}" if good else f"FAILED {name} {detail}", flush=True)
-    if not good:
-        failures.append(name)
-
-
-def run(word, output, *settings):
-    words = [PROGRAM, word, "case.prm", "--output", output]
-    for setting in settings:
-        words += [setting] if setting.startswith("--") else ["--set", setting]
-    return subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=600, check=False)
-
-
-def summary_of(output):
-    with open(os.path.join(output, "summary.json"), encoding="utf-8") as file:
-        return json.load(file)
-
 
 def results(output):
     """Objectives and gradients, to all digits."""
     summary = summary_of(output)
     return summary["objectives"], summary["parameters"]
-
-
-def contents(folder):
-    """File -> bytes and time of change."""
-    found = {}
-    for place, _, names in os.walk(folder):
-        for path in (os.path.join(place, name) for name in names):
-            with open(path, "rb") as file:
-                found[path] = (file.read(), os.stat(path).st_mtime_ns)
-    return found
-
-
-def rows_of(output):
-    with open(os.path.join(output, "history.csv"), encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def n_recorded(output):
@@ -177,15 +96,13 @@ def checked(first, second):
           restarts[0]["changed"]["Press/increments"] == ["6", "20"] and restarts[1]["changed"]["Press/scheme"] == ["midpoint", "euler"] and
           "Remeshing/every" not in restarts[1]["changed"], restarts)
     judge("remeshed, and not at first", summary["remeshings"] >= 2 and "remeshed" in done.stdout)
-    steps = [float(b["stroke"]) - float(a["stroke"]) for a, b in zip(rows_of("run"), rows_of("run")[1:])]
+    steps = [float(b["stroke"]) - float(a["stroke"]) for a, b in zip(history_of("run"), history_of("run")[1:])]
     judge("increments of each stretch", min(steps[:first - 1]) > 1.9 and
           0.25 < min(steps[first - 1:second - 1]) and max(steps[second - 1:]) < 0.21, steps)
 
-    with open("run/check.json", encoding="utf-8") as file:
-        kept = json.load(file)
+    kept = json.loads(text_of("run/check.json"))
     kept["rows"] = [row for row in kept["rows"] if row["parameter"] == "material/m"]
-    with open("run/check.json", "w", encoding="utf-8") as file:
-        json.dump(kept, file)
+    write("run/check.json", json.dumps(kept))
     again = run("check", "run", "--resume", *OTHER)
     judge("check resumed: repeats nothing", again.returncode == 0 and "1 done before" in again.stdout and "  1/3" not in again.stdout and
           "  2/3" in again.stdout, again.stdout + again.stderr)
@@ -236,8 +153,7 @@ def other_die():
     die = ("Die upper/shape=stl", "Die upper/file=die.stl", "Die upper/point=0, 0, 0", "Die upper/facing=0, 0, -1", "Press/stroke=1",
            "Press/increments=2", "Press/largest move=0.5")
     for height in (20, 20.5):
-        with open("die.stl", "w", encoding="utf-8") as file:
-            file.write(STL.format(z=height))
+        write("die.stl", STL.format(z=height))
         if height == 20:
             first = run("simulate", "stl", *die)
             before = contents("stl")
@@ -246,23 +162,8 @@ def other_die():
           "another one" in done.stderr and contents("stl") == before, first.stderr + done.stderr)
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        with open("case.prm", "w", encoding="utf-8") as file:
-            file.write(CASE)
-        try:
-            failed()
-            refused()
-            checked(*killed_and_resumed())
-            free()
-            finished()
-            longer_stroke()
-            other_die()
-        except (KeyError, OSError, StopIteration, ValueError, subprocess.SubprocessError) as error:
-            judge("all tests run", False, repr(error))
-    print(f"{len(failures)} failed")
-    return 1 if failures else 0
+def stretches():
+    checked(*killed_and_resumed())
 
 
-sys.exit(main())
+main({"case.prm": prm(CASE)}, (failed, refused, stretches, free, finished, longer_stroke, other_die))

@@ -2,89 +2,38 @@
 # Copyright (C) 2026 The Retroforge authors
 """What runs leave behind: numbers of the whole part beside those of the model; of a run that fails, the reason and the
 workpiece there; of one that is stopped, what it had, and how to go on; of a check, what is done; nothing of a record beside
-the finished one; no number that is not finite; fields and dies as time goes on. Usage: runs.py RETROFORGE REPORT
+the finished one; no number that is not finite; fields and dies as time goes on. Usage: runs.py RETROFORGE
 
 By hand: without friction a block is upset evenly, and its energy does not depend on how symmetry cut it. Pressed from
 above at v against a die, or from both sides at v/2 over half the stroke, is the same flow."""
-import csv
-import json
 import math
 import os
 import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import xml.etree.ElementTree as xml
 
 import numpy as np
 
-PROGRAM, REPORT = (os.path.abspath(name) for name in sys.argv[1:3])
-sys.path.insert(0, os.path.dirname(REPORT))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from whole_runs import (ENVIRONMENT, ROOT, changed, command, cube, history_of, judge, main, prm, run, start, summary_of,  # noqa: E402
+                        text_of)
+
+sys.path.insert(0, str(ROOT / "contrib"))
 from retroforge_report import vtu  # noqa: E402
 
-ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-               "OMPI_MCA_rmaps_base_oversubscribe": "1"}
-
-CASE = """
-subsection Billet
-  set shape           = box
-  set size            = 20, 20, 20
-  set element size    = 7
-  set symmetry planes = -1, 0, 0; 0, -1, 0
-end
-subsection Dies
-  set names = {dies}
-end
-subsection Die lower
-  set point    = 0, 0, 0
-  set facing   = 0, 0, 1
-end
-subsection Die upper
-  set point    = 0, 0, 20
-  set facing   = 0, 0, -1
-  set velocity = 0, 0, -100
-end
-subsection Press
-  set stroke     = 2
-  set increments = 4
-end
-subsection Objectives
-  set names = energy, maximum effort, volume, mean strain
-end
-"""
-
-failures = []
-
-
-def judge(name, good, detail=""):
-    print(f"passed {name}" if good else f"FAILED {name} {detail}", flush=True)
-    if not good:
-        failures.append(name)
-
-
-def command(word, output, *settings, case="case.prm"):
-    words = [PROGRAM, word, case, "--output", output]
-    for setting in settings:
-        words += [setting] if setting.startswith("--") else ["--set", setting]
-    return words
-
-
-def run(word, output, *settings, **more):
-    return subprocess.run(command(word, output, *settings, **more), env=ENVIRONMENT, capture_output=True, text=True, timeout=300,
-                          check=False)
-
-
-def text_of(*path):
-    with open(os.path.join(*path), encoding="utf-8") as file:
-        return file.read()
+REPORT = str(ROOT / "contrib/report")
+SMOOTH = {"friction": 0}
+CASE = changed(cube(20, 7, 2, 4), {"Die lower": SMOOTH, "Die upper": SMOOTH,
+                                   "Objectives": {"names": "energy, maximum effort, volume, mean strain"}})
+UPPER = changed({name: section for name, section in CASE.items() if name != "Die lower"}, {"Dies": {"names": "upper"}})
 
 
 def results(output):
     """{objective: entry} of its summary, and the last row of its history."""
-    summary = json.loads(text_of(output, "summary.json"))
-    history = list(csv.DictReader(text_of(output, "history.csv").splitlines()))
+    summary, history = summary_of(output), history_of(output)
     return summary, {o["name"]: o for o in summary["objectives"]}, {k: float(v) for k, v in history[-1].items()}
 
 
@@ -113,7 +62,7 @@ def whole_part():
         wholes[name] = (last["whole_force"], last["whole_energy"], last["whole_volume"])
     for name in ("half", "eighth"):
         judge(f"{name}: the same block", all(near(a, b, 2e-3) for a, b in zip(wholes[name], wholes["quarter"])), wholes)
-    done = subprocess.run([REPORT, "--no-vtk", "quarter"], env=ENVIRONMENT, capture_output=True, text=True, check=False)
+    done = start([REPORT, "--no-vtk", "quarter"])
     judge("reported", done.returncode == 0 and "whole part" in text_of("quarter", "report.html"), done.stderr)
 
 
@@ -166,7 +115,7 @@ def failed():
 
 
 def reported(folder, *expected):
-    done = subprocess.run([REPORT, "--no-vtk", folder], env=ENVIRONMENT, capture_output=True, text=True, check=False)
+    done = start([REPORT, "--no-vtk", folder])
     page = text_of(folder, "report.html") if done.returncode == 0 else ""
     pictures = os.listdir(os.path.join(folder, "pictures")) if page else []
     missing = [text for text in expected if text not in page and text not in pictures]
@@ -215,7 +164,7 @@ def check():
 
     def one_is_done():
         try:
-            return json.loads(text_of("part", "summary.json"))["check_remaining"] < 4
+            return summary_of("part")["check_remaining"] < 4
         except OSError:
             return False
     stop(command("check", "part", *few, "Press/increments=40"), one_is_done)
@@ -225,22 +174,4 @@ def check():
     reported("part", f"{left} directions are not checked", "energy")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        for name, dies in (("case.prm", "lower, upper"), ("upper.prm", "upper")):
-            text = CASE.format(dies=dies)
-            if name == "upper.prm":
-                text = text[:text.index("subsection Die lower")] + text[text.index("subsection Die upper"):]
-            with open(name, "w", encoding="utf-8") as file:
-                file.write(text)
-        for test in (whole_part, beside, not_finite, fields, failed, stopped, check):
-            try:
-                test()
-            except (KeyError, OSError, subprocess.SubprocessError) as error:
-                judge(test.__name__, False, repr(error))
-    print(f"{len(failures)} failed")
-    return 1 if failures else 0
-
-
-sys.exit(main())
+main({"case.prm": prm(CASE), "upper.prm": prm(UPPER)}, (whole_part, beside, not_finite, fields, failed, stopped, check))

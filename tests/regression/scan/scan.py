@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
 """A scan: its points are the runs a user would make by hand, its statistics what numpy makes of them; it goes on where it
-was stopped, and past points that fail. Usage: scan.py RETROFORGE REPORT
+was stopped, and past points that fail. Usage: scan.py RETROFORGE
 
 By hand: the energy is proportional to the consistency K but for the penalty, so that its slope is the energy over K."""
 import csv
@@ -10,81 +10,25 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 
 import numpy as np
 
-PROGRAM, REPORT = (os.path.abspath(name) for name in sys.argv[1:3])
-ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-               "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from whole_runs import ENVIRONMENT, ROOT, changed, command, judge, main, prm, run, start, summary_of, text_of, upsetting  # noqa: E402
 
-CASE = """
-subsection Billet
-  set shape           = cylinder
-  set radius          = 10
-  set height          = 15
-  set element size    = 5
-  set symmetry planes = -1, 0, 0; 0, -1, 0
-end
-subsection Dies
-  set names = lower, upper
-end
-subsection Die lower
-  set point    = 0, 0, 0
-  set facing   = 0, 0, 1
-  set friction = 0.3
-end
-subsection Die upper
-  set point    = 0, 0, 15
-  set facing   = 0, 0, -1
-  set velocity = 0, 0, -100
-  set friction = 0.3
-end
-subsection Press
-  set stroke     = 3
-  set increments = 6
-end
-subsection Objectives
-  set names = energy, volume
-end
-subsection Design
-  set parameters = material/K, die upper/offset
-end
-subsection Scan
-  set points     = 5
-  set fit degree = 2
-end
-"""
-
-failures = []
-
-
-def judge(name, good, detail=""):
-    print(f"{'passed' if good else 'FAILED'} {name} {detail}", flush=True)
-    if not good:
-        failures.append(name)
-
-
-def command(word, output, *more):
-    return [PROGRAM, word, "case.prm", "--output", output, *more]
-
-
-def run(*arguments):
-    return subprocess.run(arguments, env=ENVIRONMENT, capture_output=True, text=True, timeout=300, check=False)
-
-
-def text_of(name):
-    with open(name, encoding="utf-8") as file:
-        return file.read()
+REPORT = str(ROOT / "contrib/report")
+CASE = changed(upsetting("cylinder", {"radius": 10, "height": 15}, 5, 15, 3, 6), {
+    "Objectives": {"names": "energy, volume"}, "Design": {"parameters": "material/K, die upper/offset"},
+    "Scan": {"points": 5, "fit degree": 2}})
 
 
 def scan(output, *more):
-    done = run(*command("scan", output, *more))
+    done = run("scan", output, *more)
     if done.returncode:
         sys.exit(done.stdout + done.stderr)
     with open(os.path.join(output, "scan.csv"), encoding="utf-8", newline="") as file:
-        return json.loads(text_of(os.path.join(output, "scan.json"))), list(csv.DictReader(file)), done.stdout
+        return json.loads(text_of(output, "scan.json")), list(csv.DictReader(file)), done.stdout
 
 
 def near(name, found, expected, tolerance=1e-9):
@@ -100,9 +44,8 @@ def whole_scan():
     ranges = (1.693 * np.linspace(0.99, 1.01, 5), np.linspace(-0.2, 0.2, 5))
     for line, values in zip(found["scans"], ranges):
         judge_line(line, [row for row in rows if row["parameter"] == line["parameter"]], values)
-    by_hand = subprocess.run(text_of("whole/points/material_K_002/command.txt").replace("whole/points", "hand"), shell=True,
-                             env=ENVIRONMENT, capture_output=True, check=False)
-    energy = json.loads(text_of("hand/material_K_002/summary.json"))["objectives"][0]["value"]
+    by_hand = start(["sh", "-c", text_of("whole/points/material_K_002/command.txt").replace("whole/points", "hand")])
+    energy = summary_of("hand/material_K_002")["objectives"][0]["value"]
     judge("a point repeated by hand", by_hand.returncode == 0 and energy == float(rows[1]["energy [mJ]"]))
     judge("records are gone", not os.path.exists("whole/points/material_K_001/record.h5"))
 
@@ -133,47 +76,47 @@ def resumed():
     _, _, printed = scan("whole", "--resume")
     judge("resumed: the same bits", text_of("whole/scan.csv") == before)
     judge("resumed: it says what is reused", "9 of them are finished" in printed)
-    _, _, printed = scan("whole", "--resume", "--set", "Scan/fit degree=3", "--set", "Check/steps=1e-3")
+    _, _, printed = scan("whole", "--resume", "Scan/fit degree=3", "Check/steps=1e-3")
     judge("resumed with another fit", "10 of them are finished" in printed)
-    _, _, printed = scan("whole", "--resume", "--set", "Die lower/friction=0.2", "--set", "Scan/parameter=material/K")
+    _, _, printed = scan("whole", "--resume", "Die lower/friction=0.2", "Scan/parameter=material/K")
     judge("resumed with another case", "0 of them are finished" in printed)
 
 
 def failing_points():
     """The upper offsets of seven push the die into the billet by 0.27, 0.53 and 0.8 mm; up to 5 % of the cube root of
     its volume, 0.52 mm, contact pushes it out."""
-    found, rows, printed = scan("failing", "--set", "Scan/parameter=die upper/offset", "--set", "Scan/points=7", "--set",
-                                "Scan/range=0.04", "--set", "Scan/gradients=false")
+    found, rows, printed = scan("failing", "Scan/parameter=die upper/offset", "Scan/points=7",
+                                "Scan/range=0.04", "Scan/gradients=false")
     objective = found["scans"][0]["objectives"][0]
     judge("failed points are counted", len(found["failed"]) == 2 and "7 points, 2 failed" in printed)
     judge("and say why", all("inside it" in entry["reason"] for entry in found["failed"]) and "inside it" in rows[6]["failure"])
     judge("the others are fitted", objective["values"] == 5 and objective["noise_rms"] is not None)
     judge("without gradients no slopes", objective["slopes"] == 0 and objective["bias"] is None and rows[0]["energy: gradient"] == "")
-    done = run(REPORT, "--no-vtk", "failing")
+    done = start([REPORT, "--no-vtk", "failing"])
     judge("reported", done.returncode == 0 and "inside it" in text_of("failing/report.html"), done.stderr)
-    done = run(*command("scan", "all", "--set", "Die upper/point=0, 0, 13", "--set", "Scan/parameter=material/K"))
+    done = run("scan", "all", "Die upper/point=0, 0, 13", "Scan/parameter=material/K")
     judge("all failed", done.returncode == 1 and "5 points, 5 failed" in done.stdout, done.stderr)
 
 
 def changed_design():
-    found, _, _ = scan("changed", "--at", "billet/radius=9.5", "--at", "material/K=2", "--set", "Scan/parameter=material/K")
+    found, _, _ = scan("changed", ("billet/radius", 9.5), ("material/K", 2), "Scan/parameter=material/K")
     line = found["scans"][0]
     judge("around another design", line["nominal"] == 2 and abs(line["to"] - 2.02) < 1e-12)
     judge("which its points have", "billet/radius: 9.5, material/K: 2" in text_of("changed/points/material_K_003/parameters.prm"))
 
 
 def refused():
-    done = run("mpirun", "-np", "2", *command("scan", "ranks"))
+    done = start(["mpirun", "-np", "2", *command("scan", "ranks")])
     judge("mpirun", done.returncode != 0 and "leave mpirun out" in done.stderr, done.stderr.strip()[:200])
     for what, setting, expected in (("unknown parameter", "Scan/parameter=billet/raduis", "did you mean 'billet/radius'"),
                                     ("too few points", "Scan/points=3", "at least 4 points")):
-        done = run(*command("scan", "wrong", "--set", setting))
+        done = run("scan", "wrong", setting)
         judge(what, done.returncode == 1 and expected in done.stderr, done.stderr.strip())
 
 
 def stopped():
     """Its runs end with it."""
-    fine = ("--set", "Billet/element size=1", "--set", "Press/increments=1000")
+    fine = ("Billet/element size=1", "Press/increments=1000")
     with subprocess.Popen(command("scan", "stopped", *fine), env=ENVIRONMENT, stdout=subprocess.DEVNULL) as scanning:
         history = "stopped/points/material_K_001/history.csv"
         for _ in range(300):
@@ -195,22 +138,11 @@ def words_of(pid):
 
 
 def report():
-    done = run(REPORT, "--no-vtk", "whole")
+    done = start([REPORT, "--no-vtk", "whole"])
     judge("report", done.returncode == 0, done.stderr)
     if done.returncode == 0:
         page = text_of("whole/report.html")
         judge("its pictures", page.count("data:image/png;base64") == 4 and "Roughness" in page)
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        with open("case.prm", "w", encoding="utf-8") as file:
-            file.write(CASE)
-        for test in (whole_scan, report, resumed, failing_points, changed_design, refused, stopped):
-            test()
-    print(f"{len(failures)} failed")
-    return 1 if failures else 0
-
-
-sys.exit(main())
+main({"case.prm": prm(CASE)}, (whole_scan, report, resumed, failing_points, changed_design, refused, stopped))
