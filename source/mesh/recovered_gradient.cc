@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/geometry/vector_algebra.h>
 #include <retroforge/mesh/gradient_fit.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/recovered_gradient.h>
@@ -66,19 +67,6 @@ namespace retroforge
       }
       return nodes;
     }
-
-    std::vector<Vec3> directions_across(const Vec3 &unit_normal)
-    {
-      unsigned int axis = 0;
-      for (unsigned int i = 1; i < 3; ++i)
-        if (std::abs(unit_normal[i]) < std::abs(unit_normal[axis]))
-          axis = i;
-      Vec3 u;
-      u[axis] = 1.;
-      u       = cross_product_3d(unit_normal, u);
-      u /= u.norm();
-      return {u, cross_product_3d(unit_normal, u)};
-    }
   } // namespace
 
   RecoveredGradient::RecoveredGradient(const TetMesh &mesh, const NodalVectors<double> &X)
@@ -120,7 +108,8 @@ namespace retroforge
     for (const Vec3 &normal : normals)
       if (!(normal * mean > sharp_cosine * normal.norm() * mean.norm()))
         return false;
-    stencil.directions = directions_across(mean / mean.norm());
+    const auto across  = directions_across(mean / mean.norm());
+    stencil.directions = {across[0], across[1]};
     return true;
   }
 

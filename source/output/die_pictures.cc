@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/geometry/vector_algebra.h>
 #include <retroforge/output/die_pictures.h>
 
 #include <algorithm>
@@ -11,23 +12,10 @@ namespace retroforge
   {
     constexpr double margin = 0.1; // of the longer side
 
-    /// Two directions in a plane, along the axes where it is: t, n x t.
-    std::array<Vec3, 2> directions_in_plane(const Vec3 &n)
-    {
-      unsigned int axis = 0;
-      for (unsigned int i = 1; i < 3; ++i)
-        if (std::abs(n[i]) < std::abs(n[axis]))
-          axis = i;
-      Vec3 t;
-      t[axis] = 1.;
-      t       = unit(Vec3(t - (t * n) * n));
-      return {{t, cross(n, t)}};
-    }
-
     TriangleSurface rectangle_on(const Die &plane, const Vec3 &displacement, const NodalVectors<double> &X)
     {
       const auto at = plane.project(X[0], displacement, DieFeature());
-      const auto t  = directions_in_plane(at.n);
+      const auto t  = directions_across(at.n);
       Vec3       low, high; // along t[0], t[1]
       for (unsigned int i = 0; i < 2; ++i)
       {

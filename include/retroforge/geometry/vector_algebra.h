@@ -4,6 +4,7 @@
 
 #include <retroforge/core/types.h>
 
+#include <array>
 #include <cmath>
 
 /// @file
@@ -31,6 +32,20 @@ namespace retroforge
   Vector3<Number> unit(const Vector3<Number> &a)
   {
     return a * Number(1. / length(a));
+  }
+
+  /// Two directions across a unit vector n, first of all across the axis that it is least along:  u, n x u.
+  inline std::array<Vec3, 2> directions_across(const Vec3 &n)
+  {
+    unsigned int axis = 0;
+    for (unsigned int i = 1; i < 3; ++i)
+      if (std::abs(n[i]) < std::abs(n[axis]))
+        axis = i;
+    Vec3 u;
+    u[axis] = 1.;
+    u       = cross(n, u);
+    u /= u.norm();
+    return {{u, cross(n, u)}};
   }
 
   /// Pull-back of unit(a) = u:  a_bar = (u_bar - (u·u_bar) u) / |a|.
