@@ -14,9 +14,11 @@ namespace retroforge
 
     TriangleSurface rectangle_on(const Die &plane, const Vec3 &displacement, const NodalVectors<double> &X)
     {
-      const auto at = plane.project(X[0], displacement, DieFeature());
-      const auto t  = directions_across(at.n);
-      Vec3       low, high; // along t[0], t[1]
+      const auto at     = plane.project(X[0], displacement, DieFeature());
+      const auto across = directions_across(at.n);
+      // Along the axes, where the plane is.
+      const std::array<Vec3, 2> t = {{-across[1], across[0]}};
+      Vec3                      low, high; // along t[0], t[1]
       for (unsigned int i = 0; i < 2; ++i)
       {
         low[i] = high[i] = t[i] * X[0];
