@@ -2,58 +2,10 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/time/leg.h>
-#include <retroforge/time/remesher.h>
+#include <retroforge/time/increment_limits.h>
 
 namespace retroforge
 {
-  struct PressParameters
-  {
-    std::string  leading_die;
-    double       stroke          = 10.;
-    unsigned int increments      = 0;
-    std::string  scheme          = Scheme::all().front().name;
-    double       smallest_volume = 0.2;
-    double       largest_move    = 0.5;
-    double       largest_slip    = 1.;
-    unsigned int max_cuts        = 8;
-    double       largest_loss    = 0.02;
-
-    void add_parameters(dealii::ParameterHandler &prm);
-  };
-
-  /// Where a run stands between two increments.
-  struct ForgingState
-  {
-    std::shared_ptr<Leg> leg;
-    NodalVectors<double> X;
-    std::vector<double>  strain; ///< accumulated equivalent strain of each cell
-    Field<double>        W;      ///< the last increment's solution, where the next one starts
-    double               stroke   = 0.;
-    double               volume   = 0.; ///< at the start of the run [mm^3]
-    double               repaired = 0.; ///< taken away where the surface crossed itself [mm^3]
-    unsigned int         depth    = 0;  ///< an increment is the whole one / 2^depth
-    double slip = 0.; ///< of the last increment: largest one along a curved die, in edges [mm^-1]
-
-    /// Where the present numerics began to hold: stroke [mm] and increments before.
-    double       numerics_stroke     = 0.;
-    unsigned int numerics_increments = 0;
-    std::string  parameters; ///< the complete input, to be recorded with the next increment; else empty
-
-    Energy<double>                   energy;
-    unsigned int                     increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;
-    std::vector<unsigned int>        remeshed;       ///< the increments, from 0, that began on a new mesh
-    std::vector<std::vector<double>> strains_before; ///< of each remeshing, on the mesh it left
-  };
-
-  /// Why an increment must be shorter.
-  struct Refusal
-  {
-    std::string  reason;          ///< empty: it need not be
-    unsigned int halvings = 1;    ///< that will do
-    bool         of_mesh  = true; ///< a better mesh may be enough
-  };
-
   /// What is known at the end of an increment.
   struct IncrementEvent
   {
@@ -115,19 +67,7 @@ namespace retroforge
                     Guess                 &guess,
                     IncrementRecord       &record,
                     SolvedIncrement       &solved) const;
-    std::string
-    too_much(const Leg &leg, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const;
-
-    /// Of nodes along curved dies, over the edge length wanted there. @param where  of the largest one
-    double            largest_slip(const Process<double>      &process,
-                                   const IncrementRecord      &record,
-                                   const NodalVectors<double> &X,
-                                   const NodalVectors<double> &X_next,
-                                   std::string                &where) const;
-    [[noreturn]] void throw_stuck(const IncrementRecord &record, const std::string &reason) const;
-    /// Throws Error where a run can only go on to no good: it takes too many increments, or loses its volume.
-    void check_progress(const ForgingState &state) const;
-    void remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
+    void    remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
     /// Takes the state to the increment's end, and tells `watch`.
     void finish_increment(const Process<double> &process,
                           const IncrementRecord &record,
@@ -142,5 +82,6 @@ namespace retroforge
     const PressParameters &press_;
     const Remesher        &remesher_;
     Timings               &timings_;
+    const IncrementLimits  limits_;
   };
 } // namespace retroforge

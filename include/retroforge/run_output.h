@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/case.h>
+#include <retroforge/output/field_writer.h>
+#include <retroforge/output/history.h>
+#include <retroforge/output/objective_history.h>
+#include <retroforge/output/summary.h>
+
+#include <memory>
+#include <set>
+
+namespace retroforge
+{
+  /// Follows a forging and tells of it: a line per increment on the console and in history.csv, the
+  /// objectives in objectives.csv, the shapes in fields.pvd. All ranks follow; the first writes.
+  class RunOutput
+  {
+  public:
+    /// @param trace  that followed the run up to where add() is called; it and the case must live as long
+    /// @throws Error  if a file cannot be written
+    RunOutput(const Case &at, const WholePart &whole, const ObjectiveTrace &trace, Timings &timings);
+
+    /// From here on increments are solved, as far as the time left is concerned.
+    void begin(const ForgingState &state);
+
+    /// The end of an increment, solved or restored. Collective.  @throws Error  if a file cannot be written
+    void add(const IncrementEvent &event);
+
+    /// The workpiece where the run failed.
+    void add_failed(const ForgingState &state);
+
+    /// The deepest that the surface has been in a die.
+    const Summary::Depth &deepest() const { return deepest_; }
+
+    /// Names of the dies that pressed no node.
+    std::vector<std::string> untouched_dies() const;
+
+  private:
+    void       add_objectives(const ForgingState &state);
+    HistoryRow row_of(const IncrementEvent &event);
+    void       print(const IncrementEvent &event, const HistoryRow &row) const;
+    /// Every so many increments, and at the end.
+    bool is_due(const ForgingState &state, unsigned int every) const;
+
+    const Case           &case_;
+    const WholePart       whole_;
+    const ObjectiveTrace &trace_;
+    Timings              &timings_;
+
+    std::set<unsigned int> touched_; ///< dies that some node was pressed by
+    Summary::Depth         deepest_;
+    /// Where increments began to be solved: stroke [mm], and seconds of the run by then.
+    double begin_stroke_ = 0., begin_seconds_ = Summary::unknown;
+
+    std::unique_ptr<History>          history_;
+    std::unique_ptr<ObjectiveHistory> objectives_;
+    std::unique_ptr<FieldWriter>      fields_;
+  };
+} // namespace retroforge

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/time/leg.h>
+
+namespace retroforge
+{
+  /// Where a run stands between two increments.
+  struct ForgingState
+  {
+    std::shared_ptr<Leg> leg;
+    NodalVectors<double> X;
+    std::vector<double>  strain; ///< accumulated equivalent strain of each cell
+    Field<double>        W;      ///< the last increment's solution, where the next one starts
+    double               stroke   = 0.;
+    double               volume   = 0.; ///< at the start of the run [mm^3]
+    double               repaired = 0.; ///< taken away where the surface crossed itself [mm^3]
+    unsigned int         depth    = 0;  ///< an increment is the whole one / 2^depth
+    double slip = 0.; ///< of the last increment: largest one along a curved die, in edges [mm^-1]
+
+    /// Where the present numerics began to hold: stroke [mm] and increments before.
+    double       numerics_stroke     = 0.;
+    unsigned int numerics_increments = 0;
+    std::string  parameters; ///< the complete input, to be recorded with the next increment; else empty
+
+    Energy<double>                   energy;
+    unsigned int                     increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;
+    std::vector<unsigned int>        remeshed;       ///< the increments, from 0, that began on a new mesh
+    std::vector<std::vector<double>> strains_before; ///< of each remeshing, on the mesh it left
+  };
+} // namespace retroforge

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/time/forging_state.h>
+#include <retroforge/time/press_parameters.h>
+#include <retroforge/time/remesher.h>
+
+namespace retroforge
+{
+  /// Why an increment must be shorter.
+  struct Refusal
+  {
+    std::string  reason;          ///< empty: it need not be
+    unsigned int halvings = 1;    ///< that will do
+    bool         of_mesh  = true; ///< a better mesh may be enough
+  };
+
+  /// What increments and runs may do. An increment that does more is refused, a run that does more is
+  /// stopped, each with the reason.
+  class IncrementLimits
+  {
+  public:
+    /// What is passed must live as long.
+    IncrementLimits(const ForgingModel &model, const PressParameters &press, const Remesher &remesher)
+        : model_(model), press_(press), remesher_(remesher)
+    {
+    }
+
+    /// Of an increment that was solved, from X to X_next.
+    Refusal refusal(const Process<double>      &process,
+                    const Leg                  &leg,
+                    const IncrementRecord      &record,
+                    const NodalVectors<double> &X,
+                    const NodalVectors<double> &X_next) const;
+
+    /// Of an increment that has no solution.
+    static Refusal singular(const ForgingState &state);
+
+    /// Of nodes along curved dies in an increment, over the edge length wanted there; 0 without remeshing.
+    double slip(const Process<double>      &process,
+                const IncrementRecord      &record,
+                const NodalVectors<double> &X,
+                const NodalVectors<double> &X_next) const
+    {
+      return largest_slip(process, record, X, X_next).of_edge;
+    }
+
+    /// Whether nodes may slip that far, over the edge length wanted there.
+    bool allow(const double slip) const { return slip <= press_.largest_slip; }
+
+    /// Whether an increment may not be halved any more.
+    bool too_short(double step) const;
+
+    /// Where an increment that may not be halved any more is refused.  @throws Error
+    [[noreturn]] void stop(const IncrementRecord &record, const Refusal &refusal) const;
+
+    /// Where a run can only go on to no good: it takes too many increments, or loses its volume.
+    /// @throws Error
+    void check_progress(const ForgingState &state) const;
+
+    /// Where metal meets metal, which is not in the model.  @throws Error
+    static void check_fold(const ForgingState &state);
+
+  private:
+    struct Slip
+    {
+      double      of_edge = 0.; ///< slipped, over the edge length wanted there
+      std::string where;
+    };
+
+    /// Of elements and their edges; empty when it is not.
+    std::string
+    too_much(const TetMesh &mesh, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const;
+    Slip largest_slip(const Process<double>      &process,
+                      const IncrementRecord      &record,
+                      const NodalVectors<double> &X,
+                      const NodalVectors<double> &X_next) const;
+    /// The shortest increment [mm].
+    double shortest() const;
+
+    const ForgingModel    &model_;
+    const PressParameters &press_;
+    const Remesher        &remesher_;
+  };
+} // namespace retroforge

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/penetration.h>
+#include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/output/console.h>
+#include <retroforge/run_output.h>
+
+#include <cstdio>
+
+namespace retroforge
+{
+  RunOutput::RunOutput(const Case &at, const WholePart &whole, const ObjectiveTrace &trace, Timings &timings)
+      : case_(at), whole_(whole), trace_(trace), timings_(timings)
+  {
+    if (dealii::Utilities::MPI::this_mpi_process(at.comm) != 0)
+      return;
+    const std::string &folder = at.command.output_directory;
+    history_                  = std::make_unique<History>(folder + "/history.csv");
+    objectives_               = std::make_unique<ObjectiveHistory>(folder + "/objectives.csv");
+    fields_ = std::make_unique<FieldWriter>(folder, at.model, at.process, at.billet, at.X_0);
+    print_head(whole);
+  }
+
+  void RunOutput::begin(const ForgingState &state)
+  {
+    begin_stroke_  = state.stroke;
+    begin_seconds_ = timings_.seconds("total");
+  }
+
+  bool RunOutput::is_due(const ForgingState &state, const unsigned int every) const
+  {
+    const bool at_end = state.stroke >= case_.parameters.press.stroke * (1. - 1e-9);
+    return every > 0 && (state.increments % every == 0 || at_end);
+  }
+
+  void RunOutput::add(const IncrementEvent &event)
+  {
+    for (std::size_t p = 0; p < event.record.pairs.size(); ++p)
+      if (event.record.solves.back().active[p])
+        touched_.insert(event.record.pairs[p].die);
+    if (is_due(event.state, case_.parameters.objectives.every))
+      add_objectives(event.state);
+    const auto timing = timings_.scope("output");
+    if (!history_)
+      return;
+    const HistoryRow row = row_of(event);
+    history_->add(row);
+    fields_->follow(event);
+    print(event, row);
+    if (is_due(event.state, case_.parameters.output.every))
+      fields_->add(event);
+  }
+
+  void RunOutput::add_objectives(const ForgingState &state)
+  {
+    const auto              timing     = timings_.scope("objectives");
+    const Objectives       &objectives = case_.objectives;
+    const auto              values     = trace_.values(state, true, false);
+    const auto              beside     = trace_.beside(state);
+    std::vector<NamedValue> columns;
+    for (std::size_t j = 0; j < objectives.size(); ++j)
+    {
+      const std::string unit = " [" + objectives[j].unit() + "]";
+      columns.emplace_back(objectives[j].name + unit, values[j]);
+      for (const auto *numbers : {&beside[j].parts, &beside[j].details})
+        for (const auto &[name, value] : *numbers)
+          columns.emplace_back(objectives[j].name + ": " + name + unit, value);
+    }
+    if (objectives_)
+      objectives_->add(state.stroke, columns);
+  }
+
+  HistoryRow RunOutput::row_of(const IncrementEvent &event)
+  {
+    const ForgingState     &state   = event.state;
+    const TetMesh          &mesh    = state.leg->scene.mesh;
+    const std::vector<Die> &dies    = case_.model.dies;
+    const double            size    = volume(mesh.cells, state.X);
+    const Penetration       deepest = deepest_point(
+      mesh, state.leg->scene.topology, dies, case_.process.at_stroke(state.stroke).dies, state.X);
+    if (!(deepest.depth <= deepest_.depth))
+      deepest_ = {deepest.depth,
+                  deepest.depth / case_.edge_length(),
+                  state.stroke,
+                  {{deepest.place[0], deepest.place[1], deepest.place[2]}},
+                  deepest.die == invalid_index ? "" : dies[deepest.die].name};
+    const unsigned int leading  = case_.nominal.leading_die;
+    const Vec3        &velocity = case_.nominal.dies[leading].velocity;
+    const double       force    = event.record.forces[leading] * velocity / velocity.norm();
+    const double       energy   = state.energy.total();
+    return {state.increments,
+            event.time,
+            state.stroke,
+            force,
+            energy,
+            size,
+            minimum_quality(mesh.cells, state.X),
+            deepest.depth,
+            event.record.newton,
+            event.record.krylov,
+            whole_.force * force,
+            whole_.copies * energy,
+            whole_.copies * size};
+  }
+
+  void RunOutput::print(const IncrementEvent &event, const HistoryRow &row) const
+  {
+    const TetMesh &mesh = event.state.leg->scene.mesh;
+    if (event.record.remesh)
+      std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());
+    print_increment(row,
+                    (timings_.seconds("total") - begin_seconds_) *
+                      (case_.parameters.press.stroke - row.stroke) / (row.stroke - begin_stroke_));
+  }
+
+  void RunOutput::add_failed(const ForgingState &state)
+  {
+    if (fields_)
+      fields_->add_failed(state);
+  }
+
+  std::vector<std::string> RunOutput::untouched_dies() const
+  {
+    std::vector<std::string> names;
+    for (unsigned int d = 0; d < case_.model.dies.size(); ++d)
+      if (touched_.count(d) == 0)
+        names.push_back(case_.model.dies[d].name);
+    return names;
+  }
+} // namespace retroforge

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/version.h>
+#include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/output/blas.h>
+#include <retroforge/run_summary.h>
+
+namespace retroforge
+{
+  namespace
+  {
+    Summary::Check as_summary(const CheckRow &row)
+    {
+      const char    *verdict = row.is_zero ? "zero" : row.passed ? "passed" : "failed";
+      Summary::Check check{
+        row.objective, row.parameter, row.adjoint, row.tangent, {}, row.taylor_orders, verdict};
+      for (const DifferenceRow &d : row.steps)
+        check.steps.push_back(
+          {d.step, d.replayed_central, d.replayed_forward, d.replayed_backward, d.free_central});
+      return check;
+    }
+
+    /// How often the objective's value stands in the whole part; NaN where it says nothing of that.
+    double copies(const Case &at, const NamedObjective &objective, const WholePart &whole)
+    {
+      if (objective.extent == Extent::none)
+        return Summary::unknown;
+      return objective.extent == Extent::part
+               ? whole.copies
+               : whole_part(at.billet, at.process.dies[objective.die].velocity).force;
+    }
+
+    void summarise_restarts(const std::vector<Stretch> &stretches, Summary &summary)
+    {
+      for (std::size_t s = 1; s < stretches.size(); ++s)
+      {
+        const RecordedInput &input = stretches[s].input;
+        summary.restarts.push_back({input.first + 1, input.stroke, {}});
+        for (const ChangedSetting &setting :
+             changed_numerics(stretches[s - 1].input.parameters, input.parameters))
+          summary.restarts.back().changed[setting.path] = {setting.before, setting.now};
+      }
+    }
+  } // namespace
+
+  void summarise_run(const Case &at, const ForgingState &forged, Summary &summary)
+  {
+    summary.command               = at.command.command;
+    summary.version               = version;
+    summary.commit                = commit;
+    summary.blas                  = blas_in_use();
+    summary.ranks                 = dealii::Utilities::MPI::n_mpi_processes(at.comm);
+    summary.n_nodes               = at.billet.n_nodes();
+    summary.n_cells               = at.billet.n_cells();
+    summary.newton_iterations     = forged.newton;
+    summary.krylov_iterations     = forged.krylov;
+    summary.linear_solves_forward = forged.linear_solves;
+    summary.remeshings            = forged.remeshed.size();
+    summary.increments            = forged.increments;
+    summary.cuts                  = forged.cuts;
+    summary.volume_initial        = volume(at.billet.cells, at.X_0);
+    summary.volume_final          = volume(forged.leg->scene.mesh.cells, forged.X);
+    summary.volume_repaired       = forged.repaired;
+    summarise_restarts(at.stretches, summary);
+  }
+
+  void summarise_objectives(const Case                &at,
+                            const ObjectiveTrace      &trace,
+                            const ForgingState        &forged,
+                            const std::vector<double> &values,
+                            Summary                   &summary)
+  {
+    const auto beside = trace.beside(forged);
+    for (std::size_t o = 0; o < at.objectives.size(); ++o)
+      summary.objectives.push_back({at.objectives[o].name,
+                                    values[o],
+                                    at.objectives[o].unit(),
+                                    beside[o].parts,
+                                    beside[o].details,
+                                    copies(at, at.objectives[o], summary.whole) * values[o]});
+    if (at.parameters.objectives.gradients == "combined")
+      summary.objectives.push_back(
+        {at.combinations[0].name, at.combine(values)[0], at.combinations[0].unit, {}, {}});
+  }
+
+  void summarise_gradients(const Case &at, const std::vector<Judged> &judged, Summary &summary)
+  {
+    for (std::size_t j = 0; j < at.mu.size() && !judged.empty(); ++j)
+    {
+      const DesignParameter &parameter = at.design.parameters()[j];
+      summary.parameters.push_back({parameter.name, at.mu[j], parameter.unit, {}, parameter.scale});
+      for (const Judged &objective : judged)
+        summary.parameters.back().gradient[objective.name] = objective.gradient[j];
+    }
+  }
+
+  void summarise_check(const std::vector<CheckRow> &rows, const unsigned int remaining, Summary &summary)
+  {
+    summary.check.clear();
+    for (const CheckRow &row : rows)
+      summary.check.push_back(as_summary(row));
+    summary.check_remaining = remaining;
+  }
+} // namespace retroforge

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/mesh/self_crossing.h>
+#include <retroforge/time/increment_limits.h>
+
+#include <sstream>
+
+namespace retroforge
+{
+  /// Times Press/increments that cuts may make of them.
+  constexpr unsigned int most_increments = 10;
+
+  namespace
+  {
+    std::string at(const Vec3 &x)
+    {
+      std::ostringstream text;
+      text.precision(4);
+      text << " at (" << x[0] << ", " << x[1] << ", " << x[2] << ")";
+      return text.str();
+    }
+
+    /// A corner of the cell of the least quality.
+    Vec3 flattest_cell(const TetMesh &mesh, const NodalVectors<double> &X)
+    {
+      CellIndex flattest = 0;
+      double    least    = std::numeric_limits<double>::infinity();
+      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+        if (const double quality = tet_quality(corners(mesh.cells[c], X)); quality < least)
+        {
+          least    = quality;
+          flattest = c;
+        }
+      return X[mesh.cells[flattest][0]];
+    }
+
+    /// Of an increment, that bring it down to what is allowed when it is `excess` times as long.
+    unsigned int halvings(const double excess)
+    {
+      return std::max(1, static_cast<int>(std::ceil(std::log2(excess))));
+    }
+  } // namespace
+
+  Refusal IncrementLimits::refusal(const Process<double>      &process,
+                                   const Leg                  &leg,
+                                   const IncrementRecord      &record,
+                                   const NodalVectors<double> &X,
+                                   const NodalVectors<double> &X_next) const
+  {
+    if (const std::string reason = too_much(leg.scene.mesh, X, X_next); !reason.empty())
+      return {reason};
+    const Slip slip = largest_slip(process, record, X, X_next);
+    if (allow(slip.of_edge))
+      return {};
+    // Velocities hardly depend on the increment's length: what it must be is known at once.
+    return {"a node would slip along " + slip.where, halvings(slip.of_edge / press_.largest_slip), false};
+  }
+
+  Refusal IncrementLimits::singular(const ForgingState &state)
+  {
+    return {"the linear systems of an increment have no solution; the flattest element is" +
+            at(flattest_cell(state.leg->scene.mesh, state.X))};
+  }
+
+  std::string IncrementLimits::too_much(const TetMesh              &mesh,
+                                        const NodalVectors<double> &X,
+                                        const NodalVectors<double> &X_next) const
+  {
+    for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+    {
+      const auto   before = positions_of_cell(mesh, X, c), after = positions_of_cell(mesh, X_next, c);
+      const double volume = cell_geometry(after).volume;
+      if (!(volume > press_.smallest_volume * cell_geometry(before).volume))
+        return (volume > 0. ? "an element would be crushed" : "an element would be inverted") + at(before[0]);
+      for (unsigned int a = 0; a < 4; ++a)
+        for (unsigned int b = 0; b < a; ++b)
+          if (((after[a] - before[a]) - (after[b] - before[b])).norm() >
+              press_.largest_move * (before[a] - before[b]).norm())
+            return "an edge would be turned or stretched by more than Press/largest move" + at(before[a]);
+    }
+    return "";
+  }
+
+  IncrementLimits::Slip IncrementLimits::largest_slip(const Process<double>      &process,
+                                                      const IncrementRecord      &record,
+                                                      const NodalVectors<double> &X,
+                                                      const NodalVectors<double> &X_next) const
+  {
+    if (!remesher_.enabled())
+      return {};
+    const auto      dies = process.at_stroke(record.stroke).dies;
+    const SizeField size = remesher_.size_field(dies);
+    const double    time = process.time(record.step);
+    Slip            largest;
+    for (const ContactPair &pair : record.pairs)
+      if (pair.point.is_node() && model_.dies[pair.die].surface())
+      {
+        const NodeIndex k    = pair.point.nodes[0];
+        const Vec3      path = X_next[k] - X[k] - time * dies[pair.die].velocity;
+        const double    slip = path.norm() / size(X[k]);
+        if (slip > largest.of_edge)
+          largest = {slip,
+                     "die " + model_.dies[pair.die].name + " by more than Press/largest slip" + at(X[k])};
+      }
+    return largest;
+  }
+
+  double IncrementLimits::shortest() const
+  {
+    return model_.step.contact.step * std::ldexp(1., -static_cast<int>(press_.max_cuts));
+  }
+
+  bool IncrementLimits::too_short(const double step) const
+  {
+    return step < shortest() * (1. - 1e-9);
+  }
+
+  void IncrementLimits::stop(const IncrementRecord &record, const Refusal &refusal) const
+  {
+    std::ostringstream what;
+    what.precision(5);
+    what << "stops at stroke " << record.stroke << " mm, where even an increment of " << shortest()
+         << " mm is too long: " << refusal.reason;
+    const char *remedy =
+      record.stroke == 0. ? "nothing moved yet, so the stroke is not what is wrong: use values of the usual "
+                            "size, penalty and friction above all, more increments, or a better mesh"
+      : remesher_.enabled()
+        ? "if the dies nearly close or the cavity is full there, shorten the stroke; else use more "
+          "increments or a finer mesh"
+        : "the mesh may be too distorted to go on: set Remeshing/when = quality";
+    throw Error("Press/stroke",
+                what.str(),
+                "an increment may be halved " + std::to_string(press_.max_cuts) +
+                  " times (Press/max cuts), and elements must stay sound",
+                remedy);
+  }
+
+  void IncrementLimits::check_progress(const ForgingState &state) const
+  {
+    const double       change = volume(state.leg->scene.mesh.cells, state.X) / state.volume - 1.;
+    std::ostringstream what;
+    what.precision(4);
+    if (!(std::abs(change) <= press_.largest_loss))
+    {
+      what << "at stroke " << state.stroke << " mm the workpiece has " << (change < 0. ? "lost " : "won ")
+           << 100. * std::abs(change) << " % of its volume";
+      throw Error(
+        "Press/stroke",
+        what.str(),
+        "at most Press/largest volume change may be lost",
+        "if the dies nearly close there, shorten the stroke; else use more increments or a finer mesh");
+    }
+    if (const unsigned int n = state.increments - state.numerics_increments;
+        n > most_increments * press_.increments)
+    {
+      what << "was cut so often that " << n << " increments brought it to " << state.stroke << " mm";
+      throw Error("Press/stroke",
+                  what.str(),
+                  "a run may take " + std::to_string(most_increments) + " times Press/increments",
+                  "if the dies nearly close or the cavity is full there, shorten the stroke; else raise "
+                  "Press/increments");
+    }
+  }
+
+  void IncrementLimits::check_fold(const ForgingState &state)
+  {
+    check_boundary_does_not_cross(state.leg->scene.mesh, state.X, "Workpiece");
+  }
+} // namespace retroforge

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/nearest_name.h>
+#include <retroforge/time/press_parameters.h>
+
+namespace retroforge
+{
+  void PressParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    using namespace dealii::Patterns;
+    std::string              choices;
+    std::vector<std::string> described;
+    for (const Scheme &known : Scheme::all())
+    {
+      choices += (choices.empty() ? "" : "|") + known.name;
+      described.push_back("`" + known.name + "` " + known.description);
+    }
+    prm.enter_subsection("Press");
+    prm.add_parameter(
+      "leading die", leading_die, "Die whose path is the stroke; empty: the first that moves. Units: none.");
+    prm.add_parameter("stroke", stroke, "Path of the leading die. Units: mm.", Double(1e-300));
+    prm.add_parameter("increments",
+                      increments,
+                      "Number of equal increments of stroke, before any is cut; 0 for steps of 0.25 % of the "
+                      "billet's height, with which the energy is smooth in the design. Units: none.",
+                      Integer(0));
+    prm.add_parameter(
+      "scheme", scheme, "Time scheme: " + join(described) + ". Units: none.", Selection(choices));
+    prm.add_parameter(
+      "smallest volume",
+      smallest_volume,
+      "An increment is halved when an element would keep less than this part of its volume. Units: none.",
+      Double(0., 1.));
+    prm.add_parameter(
+      "largest move",
+      largest_move,
+      "An increment is halved when two nodes of an edge would move, relative to each other, by more than "
+      "this part of its length. Units: none.",
+      Double(1e-3));
+    prm.add_parameter(
+      "largest slip",
+      largest_slip,
+      "An increment is halved when a node would slip along a curved die by more than this times the edge "
+      "length wanted there. Units: none.",
+      Double(1e-3));
+    prm.add_parameter(
+      "max cuts",
+      max_cuts,
+      "Times an increment may be halved, counted from the whole one, before the run stops. Units: none.",
+      Integer(0, 30));
+    prm.add_parameter(
+      "largest volume change",
+      largest_loss,
+      "The run stops when the workpiece has lost or won more than this part of its volume. Units: none.",
+      Double(0.));
+    prm.leave_subsection();
+  }
+} // namespace retroforge
