@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/adjoint/sweep.h>
 #include <retroforge/element/strain_history.h>
-#include <retroforge/mesh/cell_transfer.h>
+#include <retroforge/transfer/cell_transfer.h>
 
 #include <deal.II/base/mpi.h>
 

@@ -7,11 +7,11 @@
 #include <retroforge/mesh/broadcast.h>
 #include <retroforge/mesh/mesh_checks.h>
 #include <retroforge/mesh/mesh_quality.h>
-#include <retroforge/mesh/rebuild.h>
-#include <retroforge/mesh/remeshing/trigger.h>
 #include <retroforge/mesh/renumber.h>
 #include <retroforge/mesh/self_crossing.h>
-#include <retroforge/mesh/uncross.h>
+#include <retroforge/remeshing/rebuild.h>
+#include <retroforge/remeshing/trigger.h>
+#include <retroforge/remeshing/uncross.h>
 #include <retroforge/time/remesher.h>
 
 namespace retroforge

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/mesh/billet.h>
+#include <retroforge/billet/billet.h>
 
 #include <functional>
 #include <string>

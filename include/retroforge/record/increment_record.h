@@ -3,7 +3,7 @@
 #pragma once
 
 #include <retroforge/contact/contact.h>
-#include <retroforge/mesh/transfer.h>
+#include <retroforge/transfer/transfer.h>
 
 #include <memory>
 #include <string>

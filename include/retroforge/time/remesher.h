@@ -3,10 +3,10 @@
 #pragma once
 
 #include <retroforge/core/timer.h>
-#include <retroforge/mesh/remeshing/local_remesher.h>
-#include <retroforge/mesh/size_field.h>
-#include <retroforge/mesh/uncross.h>
 #include <retroforge/record/increment_record.h>
+#include <retroforge/remeshing/local_remesher.h>
+#include <retroforge/remeshing/size_field.h>
+#include <retroforge/remeshing/uncross.h>
 
 #include <optional>
 #include <string>

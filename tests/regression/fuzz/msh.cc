@@ -5,8 +5,8 @@
 // that Gmsh has in memory.
 #include "mutate.h"
 
+#include <retroforge/billet/gmsh_mesher.h>
 #include <retroforge/core/error.h>
-#include <retroforge/mesh/gmsh_mesher.h>
 #include <retroforge/mesh/mesh_checks.h>
 
 #include <filesystem>

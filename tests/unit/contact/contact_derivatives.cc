@@ -19,8 +19,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <retroforge/billet/billet.h>
 #include <retroforge/contact/contact.h>
-#include <retroforge/mesh/billet.h>
 
 #include <algorithm>
 

@@ -8,8 +8,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <retroforge/billet/billet.h>
 #include <retroforge/contact/penetration.h>
-#include <retroforge/mesh/billet.h>
 
 #include <cstdio>
 

@@ -10,7 +10,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include "../mesh/ring_equations.h"
+#include "../billet/ring_equations.h"
 #include "design_test_tools.h"
 
 using namespace retroforge;

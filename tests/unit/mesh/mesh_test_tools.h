@@ -2,8 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/billet/billet.h>
 #include <retroforge/core/error.h>
-#include <retroforge/mesh/billet.h>
 #include <retroforge/mesh/mesh_checks.h>
 #include <retroforge/mesh/mesh_quality.h>
 

@@ -14,8 +14,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <retroforge/billet/billet.h>
 #include <retroforge/core/error.h>
-#include <retroforge/mesh/billet.h>
 #include <retroforge/objective/filling.h>
 #include <retroforge/objective/path_objective.h>
 #include <retroforge/objective/shape_distance.h>

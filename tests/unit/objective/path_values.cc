@@ -15,8 +15,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <retroforge/billet/billet.h>
 #include <retroforge/core/error.h>
-#include <retroforge/mesh/billet.h>
 #include <retroforge/objective/contact_pressure.h>
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>

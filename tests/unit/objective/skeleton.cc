@@ -7,7 +7,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/mesh/billet.h>
+#include <retroforge/billet/billet.h>
 #include <retroforge/objective/volume.h>
 
 #include "objective_test_tools.h"

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/mesh/billet.h>
+#include <retroforge/billet/billet.h>
 #include <retroforge/solver/stage.h>
 
 #include "../contact/wavy_sheet.h"

@@ -7,9 +7,9 @@
 #include <deal.II/lac/trilinos_solver.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <retroforge/billet/billet.h>
 #include <retroforge/element/field.h>
 #include <retroforge/element/mini_element.templates.h>
-#include <retroforge/mesh/billet.h>
 
 #include <functional>
 #include <memory>

@@ -14,11 +14,11 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <retroforge/billet/billet.h>
+#include <retroforge/billet/gmsh_mesher.h>
 #include <retroforge/core/error.h>
-#include <retroforge/mesh/billet.h>
-#include <retroforge/mesh/gmsh_mesher.h>
 #include <retroforge/mesh/mesh_quality.h>
-#include <retroforge/mesh/remeshing/trigger.h>
+#include <retroforge/remeshing/trigger.h>
 #include <retroforge/time/remesher.h>
 
 #include <ctime>

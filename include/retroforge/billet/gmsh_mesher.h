@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/billet/patch_shapes.h>
+#include <retroforge/billet/section.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace retroforge
+{
+  /// A box, cylinder or body of revolution standing along z on the centre of its base, cut by planes.
+  struct CutSolid
+  {
+    Section section;             ///< of the body of revolution; none for box and cylinder
+    double  section_angle = 360; ///< by which it is revolved, from the direction +x towards +y [degrees]
+    bool    is_cylinder   = false;
+    Vec3    base_centre;
+    Vec3    size;       ///< lengths of the box
+    double  radius = 0; ///< of the cylinder
+    double  height = 0; ///< of each
+    /// What is on the side of a plane its normal points to is cut away.
+    std::vector<Plane> cuts;
+    /// So many of the cuts, the first ones, are made by `section_angle` already.
+    unsigned int n_cuts_of_section = 0;
+  };
+
+  /// Cells and nodes (no faces, no patches) of an unstructured tetrahedral mesh of the solid, edges of about
+  /// `element_size`. Cells are positively oriented. When the first mesh has a dihedral angle below 15
+  /// degrees, others are tried, with edges up to 6 % shorter or 4 % longer, and the best is returned (a sharp
+  /// edge of the solid limits it). The same input gives the same mesh, bit for bit. Throws Error at `where`
+  /// when the cuts leave nothing or Gmsh fails. To be called on one rank only.
+  TetMesh mesh_with_gmsh(const CutSolid &solid, double element_size, const std::string &where);
+
+  /// Cells and nodes of an unstructured tetrahedral mesh of what the triangles enclose. The triangles, turned
+  /// outwards, are kept as they are; the nodes of the result are first `X`, then those made inside. The same
+  /// input gives the same mesh, bit for bit. Throws Error at `where` when Gmsh fails, which it does when
+  /// triangles cross. To be called on one rank only.
+  /// @param X     positions of the nodes of the triangles, and of no others
+  /// @param size  wanted length of edges at a point
+  TetMesh fill_with_gmsh(const NodalVectors<double>                  &X,
+                         const std::vector<std::array<NodeIndex, 3>> &triangles,
+                         const std::function<double(const Vec3 &)>   &size,
+                         const std::string                           &where);
+
+  /// Reads linear tetrahedra from a Gmsh file (.msh, see read_msh_file()), without Gmsh. Physical surfaces
+  /// become patches, named as in the file or, without a name, by their number; outer faces on no physical
+  /// surface become the patch `surface`. Triangles inside the volume are ignored. When all tetrahedra are
+  /// inverted they are turned. Patches whose name or number is in `symmetry_patches` become symmetry planes.
+  /// The mesh is not checked (see check_mesh()). Throws Error for what cannot be read.
+  TetMesh read_msh(const std::string &file_name, const std::vector<std::string> &symmetry_patches);
+} // namespace retroforge

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/mesh/tet_mesh.h>
+#include <retroforge/remeshing/remeshing_parameters.h>
+
+namespace retroforge
+{
+  /// Gives a mesh a wanted volume by moving the nodes of its curved surface, all by the same distance along
+  /// the outward normal: spread so thinly it stays invisible, where correcting only touched nodes would make
+  /// bumps.
+  ///
+  /// Newton's method on the distance d,  V(X + d u) = V0,  u_k = P_k g_k / |g_k|  with the area vector g_k =
+  /// dV/dX_k. P_k takes out the normals of the symmetry planes and of the flat faces at k: what is flat (on a
+  /// flat die, say) stays flat, and its rim moves inside it. When nothing is curved, flat faces move too.
+  /// Errors of rounding (1e-13 of the volume; 1e-12 when nothing is curved) are left alone.
+  /// A step that would leave a cell less than a fifth of its volume is halved until none does, and the rest
+  /// of the error stays.
+  /// @param held  nodes that must not move
+  /// @return the farthest a node moved [length]
+  double correct_volume(TetMesh &mesh, double wanted_volume, const std::vector<bool> &held);
+} // namespace retroforge

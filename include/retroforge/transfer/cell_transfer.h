@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/transfer/transfer.h>
+
+namespace retroforge
+{
+  /// For each cell of the new mesh the cell of the old one with the same four nodes, or invalid_index. Nodes
+  /// are the same where J has a row of the identity, so that nothing but J need be recorded.
+  std::vector<CellIndex>
+  kept_cells(const TetMesh &old_mesh, const TransferOperator &J, const TetMesh &new_mesh);
+
+  /// Takes a field of one value per cell, such as the accumulated strain, to a new mesh: kept cells keep
+  /// their values to the bit; the others get theirs through the nodes,
+  ///   node_to_cell( J cell_to_node(q_T) ),
+  /// so that only what was remeshed is smoothed. Constants pass unchanged. Linear in q_T, and of X it depends
+  /// on the volumes by which cell_to_node() weighs.
+  /// @param X    positions on the old mesh
+  /// @param q_T  one value per old cell
+  template <typename Number>
+  std::vector<Number> transfer_cells(const TetMesh              &old_mesh,
+                                     const NodalVectors<Number> &X,
+                                     const TransferOperator     &J,
+                                     const TetMesh              &new_mesh,
+                                     const std::vector<Number>  &q_T);
+
+  /// Adds the pull-back of q_bar, one value per new cell, through transfer_cells to q_T_bar and X_bar.
+  void reverse_transfer_cells(const TetMesh              &old_mesh,
+                              const NodalVectors<double> &X,
+                              const TransferOperator     &J,
+                              const TetMesh              &new_mesh,
+                              const std::vector<double>  &q_T,
+                              std::vector<double>         q_bar,
+                              std::vector<double>        &q_T_bar,
+                              NodalVectors<double>       &X_bar);
+} // namespace retroforge

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/remeshing/remeshing_context.h>
+
+#include <algorithm>
+
+namespace retroforge
+{
+  double RemeshingContext::relative_length(const NodeIndex a, const NodeIndex b) const
+  {
+    return relative_length(mesh.X(a), mesh.X(b));
+  }
+
+  double RemeshingContext::relative_length(const Vec3 &a, const Vec3 &b) const
+  {
+    return (b - a).norm() / size((a + b) / 2.);
+  }
+
+  std::array<Vec3, 3> corners(const std::array<NodeIndex, 3> &face, const EditableMesh &mesh)
+  {
+    return {{mesh.X(face[0]), mesh.X(face[1]), mesh.X(face[2])}};
+  }
+
+  double minimum_quality(const EditableMesh &mesh, const std::vector<CellIndex> &cells)
+  {
+    double quality = 1;
+    for (const CellIndex cell : cells)
+      quality = std::min(quality, mesh.quality(cell));
+    return quality;
+  }
+
+  bool evaluate(const EditableMesh &mesh, const double bound, CavityChange &change)
+  {
+    change.quality_before = minimum_quality(mesh, change.removed_cells);
+    change.quality_after  = 1;
+    const auto X          = [&](const NodeIndex node) -> const Vec3          &{
+      return node == change.placed_node ? change.position : mesh.X(node);
+    };
+    for (const Cell &cell : change.added_cells)
+    {
+      const double quality = tet_quality({{X(cell[0]), X(cell[1]), X(cell[2]), X(cell[3])}});
+      change.quality_after = std::min(change.quality_after, quality);
+      if (!(quality > bound))
+        return false;
+    }
+    return true;
+  }
+
+  bool look_alike(const std::array<Vec3, 3> &a, const std::array<Vec3, 3> &b)
+  {
+    const Vec3 m = cross_product_3d(a[1] - a[0], a[2] - a[0]);
+    const Vec3 n = cross_product_3d(b[1] - b[0], b[2] - b[0]);
+    return m * n > 0.85 * m.norm() * n.norm();
+  }
+
+  Vec3 Place::operator()(const Vec3 &x) const
+  {
+    if (kind == NodeKind::surface)
+      return old_surface.on_region(feature, x);
+    if (kind == NodeKind::ridge)
+      return old_surface.on_curve(feature, x);
+    return x;
+  }
+
+  Vec3 Place::towards(const Vec3 &target, const Vec3 &x, const double part) const
+  {
+    const Vec3 between = x + part * (target - x);
+    if (kind == NodeKind::surface)
+      return snap_to_planes(between, old_surface.planes_of_region(feature));
+    if (kind == NodeKind::ridge)
+      return snap_to_planes(between, old_surface.planes_of_curve(feature));
+    return between;
+  }
+
+  Place place_of_node(const RemeshingContext &context, const NodeIndex node)
+  {
+    const EditableMesh &mesh = context.mesh;
+    const NodeKind      kind = mesh.kind(node);
+    if (kind == NodeKind::surface)
+      return {context.old_surface, kind, mesh.face(mesh.faces_at(node)[0]).region};
+    if (kind == NodeKind::ridge)
+      return {context.old_surface, kind, mesh.ridges_at(node)[0].curve};
+    return {context.old_surface, kind, invalid_index};
+  }
+
+  Place place_of_edge(const RemeshingContext &context, const NodeIndex a, const NodeIndex b)
+  {
+    const EditableMesh &mesh  = context.mesh;
+    const unsigned int  curve = mesh.curve_of_edge(a, b);
+    if (curve != invalid_index)
+      return {context.old_surface, NodeKind::ridge, curve};
+    const auto faces = mesh.faces_at_edge(a, b);
+    if (!faces.empty())
+      return {context.old_surface, NodeKind::surface, mesh.face(faces[0]).region};
+    return {context.old_surface, NodeKind::interior, invalid_index};
+  }
+} // namespace retroforge

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/remeshing/surface_features.h>
+#include <retroforge/remeshing/volume_correction.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace retroforge
+{
+  namespace
+  {
+    // A face is part of a flat piece when each neighbour is within 0.26 degrees of its normal, or turns by
+    // more than 40 degrees or has another patch: then it bounds the piece.
+    constexpr double flat_cosine  = 1 - 1e-5;
+    constexpr double ridge_cosine = 0.766;
+    // What rounding makes of the sum of many cells; not worth moving nodes for, flat sides even less.
+    constexpr double       negligible         = 1e-13;
+    constexpr double       negligible_if_flat = 1e-12;
+    constexpr unsigned int max_iterations     = 8;
+
+    std::vector<bool> flat_faces(const TetMesh &mesh, const std::vector<Vec3> &normals)
+    {
+      std::vector<bool> is_flat(mesh.faces.size(), true);
+      for (const auto &edge : surface_edges(mesh.faces))
+      {
+        const auto [f, g]   = edge.faces;
+        const double cosine = normals[f] * normals[g];
+        if (mesh.faces[f].patch == mesh.faces[g].patch && cosine > ridge_cosine && cosine < flat_cosine)
+          is_flat[f] = is_flat[g] = false;
+      }
+      return is_flat;
+    }
+
+    // Orthonormal directions in which a node must not move.
+    struct Constraint
+    {
+      std::array<Vec3, 3> directions;
+      unsigned int        n = 0;
+
+      Vec3 project(Vec3 v) const
+      {
+        for (unsigned int i = 0; i < n; ++i)
+          v -= (v * directions[i]) * directions[i];
+        return v;
+      }
+
+      void add(const Vec3 &normal)
+      {
+        const Vec3 rest = project(normal);
+        // Nearly the same plane again is no new one.
+        if (n < 3 && rest.norm() > 0.02)
+          directions[n++] = rest / rest.norm();
+      }
+    };
+
+    std::vector<Constraint>
+    node_constraints(const TetMesh &mesh, const std::vector<Vec3> &normals, const bool keep_flat)
+    {
+      std::vector<Constraint> constraints(mesh.n_nodes());
+      for (const auto &face : mesh.faces)
+        if (const auto &plane = mesh.patches[face.patch].symmetry)
+          for (const NodeIndex node : face.nodes)
+            constraints[node].add(plane->normal);
+      if (!keep_flat)
+        return constraints;
+      const auto is_flat = flat_faces(mesh, normals);
+      for (unsigned int f = 0; f < mesh.faces.size(); ++f)
+        if (is_flat[f])
+          for (const NodeIndex node : mesh.faces[f].nodes)
+            constraints[node].add(normals[f]);
+      return constraints;
+    }
+
+    // g_k = dV/dX_k: a third of the area vectors of the faces at k.
+    NodalVectors<double> area_vectors(const TetMesh &mesh)
+    {
+      NodalVectors<double> g(mesh.n_nodes());
+      for (const auto &face : mesh.faces)
+      {
+        const auto &n = face.nodes;
+        const Vec3  a = cross_product_3d(mesh.X[n[1]] - mesh.X[n[0]], mesh.X[n[2]] - mesh.X[n[0]]) / 6.;
+        for (const NodeIndex node : n)
+          g[node] += a;
+      }
+      return g;
+    }
+
+    struct Directions
+    {
+      NodalVectors<double> u;
+      double               area = 0; // sum of g·u, the derivative of the volume
+    };
+
+    Directions directions(const TetMesh                 &mesh,
+                          const NodalVectors<double>    &g,
+                          const std::vector<Constraint> &constraints,
+                          const std::vector<bool>       &held)
+    {
+      Directions result;
+      result.u.resize(mesh.n_nodes());
+      for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
+        if (g[node].norm_square() > 0 && !held[node])
+        {
+          result.u[node] = constraints[node].project(g[node] / g[node].norm());
+          // Rounding must not move what is fixed.
+          if (result.u[node].norm() < 1e-2)
+            result.u[node] = Vec3();
+          result.area += g[node] * result.u[node];
+        }
+      return result;
+    }
+
+    /// Moves nodes by step * u, or by as many halves of it as the cells allow; returns what was taken.
+    double advance(TetMesh &mesh, const NodalVectors<double> &u, double step)
+    {
+      const NodalVectors<double> X = mesh.X;
+      for (unsigned int halvings = 0; halvings < 6; ++halvings, step *= 0.5)
+      {
+        for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
+          mesh.X[node] = X[node] + step * u[node];
+        const bool sound = std::all_of(mesh.cells.begin(), mesh.cells.end(), [&](const auto &cell) {
+          return tet_volume(corners(cell, mesh.X)) > 0.2 * tet_volume(corners(cell, X));
+        });
+        if (sound)
+          return step;
+      }
+      mesh.X = X;
+      return 0.;
+    }
+
+    double surface_area(const TetMesh &mesh)
+    {
+      double area = 0;
+      for (const auto &face : mesh.faces)
+        area += cross_product_3d(mesh.X[face.nodes[1]] - mesh.X[face.nodes[0]],
+                                 mesh.X[face.nodes[2]] - mesh.X[face.nodes[0]])
+                  .norm() /
+                2;
+      return area;
+    }
+  } // namespace
+
+  double correct_volume(TetMesh &mesh, const double wanted_volume, const std::vector<bool> &held)
+  {
+    const double tolerance = 1e-14 * wanted_volume;
+    double       missing   = wanted_volume - volume(mesh.cells, mesh.X);
+    if (std::abs(missing) <= negligible * wanted_volume)
+      return 0;
+    const auto normals = face_unit_normals(mesh.faces, mesh.X);
+    auto       g       = area_vectors(mesh);
+    auto       moves   = directions(mesh, g, node_constraints(mesh, normals, true), held);
+    if (moves.area < 1e-3 * surface_area(mesh) && std::abs(missing) > negligible_if_flat * wanted_volume)
+      moves = directions(mesh, g, node_constraints(mesh, normals, false), held);
+
+    double distance = 0;
+    for (unsigned int i = 0; i < max_iterations && std::abs(missing) > tolerance; ++i)
+    {
+      if (moves.area < 1e-3 * surface_area(mesh))
+        break;
+      const double step = advance(mesh, moves.u, missing / moves.area);
+      distance += step;
+      const double before = std::abs(missing);
+      missing             = wanted_volume - volume(mesh.cells, mesh.X);
+      if (step == 0. || !(std::abs(missing) < before))
+        break; // rounding, or no room
+    }
+    return std::abs(distance);
+  }
+} // namespace retroforge
