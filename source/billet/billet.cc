@@ -490,6 +490,7 @@ namespace retroforge
   TetMesh make_billet(const BilletParameters &parameters, MPI_Comm communicator)
   {
     parameters.check();
-    return make_on_root([&]() { return make_on_one_rank(parameters); }, communicator);
+    return make_on_root(
+      "Billet", [&]() { return make_on_one_rank(parameters); }, communicator);
   }
 } // namespace retroforge

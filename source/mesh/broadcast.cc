@@ -73,8 +73,10 @@ namespace retroforge
     }
   } // namespace
 
-  TetMesh
-  make_on_root(const std::function<TetMesh()> &make, MPI_Comm communicator, std::vector<NodeIndex> *with_it)
+  TetMesh make_on_root(const std::string              &where,
+                       const std::function<TetMesh()> &make,
+                       MPI_Comm                        communicator,
+                       std::vector<NodeIndex>         *with_it)
   {
     TetMesh     mesh;
     std::string failure;
@@ -89,7 +91,7 @@ namespace retroforge
       }
       catch (const std::exception &error)
       {
-        failure = std::string("Billet: ") + error.what() + "; the mesh must be made; see the message";
+        failure = where + ": " + error.what() + "; the mesh must be made; see the message";
       }
     broadcast_text(failure, communicator);
     if (!failure.empty())
