@@ -42,7 +42,7 @@ namespace retroforge
           if (mesh.is_surface(face))
             for (const NodeIndex node : face.nodes)
               held[node] = held[node] || touches(mesh.X[node]);
-      const double moved = correct_volume(mesh, report.volume_before, held);
+      const double moved = correct_volume(mesh, report.volume_before, held, parameters.ridge_angle);
       result.correction.resize(mesh.n_nodes());
       for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
       {

@@ -12,16 +12,17 @@ namespace retroforge
   namespace
   {
     // A face is part of a flat piece when each neighbour is within 0.26 degrees of its normal, or turns by
-    // more than 40 degrees or has another patch: then it bounds the piece.
-    constexpr double flat_cosine  = 1 - 1e-5;
-    constexpr double ridge_cosine = 0.766;
+    // more than the ridge angle or has another patch: then it bounds the piece.
+    constexpr double flat_cosine = 1 - 1e-5;
     // What rounding makes of the sum of many cells; not worth moving nodes for, flat sides even less.
     constexpr double       negligible         = 1e-13;
     constexpr double       negligible_if_flat = 1e-12;
     constexpr unsigned int max_iterations     = 8;
 
-    std::vector<bool> flat_faces(const TetMesh &mesh, const std::vector<Vec3> &normals)
+    std::vector<bool>
+    flat_faces(const TetMesh &mesh, const std::vector<Vec3> &normals, const double ridge_angle)
     {
+      const double      ridge_cosine = std::cos(ridge_angle * M_PI / 180.);
       std::vector<bool> is_flat(mesh.faces.size(), true);
       for (const auto &edge : surface_edges(mesh.faces))
       {
@@ -55,19 +56,17 @@ namespace retroforge
       }
     };
 
-    std::vector<Constraint>
-    node_constraints(const TetMesh &mesh, const std::vector<Vec3> &normals, const bool keep_flat)
+    std::vector<Constraint> node_constraints(const TetMesh           &mesh,
+                                             const std::vector<Vec3> &normals,
+                                             const std::vector<bool> &kept_flat)
     {
       std::vector<Constraint> constraints(mesh.n_nodes());
       for (const auto &face : mesh.faces)
         if (const auto &plane = mesh.patches[face.patch].symmetry)
           for (const NodeIndex node : face.nodes)
             constraints[node].add(plane->normal);
-      if (!keep_flat)
-        return constraints;
-      const auto is_flat = flat_faces(mesh, normals);
       for (unsigned int f = 0; f < mesh.faces.size(); ++f)
-        if (is_flat[f])
+        if (kept_flat[f])
           for (const NodeIndex node : mesh.faces[f].nodes)
             constraints[node].add(normals[f]);
       return constraints;
@@ -142,7 +141,10 @@ namespace retroforge
     }
   } // namespace
 
-  double correct_volume(TetMesh &mesh, const double wanted_volume, const std::vector<bool> &held)
+  double correct_volume(TetMesh                 &mesh,
+                        const double             wanted_volume,
+                        const std::vector<bool> &held,
+                        const double             ridge_angle)
   {
     const double tolerance = 1e-14 * wanted_volume;
     double       missing   = wanted_volume - volume(mesh.cells, mesh.X);
@@ -150,9 +152,11 @@ namespace retroforge
       return 0;
     const auto normals = face_unit_normals(mesh.faces, mesh.X);
     auto       g       = area_vectors(mesh);
-    auto       moves   = directions(mesh, g, node_constraints(mesh, normals, true), held);
+    auto       moves =
+      directions(mesh, g, node_constraints(mesh, normals, flat_faces(mesh, normals, ridge_angle)), held);
     if (moves.area < 1e-3 * surface_area(mesh) && std::abs(missing) > negligible_if_flat * wanted_volume)
-      moves = directions(mesh, g, node_constraints(mesh, normals, false), held);
+      moves = directions(
+        mesh, g, node_constraints(mesh, normals, std::vector<bool>(mesh.faces.size(), false)), held);
 
     double distance = 0;
     for (unsigned int i = 0; i < max_iterations && std::abs(missing) > tolerance; ++i)

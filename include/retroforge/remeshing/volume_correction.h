@@ -17,7 +17,9 @@ namespace retroforge
   /// Errors of rounding (1e-13 of the volume; 1e-12 when nothing is curved) are left alone.
   /// A step that would leave a cell less than a fifth of its volume is halved until none does, and the rest
   /// of the error stays.
-  /// @param held  nodes that must not move
+  /// @param held         nodes that must not move
+  /// @param ridge_angle  faces of one patch that turn by more bound a flat piece [degrees]
   /// @return the farthest a node moved [length]
-  double correct_volume(TetMesh &mesh, double wanted_volume, const std::vector<bool> &held);
+  double
+  correct_volume(TetMesh &mesh, double wanted_volume, const std::vector<bool> &held, double ridge_angle);
 } // namespace retroforge

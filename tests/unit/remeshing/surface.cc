@@ -127,7 +127,7 @@ void volume_corrections()
   TetMesh      mesh   = cylinder("6", "");
   const auto   X      = mesh.X;
   const double wanted = 1.002 * volume(mesh.cells, mesh.X);
-  const double moved  = correct_volume(mesh, wanted, std::vector<bool>(mesh.n_nodes(), false));
+  const double moved  = correct_volume(mesh, wanted, std::vector<bool>(mesh.n_nodes(), false), 40.);
   double       ends = 0, most = 0;
   for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
   {
@@ -141,7 +141,7 @@ void volume_corrections()
             << ", volume: " << yes(std::abs(volume(mesh.cells, mesh.X) / wanted - 1) < 2e-14) << "\n";
   TetMesh      box    = kuhn_box(3, 0.);
   const double bigger = 1.001 * volume(box.cells, box.X);
-  correct_volume(box, bigger, std::vector<bool>(box.n_nodes(), false));
+  correct_volume(box, bigger, std::vector<bool>(box.n_nodes(), false), 40.);
   std::cout << "box swollen by 0.1 %: volume: "
             << yes(std::abs(volume(box.cells, box.X) / bigger - 1) < 2e-14) << "\n";
 }
