@@ -118,15 +118,4 @@ namespace retroforge
     });
     return number;
   }
-
-  unsigned int bandwidth(const TetMesh &mesh)
-  {
-    unsigned int width = 0;
-    for (const auto &cell : mesh.cells)
-    {
-      const auto [least, greatest] = std::minmax_element(cell.begin(), cell.end());
-      width                        = std::max(width, *greatest - *least);
-    }
-    return width;
-  }
 } // namespace retroforge

@@ -37,8 +37,6 @@ namespace retroforge
     template <typename Number>
     Number held_value(const std::vector<Number> &mu) const;
 
-    bool holds_volume() const { return held_.has_value(); }
-
   private:
     template <typename Number>
     NodalVectors<Number> moved(const std::vector<Number> &mu) const;

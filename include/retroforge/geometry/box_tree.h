@@ -43,8 +43,6 @@ namespace retroforge
     BoxTree() = default;
     explicit BoxTree(const std::vector<BoundingBox> &boxes);
 
-    unsigned int n_items() const { return items_.size(); }
-
     /// Numbers of the boxes that contain x, ascending.
     std::vector<unsigned int> containing(const Vec3 &x) const { return intersecting(BoundingBox(x)); }
 

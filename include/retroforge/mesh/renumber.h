@@ -12,7 +12,4 @@ namespace retroforge
   /// Deterministic; a mesh that differs only in the order of cells or faces gives the same numbers.
   /// @return the new number of each node
   std::vector<NodeIndex> renumber(TetMesh &mesh);
-
-  /// Largest difference of two node numbers in one cell.
-  unsigned int bandwidth(const TetMesh &mesh);
 } // namespace retroforge

@@ -21,7 +21,7 @@ SplineProfile moved_profile(const MappedBillet &billet, const std::vector<double
   };
   for (unsigned int j = 0; j < mu.size(); ++j)
     set(billet.map.parameters()[j].name, mu[j]);
-  if (billet.map.holds_volume())
+  if (!billet.parameters.volume_held_by.empty())
     set(billet.parameters.volume_held_by, billet.map.held_value(mu));
   return profile;
 }

@@ -22,7 +22,7 @@ contour_defect(const MappedBillet &billet, const std::vector<double> &mu, const 
   RingProfile ring = billet.parameters.ring;
   for (unsigned int j = 0; j < mu.size(); ++j)
     ring.mu[j] = mu[j];
-  if (billet.map.holds_volume())
+  if (!billet.parameters.volume_held_by.empty())
     ring.mu[3] = billet.map.held_value(mu);
   double worst = 0.;
   for (const BoundaryFace &face : billet.mesh.faces)
@@ -72,7 +72,7 @@ void report(const std::string &title, Entries entries)
     std::cout << "  " << billet.map.parameters()[j].name << ' ' << yes(error < 1e-8) << ' '
               << yes(dual_defect(billet.map, off) < 1e-13) << ' ' << (at_rest ? yes(contour < 1e-11) : "-")
               << ' ' << yes(symmetry < 1e-11) << ' ' << (volume < 1e-10 ? "yes" : "no") << quality;
-    if (billet.map.holds_volume())
+    if (!billet.parameters.volume_held_by.empty())
     {
       std::vector<Dual> mu(billet.nominal.begin(), billet.nominal.end());
       mu[j].fastAccessDx(0) = 1.;

@@ -16,6 +16,18 @@
 
 using namespace retroforge;
 
+// Largest difference of two node numbers in one cell.
+unsigned int bandwidth(const TetMesh &mesh)
+{
+  unsigned int width = 0;
+  for (const auto &cell : mesh.cells)
+  {
+    const auto [least, greatest] = std::minmax_element(cell.begin(), cell.end());
+    width                        = std::max(width, *greatest - *least);
+  }
+  return width;
+}
+
 // Fisher-Yates by hand: std::shuffle differs between libraries.
 std::vector<NodeIndex> shuffled(const unsigned int n)
 {
