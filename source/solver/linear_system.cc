@@ -18,6 +18,19 @@ namespace retroforge
 {
   using namespace dealii;
 
+  namespace
+  {
+    /// Of edge length h, in h^3: a regular tetrahedron has the volume h^3 / (6 sqrt 2).
+    constexpr double regular_tetrahedra = 8.5;
+
+    /// Scales of a velocity's components below this are those of a penalty that holds it.
+    constexpr double penalised = 0.1;
+
+    /// A preconditioner is made anew when a solve with it takes `patience` times the iterations that it took
+    /// when it was new, and so many more; and for the next solve from `aged` times on.
+    constexpr double patience = 2.5, spare_iterations = 10., aged = 1.7;
+  } // namespace
+
   void LinearSolverParameters::add_parameters(ParameterHandler &prm)
   {
     prm.enter_subsection("Linear solver");
@@ -360,9 +373,9 @@ namespace retroforge
         }
       }
     }
-    volume = partition.sum(volume);
-    pressure_scale_ =
-      std::exp(partition.sum(log_viscosity) / volume) / std::cbrt(8.5 * volume / scene_.mesh.n_cells());
+    volume          = partition.sum(volume);
+    pressure_scale_ = std::exp(partition.sum(log_viscosity) / volume) /
+                      std::cbrt(regular_tetrahedra * volume / scene_.mesh.n_cells());
     viscous_diagonal_.resize(3 * n_owned);
     for (unsigned int a = 0; a < n_owned; ++a)
     {
@@ -615,7 +628,7 @@ namespace retroforge
           unit[mode]   = 1.;
           const Vec3 v = frames_[k].to_frame(unit);
           for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
-            if (scale_[3 * k + i] > 0.1)
+            if (scale_[3 * k + i] > penalised)
               near_kernel[mode * n_rows + 3 * (k - partition.node_begin) + i] = v[i] / scale_[3 * k + i];
         }
     preconditioner_ = std::make_unique<Preconditioner>(
@@ -633,7 +646,7 @@ namespace retroforge
     std::vector<unsigned int> rows;
     for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
       for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
-        if (scale_[3 * k + i] < 0.1)
+        if (scale_[3 * k + i] < penalised)
           rows.push_back(3 * (k - partition.node_begin) + i);
     if (edges_press_)
     {
@@ -721,7 +734,8 @@ namespace retroforge
         make_preconditioner();
       const unsigned int limit =
         fresh ? parameters_.max_iterations
-              : std::min<unsigned int>(parameters_.max_iterations, 2.5 * first_rate_ * decades + 10);
+              : std::min<unsigned int>(parameters_.max_iterations,
+                                       patience * first_rate_ * decades + spare_iterations);
       const auto                                       timing = timings_.scope("krylov");
       SolverControl                                    control(limit, tolerance * norm, false, false);
       SolverFGMRES<TrilinosWrappers::MPI::BlockVector> krylov(
@@ -736,7 +750,7 @@ namespace retroforge
         const double rate = control.last_step() / decades;
         if (fresh)
           first_rate_ = rate;
-        else if (rate > 1.7 * first_rate_ + 1.)
+        else if (rate > aged * first_rate_ + 1.)
           reset();
         return total;
       }

@@ -118,11 +118,13 @@ namespace retroforge
     if (start < 0.)
     {
       // Bracketed secant for the root of a monotone function; a rough root is enough.
-      double low = 0., low_slope = start, high = -1., high_slope = 0.;
-      for (unsigned int trial = 0; trial < 12; ++trial)
+      double                 low = 0., low_slope = start, high = -1., high_slope = 0.;
+      constexpr unsigned int trials     = 12;
+      constexpr double       rough_root = 0.8; // of the slope at the start
+      for (unsigned int trial = 0; trial < trials; ++trial)
       {
         const double s = slope_at(a);
-        if (std::abs(s) <= 0.8 * std::abs(start))
+        if (std::abs(s) <= rough_root * std::abs(start))
           break;
         if (s > 0.)
         {
@@ -190,6 +192,9 @@ namespace retroforge
   /// Where less of a step is taken, the next is at constant viscosity.
   constexpr double short_step = 0.6;
 
+  /// Residual down to which steps are tried by line search; below it they are whole.
+  constexpr double settled = 1e-6;
+
   /// Residual below which a whole step should leave less than poor_fall of it.
   constexpr double close = 1e-3, poor_fall = 0.2;
 
@@ -244,7 +249,7 @@ namespace retroforge
       rhs.add(-1., r);
       statistics.krylov += system_.solve(rhs, forcing, step);
       ++statistics.iterations;
-      if (first_active == frozen && statistics.residual > 1e-6)
+      if (first_active == frozen && statistics.residual > settled)
       {
         double taken;
         if (decides && iteration < contacts_settle)

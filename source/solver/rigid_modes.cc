@@ -7,6 +7,15 @@
 
 namespace retroforge
 {
+  namespace
+  {
+    /// How much farther from a die than the nearest node others may be and still touch it, over the size of
+    /// the workpiece.
+    constexpr double touching = 0.05;
+    /// Eigenvalues below this, of one per resisting direction, are of free motions.
+    constexpr double unresisted = 1e-8;
+  } // namespace
+
   unsigned int
   n_free_rigid_modes(const Scene &scene, const Physics<double> &physics, const NodalVectors<double> &X)
   {
@@ -47,11 +56,11 @@ namespace retroforge
         if (scene.topology.is_on_surface(k))
         {
           const Vec3 &displacement = physics.dies[d].displacement;
-          const auto  feature      = scene.dies[d].closest(X[k], displacement, nearest + 0.05 * size);
+          const auto  feature      = scene.dies[d].closest(X[k], displacement, nearest + touching * size);
           if (!feature.found())
             continue;
           const auto projection = scene.dies[d].project(X[k], displacement, feature);
-          if (projection.delta > nearest + 0.05 * size)
+          if (projection.delta > nearest + touching * size)
             continue;
           resist(k, projection.n);
           if (physics.dies[d].friction > 0.)
@@ -68,7 +77,7 @@ namespace retroforge
     gram.compute_eigenvalues();
     unsigned int n_free = 0;
     for (unsigned int i = 0; i < 6; ++i)
-      if (gram.eigenvalue(i).real() < 1e-8 * n_resisting)
+      if (gram.eigenvalue(i).real() < unresisted * n_resisting)
         ++n_free;
     return n_free;
   }

@@ -88,6 +88,10 @@ namespace retroforge
     constexpr double relative_chord_error = 0.02;
     // Edges at a die longer than this times the wanted length call for a remeshing, which halves them.
     constexpr double coarse = 2.;
+    // A mesh that cannot follow its die does so no better when it is remade each time: increments in between.
+    constexpr unsigned int settling = 2;
+    // Distance from a die, over the element size, within which a node touches it.
+    constexpr double touching = 1e-2;
 
     /// Edges that metal may be drawn over: those that stick out, and the rim of an open die. Where a die that
     /// was made for a sector ends in a plane of symmetry, nothing is.
@@ -167,8 +171,7 @@ namespace retroforge
       return true;
     if (needs_remeshing(mesh, X, parameters_.local, frozen))
       return true;
-    // A mesh that cannot follow its die does so no better when it is remade each time.
-    return increments > 2 &&
+    return increments > settling &&
            (too_coarse(mesh, X, states) || misfit(mesh, X, states) > parameters_.fit * element_size_);
   }
 
@@ -256,7 +259,7 @@ namespace retroforge
   TouchesDie Remesher::touches(const DieStates &states) const
   {
     return [this, &states](const Vec3 &x) {
-      const double near = 1e-2 * element_size_;
+      const double near = touching * element_size_;
       for (unsigned int d = 0; d < dies_.size(); ++d)
         if (const DieFeature feature = dies_[d].closest(x, states[d].displacement, near);
             feature.found() && dies_[d].project(x, states[d].displacement, feature).delta < near)
@@ -334,7 +337,7 @@ namespace retroforge
         old_node[number[k]] = made.old_node[k];
       return std::move(made.mesh);
     };
-    record->mesh = make_on_root(make_numbered, comm_, &old_node);
+    record->mesh = make_on_root("Remeshing", make_numbered, comm_, &old_node);
     MPI_Bcast(&record->repaired, 1, MPI_DOUBLE, 0, comm_);
     record->X_before  = X;
     const auto timing = timings.scope("transfer");
