@@ -121,14 +121,12 @@ namespace retroforge
     }
   } // namespace
 
-  std::vector<ContactPair> find_contact_pairs(const Topology                      &topology,
-                                              const std::vector<Die>              &dies,
-                                              const std::vector<DieState<double>> &states,
-                                              const NodalVectors<double>          &X,
-                                              const FrictionRamp                  &ramp,
-                                              const double                         reach,
-                                              const bool                           with_edges)
+  std::vector<ContactPair> find_contact_pairs(const ContactView<double> &view,
+                                              const FrictionRamp        &ramp,
+                                              const double               reach,
+                                              const bool                 with_edges)
   {
+    const auto &[mesh, topology, dies, states, X] = view;
     std::vector<ContactPair> pairs;
     for (unsigned int d = 0; d < dies.size(); ++d)
     {
@@ -202,22 +200,16 @@ namespace retroforge
   } // namespace
 
   template <typename Number>
-  ContactSet<Number> make_contact_set(const TetMesh                       &mesh,
-                                      const Topology                      &topology,
-                                      const std::vector<Die>              &dies,
-                                      const std::vector<DieState<Number>> &states,
-                                      const std::vector<ContactPair>      &pairs,
-                                      const FrictionRamp                  &ramp,
-                                      const Number                        &tau,
-                                      const NodalVectors<Number>          &X,
-                                      const ApproachLaw                   &approach,
-                                      const double                         edge_stiffness)
+  ContactSet<Number> make_contact_set(const ContactView<Number>      &view,
+                                      const std::vector<ContactPair> &pairs,
+                                      const ContactApproach<Number>  &approach)
   {
     ContactSet<Number> contact;
-    contact.edge_stiffness = edge_stiffness;
-    contact.pairs          = pairs;
-    contact.tau            = tau;
-    contact.approach       = approach;
+    const auto &[mesh, topology, dies, states, X] = view;
+    contact.edge_stiffness                        = approach.edge_stiffness;
+    contact.pairs                                 = pairs;
+    contact.tau                                   = approach.tau;
+    contact.approach                              = approach.law;
     std::map<std::pair<unsigned int, NodeIndex>, unsigned int> index; // (die, node) -> pair
     for (const ContactPair &pair : pairs)
     {
@@ -225,7 +217,7 @@ namespace retroforge
         index[{pair.die, pair.point.nodes[0]}] = contact.projections.size();
       contact.projections.push_back(
         dies[pair.die].project(pair.point.mean(X), states[pair.die], pair.feature));
-      contact.ramps.push_back(ramp(contact.projections.back().delta, pair.touching));
+      contact.ramps.push_back(approach.ramp(contact.projections.back().delta, pair.touching));
     }
     contact.touched_by_edges = touched_by_edges(topology, pairs);
     for (const auto &[node, edge] : contact.touched_by_edges)
@@ -254,14 +246,12 @@ namespace retroforge
     return contact;
   }
 
-  void reverse_contact_set(const std::vector<Die>              &dies,
-                           const std::vector<DieState<double>> &states,
-                           const ContactSet<double>            &contact,
-                           const FrictionRamp                  &ramp,
-                           const NodalVectors<double>          &X,
-                           const ContactSetBar                 &bar,
-                           NodalVectors<double>                &X_bar,
-                           std::vector<DieState<double>>       &dies_bar)
+  void reverse_contact_set(const ContactView<double>     &view,
+                           const ContactSet<double>      &contact,
+                           const FrictionRamp            &ramp,
+                           const ContactSetBar           &bar,
+                           NodalVectors<double>          &X_bar,
+                           std::vector<DieState<double>> &dies_bar)
   {
     const std::vector<double> ramps_bar = reverse_touched_by_edges(contact, ramp, bar.ramp);
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
@@ -270,14 +260,14 @@ namespace retroforge
       const double delta_bar    = bar.delta[p] + ramps_bar[p] * ramp.derivative(contact.projections[p].delta);
       DieState<double> &die_bar = dies_bar[pair.die];
       Vec3              at_point;
-      dies[pair.die].reverse_project(pair.point.mean(X),
-                                     states[pair.die].displacement,
-                                     pair.feature,
-                                     delta_bar,
-                                     bar.n[p],
-                                     at_point,
-                                     die_bar.displacement,
-                                     die_bar.vertices.empty() ? nullptr : &die_bar.vertices);
+      view.dies[pair.die].reverse_project(pair.point.mean(view.X),
+                                          view.states[pair.die].displacement,
+                                          pair.feature,
+                                          delta_bar,
+                                          bar.n[p],
+                                          at_point,
+                                          die_bar.displacement,
+                                          die_bar.vertices.empty() ? nullptr : &die_bar.vertices);
       pair.point.add(at_point, X_bar);
     }
   }
@@ -451,23 +441,15 @@ namespace retroforge
     return bar;
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                                            \
-  template Number FrictionRamp::operator()(const Number &, bool) const;                           \
-  template ContactSet<Number>   make_contact_set(const TetMesh &,                                 \
-                                                 const Topology &,                                \
-                                                 const std::vector<Die> &,                        \
-                                                 const std::vector<DieState<Number>> &,           \
-                                                 const std::vector<ContactPair> &,                \
-                                                 const FrictionRamp &,                            \
-                                                 const Number &,                                  \
-                                                 const NodalVectors<Number> &,                    \
-                                                 const ApproachLaw &,                             \
-                                                 double);                                         \
-  template ContactAreas<Number> contact_areas(                                                    \
-    const TetMesh &, const Topology &, const ContactSet<Number> &, const NodalVectors<Number> &); \
-  template Vector3<Number> contact_force(                                                         \
-    const ContactNode<Number> &, const MaterialLaw<Number> &, const ContactLaw<Number> &);        \
-  template Number friction_power(                                                                 \
+#define RETROFORGE_INSTANTIATE(Number)                                                                 \
+  template Number FrictionRamp::operator()(const Number &, bool) const;                                \
+  template ContactSet<Number>   make_contact_set(                                                      \
+      const ContactView<Number> &, const std::vector<ContactPair> &, const ContactApproach<Number> &); \
+  template ContactAreas<Number> contact_areas(                                                         \
+    const TetMesh &, const Topology &, const ContactSet<Number> &, const NodalVectors<Number> &);      \
+  template Vector3<Number> contact_force(                                                              \
+    const ContactNode<Number> &, const MaterialLaw<Number> &, const ContactLaw<Number> &);             \
+  template Number friction_power(                                                                      \
     const ContactNode<Number> &, const MaterialLaw<Number> &, const ContactLaw<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)

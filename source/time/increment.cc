@@ -86,16 +86,12 @@ namespace retroforge
                                          const IncrementRecord      &record)
       : physics(process.at_stroke(record.stroke))
       , dt(process.time(record.step))
-      , contact(make_contact_set(scene.mesh,
-                                 scene.topology,
-                                 scene.dies,
-                                 physics.dies,
-                                 record.pairs,
-                                 record.contact.ramp,
-                                 Number(record.contact.approach * dt),
-                                 X,
-                                 record.contact.approach_law(record.step),
-                                 record.contact.edge_stiffness))
+      , contact(make_contact_set<Number>(scene.view(physics.dies, X),
+                                         record.pairs,
+                                         {record.contact.ramp,
+                                          Number(record.contact.approach * dt),
+                                          record.contact.approach_law(record.step),
+                                          record.contact.edge_stiffness}))
   {
   }
 
@@ -229,8 +225,8 @@ namespace retroforge
       if (!replay)
       {
         const auto timing = timings_.scope("contact");
-        record.pairs      = find_contact_pairs(
-          scene_.topology, scene_.dies, physics.dies, X, record.contact.ramp, reach, model_.edges_touch);
+        record.pairs =
+          find_contact_pairs(scene_.view(physics.dies, X), record.contact.ramp, reach, model_.edges_touch);
         all_found = reach > model_.reach && record.pairs.size() == n_watched;
         n_watched = record.pairs.size();
       }
@@ -374,11 +370,9 @@ namespace retroforge
         guesses.resize(std::min<std::size_t>(guesses.size(), 3));
         reverse_residual(view, lambda, stage_bar);
         if (s == 0)
-          reverse_contact_set(scene_.dies,
-                              start.physics.dies,
+          reverse_contact_set(scene_.view(start.physics.dies, X),
                               start.contact,
                               record.contact.ramp,
-                              X,
                               bar.contact,
                               position_bar,
                               bar.physics.dies);

@@ -122,41 +122,50 @@ namespace retroforge
     explicit ContactSetBar(const std::size_t n_pairs) : delta(n_pairs, 0.), ramp(n_pairs, 0.), n(n_pairs) {}
   };
 
+  /// What contact depends on, but for decisions and laws: the workpiece at positions X, and the dies.
+  template <typename Number>
+  struct ContactView
+  {
+    const TetMesh                       &mesh;
+    const Topology                      &topology;
+    const std::vector<Die>              &dies;
+    const std::vector<DieState<Number>> &states; ///< of each die
+    const NodalVectors<Number>          &X;
+  };
+
+  /// How points approach the dies in an increment, and where friction sets in.
+  template <typename Number>
+  struct ContactApproach
+  {
+    FrictionRamp ramp;
+    Number       tau; ///< approach time [s]
+    ApproachLaw  law            = {};
+    double       edge_stiffness = 1.; ///< of edges' penalty over the nodes'
+  };
+
   /// The nodes within `reach` of a die, at positions X; then, where the die bulges into edges of the surface,
   /// their middles, and their ends if farther away. Deterministic order: by die, then nodes, edges, ends,
   /// each ascending.
   /// @param with_edges  whether middles of edges count
-  std::vector<ContactPair> find_contact_pairs(const Topology                      &topology,
-                                              const std::vector<Die>              &dies,
-                                              const std::vector<DieState<double>> &states,
-                                              const NodalVectors<double>          &X,
-                                              const FrictionRamp                  &ramp,
-                                              double                               reach,
-                                              bool                                 with_edges);
+  std::vector<ContactPair> find_contact_pairs(const ContactView<double> &view,
+                                              const FrictionRamp        &ramp,
+                                              double                     reach,
+                                              bool                       with_edges);
 
-  /// Gaps, normals and ramps of given pairs at X.
+  /// Gaps, normals and ramps of given pairs.
   template <typename Number>
-  ContactSet<Number> make_contact_set(const TetMesh                       &mesh,
-                                      const Topology                      &topology,
-                                      const std::vector<Die>              &dies,
-                                      const std::vector<DieState<Number>> &states,
-                                      const std::vector<ContactPair>      &pairs,
-                                      const FrictionRamp                  &ramp,
-                                      const Number                        &tau,
-                                      const NodalVectors<Number>          &X,
-                                      const ApproachLaw                   &approach       = {},
-                                      double                               edge_stiffness = 1.);
+  ContactSet<Number> make_contact_set(const ContactView<Number>      &view,
+                                      const std::vector<ContactPair> &pairs,
+                                      const ContactApproach<Number>  &approach);
 
   /// Pull-back of make_contact_set: adds to X_bar, to the dies' displacements, and to vertices where there is
   /// an entry for each.
-  void reverse_contact_set(const std::vector<Die>              &dies,
-                           const std::vector<DieState<double>> &states,
-                           const ContactSet<double>            &contact,
-                           const FrictionRamp                  &ramp,
-                           const NodalVectors<double>          &X,
-                           const ContactSetBar                 &bar,
-                           NodalVectors<double>                &X_bar,
-                           std::vector<DieState<double>>       &dies_bar);
+  void reverse_contact_set(const ContactView<double>     &view,
+                           const ContactSet<double>      &contact,
+                           const FrictionRamp            &ramp,
+                           const ContactSetBar           &bar,
+                           NodalVectors<double>          &X_bar,
+                           std::vector<DieState<double>> &dies_bar);
 
   template <typename Number>
   ContactAreas<Number> contact_areas(const TetMesh              &mesh,

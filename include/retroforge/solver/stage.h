@@ -21,6 +21,13 @@ namespace retroforge
         : mesh(std::move(made_mesh)), topology(mesh), partition(mesh, comm), dies(std::move(dies))
     {
     }
+
+    /// With dies and nodes there. What is passed must live as long.
+    template <typename Number>
+    ContactView<Number> view(const std::vector<DieState<Number>> &states, const NodalVectors<Number> &X) const
+    {
+      return {mesh, topology, dies, states, X};
+    }
   };
 
   /// The numbers of the laws and the state of the dies during one increment.

@@ -353,16 +353,12 @@ namespace retroforge
     const Scene                      &scene   = problem.scene;
     const Physics<double>             physics = problem.process.at_stroke(record.stroke);
     const double                      dt      = problem.process.time(record.step);
-    const ContactSet<double>          contact = make_contact_set(scene.mesh,
-                                                        scene.topology,
-                                                        scene.dies,
-                                                        physics.dies,
-                                                        record.pairs,
-                                                        record.contact.ramp,
-                                                        record.contact.approach * dt,
-                                                        X,
-                                                        record.contact.approach_law(record.step),
-                                                        record.contact.edge_stiffness);
+    const ContactSet<double>          contact = make_contact_set<double>(scene.view(physics.dies, X),
+                                                                record.pairs,
+                                                                {record.contact.ramp,
+                                                                          record.contact.approach * dt,
+                                                                          record.contact.approach_law(record.step),
+                                                                          record.contact.edge_stiffness});
     ContactSetBar                     contact_bar(record.pairs.size());
     PhysicsBar                        bar(scene.dies);
     const Scheme                     &scheme = problem.model.step.scheme;

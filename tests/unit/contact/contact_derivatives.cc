@@ -233,13 +233,14 @@ struct CornerScene
     if (lower != Lower::plane)
       dies[0] = Die("lower", wavy_sheet(), 2., {lower == Lower::smooth, 60., 1.});
     states = {{Vec3(), 0.1 * random.vector(), 0.3, {}}, {Vec3(), 0.1 * random.vector(), 0.2, {}}};
-    pairs  = find_contact_pairs(topology, dies, states, X, ramp, 1.5 * ramp.width, true);
+    pairs  = find_contact_pairs({mesh, topology, dies, states, X}, ramp, 1.5 * ramp.width, true);
   }
 
   template <typename Number>
   ContactSet<Number> contact(const std::vector<DieState<Number>> &states, const NodalVectors<Number> &X) const
   {
-    return make_contact_set(mesh, topology, dies, states, pairs, ramp, Number(0.3), X, 0., edge_stiffness);
+    return make_contact_set<Number>(
+      {mesh, topology, dies, states, X}, pairs, {ramp, Number(0.3), 0., edge_stiffness});
   }
 };
 
@@ -344,7 +345,12 @@ void check_mesh(const CornerScene &scene, Random &random, const Moved &moved, Er
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
     dies_bar[d].vertices.resize(scene.dies[d].surface() ? scene.dies[d].surface()->vertices().size() : 0);
   reverse_contact_areas(scene.mesh, scene.topology, contact, scene.X, areas_bar, X_bar, bar);
-  reverse_contact_set(scene.dies, scene.states, contact, scene.ramp, scene.X, bar, X_bar, dies_bar);
+  reverse_contact_set({scene.mesh, scene.topology, scene.dies, scene.states, scene.X},
+                      contact,
+                      scene.ramp,
+                      bar,
+                      X_bar,
+                      dies_bar);
   double backward = dot(X_dot, X_bar);
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
     backward +=

@@ -141,8 +141,7 @@ struct PathProblem
       }
       for (Vec3 &beta : state.W.beta)
         beta = 0.3 * random.vector();
-      pairs[i] = find_contact_pairs(
-        scene.topology, scene.dies, at.physics.dies, state.X, ramp, 1.5 * ramp.width, true);
+      pairs[i]  = find_contact_pairs(scene.view(at.physics.dies, state.X), ramp, 1.5 * ramp.width, true);
       active[i] = Stage<double>(scene, at.physics, contact(at, i), state.Y).decide_active(state.W);
     }
   }
@@ -156,16 +155,9 @@ struct PathProblem
   template <typename Number>
   ContactSet<Number> contact(const PathInputs<Number> &inputs, const unsigned int i) const
   {
-    return make_contact_set(scene.mesh,
-                            scene.topology,
-                            scene.dies,
-                            inputs.physics.dies,
-                            pairs[i],
-                            ramp,
-                            Number(inputs.tau * dt(inputs, i)),
-                            inputs.states[i].X,
-                            layer,
-                            edge_stiffness);
+    return make_contact_set<Number>(scene.view(inputs.physics.dies, inputs.states[i].X),
+                                    pairs[i],
+                                    {ramp, Number(inputs.tau * dt(inputs, i)), layer, edge_stiffness});
   }
 
   /// Middles of edges that press on the die, in all increments.
@@ -210,11 +202,9 @@ struct PathProblem
       PhysicsBar               physics_bar(scene.dies);
       StageBar                 stage_bar{bar.states[i].W, bar.states[i].Y, set_bar, physics_bar};
       objective.reverse_integrals({stage, inputs.states[i].W, active[i]}, rows_bar[i].integrals, stage_bar);
-      reverse_contact_set(scene.dies,
-                          inputs.physics.dies,
+      reverse_contact_set(scene.view(inputs.physics.dies, inputs.states[i].X),
                           set,
                           ramp,
-                          inputs.states[i].X,
                           set_bar,
                           bar.states[i].X,
                           physics_bar.dies);

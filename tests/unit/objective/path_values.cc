@@ -64,9 +64,8 @@ public:
       const Physics<double> physics{
         {K, 1., 0.}, {rho, 0.}, {{lower, Vec3(), 0., {}}, {upper, Vec3({0., 0., -i * step}), 0., {}}}};
       const FrictionRamp ramp{0.1, false};
-      const auto pairs = find_contact_pairs(scene_.topology, scene_.dies, physics.dies, X, ramp, 1., true);
-      const auto contact =
-        make_contact_set(scene_.mesh, scene_.topology, scene_.dies, physics.dies, pairs, ramp, 5. * dt, X);
+      const auto         pairs = find_contact_pairs(scene_.view(physics.dies, X), ramp, 1., true);
+      const auto contact = make_contact_set<double>(scene_.view(physics.dies, X), pairs, {ramp, 5. * dt});
       const Stage<double> stage(scene_, physics, contact, X);
       const ActiveSet     active = stage.decide_active(W);
       rows.push_back({sum_over_ranks(objective.integrals({stage, W, active}), MPI_COMM_WORLD),
@@ -89,13 +88,12 @@ public:
     const Physics<double>       physics{
       {K, 1., 0.}, {rho, 0.}, {{Vec3(), Vec3(), 0., {}}, {Vec3({0., 0., -faster}), Vec3(), 0., {}}}};
     const FrictionRamp       ramp{0.1, false};
-    std::vector<ContactPair> pairs =
-      find_contact_pairs(scene_.topology, scene_.dies, physics.dies, X, ramp, 1., true);
+    std::vector<ContactPair> pairs = find_contact_pairs(scene_.view(physics.dies, X), ramp, 1., true);
     for (const auto &[a, b] : scene_.topology.surface_edges)
       if (is_on_top(a) && is_on_top(b))
         pairs.push_back({ContactPoint::middle(a, b), 1, true, DieFeature()});
-    const auto contact = make_contact_set(
-      scene_.mesh, scene_.topology, scene_.dies, physics.dies, pairs, ramp, 0.1, X, 0., edge_stiffness);
+    const auto contact =
+      make_contact_set<double>(scene_.view(physics.dies, X), pairs, {ramp, 0.1, 0., edge_stiffness});
     const Stage<double>    stage(scene_, physics, contact, X);
     const Field<double>    W(scene_.mesh); // at rest
     const PathRows<double> rows = {

@@ -44,19 +44,11 @@ namespace retroforge
       for (auto &die : physics.dies)
         die = {0.3 * random.vector(), Vec3(), 0.3, {}};
       const FrictionRamp ramp{0.5, false};
-      contact =
-        make_contact_set(scene.mesh,
-                         scene.topology,
-                         scene.dies,
-                         physics.dies,
-                         find_contact_pairs(scene.topology, scene.dies, physics.dies, X, ramp, 0.8, true),
-                         ramp,
-                         0.4,
-                         X,
-                         0.3,
-                         0.3);
-      W      = random_field(random);
-      active = stage().decide_active(W);
+      contact = make_contact_set<double>(scene.view(physics.dies, X),
+                                         find_contact_pairs(scene.view(physics.dies, X), ramp, 0.8, true),
+                                         {ramp, 0.4, 0.3, 0.3});
+      W       = random_field(random);
+      active  = stage().decide_active(W);
     }
 
     Stage<double> stage() const { return {scene, physics, contact, X}; }

@@ -37,16 +37,8 @@ namespace
       NodalVectors<Dual> positions;
       for (const Vec3 &position : X)
         positions.push_back(number(position));
-      const auto  contact_dual = make_contact_set(scene.mesh,
-                                                 scene.topology,
-                                                 scene.dies,
-                                                 dual.dies,
-                                                 contact.pairs,
-                                                 FrictionRamp{0.5, false},
-                                                 Dual(0.4),
-                                                 positions,
-                                                 0.3,
-                                                 0.3);
+      const auto contact_dual = make_contact_set<Dual>(
+        scene.view(dual.dies, positions), contact.pairs, {FrictionRamp{0.5, false}, Dual(0.4), 0.3, 0.3});
       Field<Dual> field(scene.mesh);
       for (NodeIndex k = 0; k < scene.mesh.n_nodes(); ++k)
       {

@@ -54,20 +54,13 @@ namespace
         , model(parameters.step_model())
         , process(parameters.process(50.))
         , physics(process.at_stroke(0.))
-        , contact(make_contact_set(scene.mesh,
-                                   scene.topology,
-                                   scene.dies,
-                                   physics.dies,
-                                   find_contact_pairs(scene.topology,
-                                                      scene.dies,
-                                                      physics.dies,
-                                                      scene.mesh.X,
-                                                      model.contact.ramp,
-                                                      model.reach,
-                                                      model.edges_touch),
-                                   model.contact.ramp,
-                                   parameters.press.stroke / parameters.press.increments / process.speed(),
-                                   scene.mesh.X))
+        , contact(make_contact_set<double>(
+            scene.view(physics.dies, scene.mesh.X),
+            find_contact_pairs(scene.view(physics.dies, scene.mesh.X),
+                               model.contact.ramp,
+                               model.reach,
+                               model.edges_touch),
+            {model.contact.ramp, parameters.press.stroke / parameters.press.increments / process.speed()}))
         , stage(scene, physics, contact, scene.mesh.X)
         , W(scene.mesh)
     {
