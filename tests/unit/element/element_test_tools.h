@@ -2,23 +2,20 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include "../random_numbers.h"
 #include <retroforge/element/mini_element.templates.h>
 
 #include <cmath>
 #include <iostream>
 #include <map>
-#include <random>
 #include <string>
 
 namespace retroforge
 {
-  /// Numbers in [-1, 1], the same on every machine.
-  class Random
+  /// And cells, and what is in them.
+  class Random : public RandomNumbers
   {
   public:
-    double scalar() { return 2. * (generator_() / 4294967295.) - 1.; }
-    Vec3   vector() { return Vec3({scalar(), scalar(), scalar()}); }
-
     CellValues<double> cell_values()
     {
       CellValues<double> w;
@@ -41,9 +38,6 @@ namespace retroforge
       while (cell_geometry(X).volume < 0.2);
       return X;
     }
-
-  private:
-    std::mt19937 generator_{1};
   };
 
   /// Largest relative error of each of several comparisons.

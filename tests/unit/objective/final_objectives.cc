@@ -317,20 +317,6 @@ double check_all_derivatives()
   return worst;
 }
 
-template <typename Action>
-void refused(const Action &action)
-{
-  try
-  {
-    action();
-    std::cout << "  NOT refused" << std::endl;
-  }
-  catch (const Error &error)
-  {
-    std::cout << "  " << error.what() << std::endl;
-  }
-}
-
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../element/element_test_tools.h"
+#include <retroforge/core/error.h>
 
 namespace retroforge
 {
@@ -90,5 +91,20 @@ namespace retroforge
       for (const double r : remainders)
         std::cout << "  remainder " << r << " of " << start << std::endl;
     return worst;
+  }
+
+  /// What an action throws.
+  template <typename Action>
+  void refused(const Action &action)
+  {
+    try
+    {
+      action();
+      std::cout << "  NOT refused" << std::endl;
+    }
+    catch (const Error &error)
+    {
+      std::cout << "  " << error.what() << std::endl;
+    }
   }
 } // namespace retroforge

@@ -240,20 +240,6 @@ void check_at_rest(const Upsetting &run)
   }
 }
 
-template <typename Action>
-void refused(const Action &action)
-{
-  try
-  {
-    action();
-    std::cout << "  NOT refused" << std::endl;
-  }
-  catch (const Error &error)
-  {
-    std::cout << "  " << error.what() << std::endl;
-  }
-}
-
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);

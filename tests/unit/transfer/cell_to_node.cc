@@ -11,36 +11,15 @@
 #include <deal.II/base/mpi.h>
 
 #include "../mesh/mesh_test_tools.h"
+#include "../random_numbers.h"
 #include <retroforge/core/dual.h>
 #include <retroforge/transfer/cell_to_node.h>
 
 #include <algorithm>
-#include <random>
 
 using namespace retroforge;
 
-std::mt19937 generator(1);
-
-double random_scalar()
-{
-  return 2. * (generator() / 4294967295.) - 1.;
-}
-
-std::vector<double> random_scalars(const std::size_t n)
-{
-  std::vector<double> values(n);
-  for (double &value : values)
-    value = random_scalar();
-  return values;
-}
-
-NodalVectors<double> random_vectors(const std::size_t n)
-{
-  NodalVectors<double> values(n);
-  for (Vec3 &value : values)
-    value = Vec3({random_scalar(), random_scalar(), random_scalar()});
-  return values;
-}
+RandomNumbers numbers;
 
 double integral_over_cells(const TetMesh &mesh, const std::vector<double> &q_T)
 {
@@ -78,9 +57,9 @@ double dot(const NodalVectors<double> &a, const NodalVectors<double> &b)
 // Tangent along (X_dot, q_dot) against the reverse, relative to the norms.
 double lift_defect(const TetMesh &mesh, const double scale_X, const double scale_q)
 {
-  const auto q = random_scalars(mesh.n_cells()), y = random_scalars(mesh.n_nodes());
-  auto       q_dot = random_scalars(mesh.n_cells());
-  auto       X_dot = random_vectors(mesh.n_nodes());
+  const auto q = numbers.scalars(mesh.n_cells()), y = numbers.scalars(mesh.n_nodes());
+  auto       q_dot = numbers.scalars(mesh.n_cells());
+  auto       X_dot = numbers.vectors(mesh.n_nodes());
   for (double &value : q_dot)
     value *= scale_q;
   for (Vec3 &value : X_dot)
@@ -110,7 +89,7 @@ double lift_defect(const TetMesh &mesh, const double scale_X, const double scale
 
 double restriction_defect(const TetMesh &mesh)
 {
-  const auto          x = random_scalars(mesh.n_nodes()), y = random_scalars(mesh.n_cells());
+  const auto          x = numbers.scalars(mesh.n_nodes()), y = numbers.scalars(mesh.n_cells());
   std::vector<double> x_bar(mesh.n_nodes(), 0.);
   reverse_node_to_cell(mesh, y, x_bar);
   const auto Ax = node_to_cell(mesh, x);
@@ -135,7 +114,7 @@ int main(int argc, char **argv)
   print_all("back in cells", node_to_cell(two, cell_to_node(two, two.X, std::vector<double>{2, 5})));
 
   const TetMesh mesh = billet({{"shape", "cylinder"}, {"element size", "6"}});
-  const auto    q_T  = random_scalars(mesh.n_cells());
+  const auto    q_T  = numbers.scalars(mesh.n_cells());
   const auto    q_k  = cell_to_node(mesh, mesh.X, q_T);
   const double  size = volume(mesh.cells, mesh.X);
   const auto    ones = cell_to_node(mesh, mesh.X, std::vector<double>(mesh.n_cells(), 1.));

@@ -14,13 +14,13 @@
 #include <deal.II/base/mpi.h>
 
 #include "../mesh/mesh_test_tools.h"
+#include "../random_numbers.h"
 #include <retroforge/core/dual.h>
 #include <retroforge/remeshing/local_remesher.h>
 #include <retroforge/transfer/cell_to_node.h>
 #include <retroforge/transfer/cell_transfer.h>
 
 #include <algorithm>
-#include <random>
 
 using namespace retroforge;
 
@@ -68,20 +68,7 @@ TetMesh cylinder()
   return remesh_locally(first, first.X, [](const Vec3 &) { return size; }, {}).mesh;
 }
 
-std::mt19937 generator(1);
-
-double random_scalar()
-{
-  return 2. * (generator() / 4294967295.) - 1.;
-}
-
-std::vector<double> random_scalars(const std::size_t n)
-{
-  std::vector<double> values(n);
-  for (double &value : values)
-    value = random_scalar();
-  return values;
-}
+RandomNumbers numbers;
 
 double dot(const std::vector<double> &a, const std::vector<double> &b)
 {
@@ -94,8 +81,8 @@ double dot(const std::vector<double> &a, const std::vector<double> &b)
 /// Tangent along random (X_dot, q_dot) against the reverse, relative to the norms.
 double defect_of_reverse(const Change &change, const double scale_X, const double scale_q)
 {
-  const auto q = random_scalars(change.old_mesh.n_cells()), y = random_scalars(change.new_mesh.n_cells());
-  const auto q_dot = random_scalars(q.size());
+  const auto q = numbers.scalars(change.old_mesh.n_cells()), y = numbers.scalars(change.new_mesh.n_cells());
+  const auto q_dot = numbers.scalars(q.size());
   NodalVectors<double> X_dot(change.X.size());
   std::vector<Dual>    q_dual;
   NodalVectors<Dual>   X_dual(change.X.size());
@@ -107,7 +94,7 @@ double defect_of_reverse(const Change &change, const double scale_X, const doubl
   for (std::size_t k = 0; k < change.X.size(); ++k)
     for (unsigned int d = 0; d < 3; ++d)
     {
-      X_dot[k][d]                  = scale_X * random_scalar();
+      X_dot[k][d]                  = scale_X * numbers.scalar();
       X_dual[k][d]                 = Dual(1, 0, change.X[k][d]);
       X_dual[k][d].fastAccessDx(0) = X_dot[k][d];
     }
@@ -191,7 +178,7 @@ void check_two_cells()
 
 void check_kept(const Change &change)
 {
-  const auto   q = random_scalars(change.old_mesh.n_cells()), after = change.apply(q);
+  const auto   q = numbers.scalars(change.old_mesh.n_cells()), after = change.apply(q);
   const auto   old_cell = kept_cells(change.old_mesh, change.J, change.new_mesh);
   unsigned int n_kept   = 0;
   bool         same = true, bits = true;
@@ -232,7 +219,7 @@ int main(int argc, char **argv)
   for (NodeIndex k = 0; k < all.size(); ++k)
     all[k] = k;
   const auto identity = make_transfer(change.new_mesh, change.new_mesh.X, change.new_mesh, all);
-  const auto values   = random_scalars(change.new_mesh.n_cells());
+  const auto values   = numbers.scalars(change.new_mesh.n_cells());
   std::cout << "the same mesh again keeps all: "
             << yes(transfer_cells(change.new_mesh, change.new_mesh.X, identity, change.new_mesh, values) ==
                    values)

@@ -16,41 +16,15 @@
 #include <deal.II/base/mpi.h>
 
 #include "../mesh/mesh_test_tools.h"
+#include "../random_numbers.h"
 #include <retroforge/core/dual.h>
 #include <retroforge/mesh/boundary_location.h>
 #include <retroforge/mesh/topology.h>
 #include <retroforge/transfer/transfer.h>
 
 #include <algorithm>
-#include <random>
 
 using namespace retroforge;
-
-class Random
-{
-public:
-  double scalar() { return 2. * (generator_() / 4294967295.) - 1.; }
-  Vec3   vector() { return Vec3({scalar(), scalar(), scalar()}); }
-
-  std::vector<double> scalars(const std::size_t n)
-  {
-    std::vector<double> values(n);
-    for (double &value : values)
-      value = scalar();
-    return values;
-  }
-
-  NodalVectors<double> vectors(const std::size_t n)
-  {
-    NodalVectors<double> values(n);
-    for (Vec3 &value : values)
-      value = vector();
-    return values;
-  }
-
-private:
-  std::mt19937 generator_{1};
-};
 
 double quadratic(const Vec3 &x)
 {
@@ -87,7 +61,7 @@ void test_location()
   const double      h    = 3;
   const TetMesh     mesh = billet({{"size", "40, 40, 40"}, {"element size", "3"}});
   const CellLocator locator(mesh, mesh.X);
-  Random            random;
+  RandomNumbers     random;
   double            difference = 0, error = 0, outside = 0;
   for (unsigned int i = 0; i < 500; ++i)
   {
@@ -137,12 +111,12 @@ double defect_of_linear_field(const TetMesh &old_mesh, const TetMesh &new_mesh, 
 // <J x, y> - <x, J^T y>, relative to the sum of absolute values.
 double defect_of_transpose(const TransferOperator &J)
 {
-  Random     random;
-  const auto x = random.vectors(J.n_old), y = random.vectors(J.n_new());
-  const auto Jx = J.apply(x), Jty = J.apply_transpose(y);
-  const auto u = random.scalars(J.n_old), v = random.scalars(J.n_new());
-  const auto Ju = J.apply(u), Jtv = J.apply_transpose(v);
-  double     forward = 0, reverse = 0, size = 0;
+  RandomNumbers random;
+  const auto    x = random.vectors(J.n_old), y = random.vectors(J.n_new());
+  const auto    Jx = J.apply(x), Jty = J.apply_transpose(y);
+  const auto    u = random.scalars(J.n_old), v = random.scalars(J.n_new());
+  const auto    Ju = J.apply(u), Jtv = J.apply_transpose(v);
+  double        forward = 0, reverse = 0, size = 0;
   for (NodeIndex k = 0; k < J.n_new(); ++k)
   {
     forward += Jx[k] * y[k] + Ju[k] * v[k];
@@ -156,7 +130,7 @@ double defect_of_transpose(const TransferOperator &J)
 // With Dual values and derivatives are transferred alike; positions add c to the values only.
 double defect_of_dual(const TransferOperator &J)
 {
-  Random             random;
+  RandomNumbers      random;
   const auto         x = random.vectors(J.n_old), x_dot = random.vectors(J.n_old);
   NodalVectors<Dual> dual(J.n_old);
   for (NodeIndex k = 0; k < J.n_old; ++k)
@@ -247,7 +221,7 @@ double
 normal_velocity_on_symmetry(const TetMesh &old_mesh, const TetMesh &new_mesh, const TransferOperator &J)
 {
   const Topology old_topology(old_mesh), new_topology(new_mesh);
-  Random         random;
+  RandomNumbers  random;
   auto           V = random.vectors(old_mesh.n_nodes());
   for (NodeIndex k = 0; k < old_mesh.n_nodes(); ++k)
     for (const Vec3 &direction : old_topology.fixed_directions[k])
@@ -299,8 +273,8 @@ void test_transfer(const std::string &title,
 // New nodes off the old surface, some nearer to other patches than to their own.
 void test_shaken(const TetMesh &old_mesh)
 {
-  Random  random;
-  TetMesh new_mesh = old_mesh;
+  RandomNumbers random;
+  TetMesh       new_mesh = old_mesh;
   for (Vec3 &x : new_mesh.X)
     x += 1.5 * random.vector();
   const std::vector<NodeIndex> all_new(new_mesh.n_nodes(), invalid_index);
@@ -314,7 +288,7 @@ void test_shaken(const TetMesh &old_mesh)
 // Every tenth node is new (at its old place, off by a little inside), the others moved by less than kept.
 void test_kept_nodes(const TetMesh &old_mesh)
 {
-  Random                 random;
+  RandomNumbers          random;
   TetMesh                new_mesh = old_mesh;
   std::vector<NodeIndex> old_node;
   for (NodeIndex k = 0; k < new_mesh.n_nodes(); ++k)
