@@ -91,7 +91,7 @@ namespace retroforge
     // A mesh that cannot follow its die does so no better when it is remade each time: increments in between.
     constexpr unsigned int settling = 2;
     // Distance from a die, over the element size, within which a node touches it.
-    constexpr double touching = 1e-2;
+    constexpr double touching_distance = 1e-2;
 
     /// Edges that metal may be drawn over: those that stick out, and the rim of an open die. Where a die that
     /// was made for a sector ends in a plane of symmetry, nothing is.
@@ -259,7 +259,7 @@ namespace retroforge
   TouchesDie Remesher::touches(const DieStates &states) const
   {
     return [this, &states](const Vec3 &x) {
-      const double near = touching * element_size_;
+      const double near = touching_distance * element_size_;
       for (unsigned int d = 0; d < dies_.size(); ++d)
         if (const DieFeature feature = dies_[d].closest(x, states[d].displacement, near);
             feature.found() && dies_[d].project(x, states[d].displacement, feature).delta < near)
