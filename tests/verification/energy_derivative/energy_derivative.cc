@@ -52,7 +52,7 @@ namespace
                 {parameters.dies[0].die(), parameters.dies[1].die()},
                 MPI_COMM_WORLD)
         , model(parameters.step_model())
-        , process(parameters.process(50.))
+        , process(parameters.process({50., 50.}))
         , physics(process.at_stroke(0.))
         , contact(make_contact_set<double>(
             scene.view(physics.dies, scene.mesh.X),
