@@ -469,9 +469,11 @@ namespace retroforge
       build_enclosed_volume(X, triangles);
       gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
       gmsh::option::setNumber("Mesh.OptimizeThreshold", attempts[0].threshold);
-      gmsh::model::mesh::setSizeCallback([&](int, int, const double x, const double y, const double z) {
-        return size(Vec3({x, y, z}));
-      });
+      // From Gmsh 4.9 on, a last argument says what size Gmsh itself would take.
+      gmsh::model::mesh::setSizeCallback(
+        [&](int, int, const double x, const double y, const double z, const auto...) {
+          return size(Vec3({x, y, z}));
+        });
       gmsh::model::mesh::generate(3);
       return cells_and_nodes(where);
     });
