@@ -103,8 +103,8 @@ namespace retroforge
       return make_rows(std::move(pairs), mesh.n_nodes());
     }
 
-    // Of a piece of the workpiece, around what lies on all of these planes, in the whole. Planes whose angle is no
-    // whole part of a turn have no whole: one.
+    // Of a piece of the workpiece, around what lies on all of these planes, in the whole. Planes whose angle
+    // is no whole part of a turn have no whole: one.
     double n_images(const TetMesh &mesh, const std::vector<unsigned int> &patches)
     {
       const double copies = patches.empty() ? 1. : n_copies(symmetry_planes(mesh, patches));
