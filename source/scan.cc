@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/case.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/stop_notice.h>
 #include <retroforge/core/version.h>
-#include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/resume.h>
 #include <retroforge/scan.h>
+#include <retroforge/scene_checks.h>
+#include <retroforge/time/leg.h>
 
 #include <cctype>
 #include <chrono>
@@ -75,21 +77,25 @@ namespace retroforge
                   "scan was started by mpirun",
                   "it starts runs of one rank each by itself, side by side",
                   "leave mpirun out; Scan/processes says how many run at a time");
-    parameters_ = Parameters::read(command_.case_file, command_.settings(), echo_);
-    make_lines(comm);
+    // A scene of which nothing can come is refused here, once, and not by each of its runs.
+    CommandLine one_run = command_;
+    one_run.resume      = false;
+    Timings    timings;
+    const Case scene(one_run, timings, comm);
+    check_scene(scene.parameters, Leg(scene.billet, scene.model, timings).scene, scene.process, scene.X_0);
+    echo_       = scene.echo;
+    parameters_ = scene.parameters;
+    make_lines(scene);
   }
 
-  void Scan::make_lines(MPI_Comm comm)
+  void Scan::make_lines(const Case &scene)
   {
-    const TetMesh            billet  = make_billet(parameters_.billet, comm);
-    const BilletSize         size    = parameters_.size_of(billet);
-    const Process<double>    nominal = parameters_.settle(size).process(size);
-    const std::string       &chosen  = parameters_.scan.parameter;
-    std::vector<std::string> names   = parameters_.design.all_names();
+    const std::string       &chosen = parameters_.scan.parameter;
+    std::vector<std::string> names  = parameters_.design.all_names();
     if (!chosen.empty() && std::find(names.begin(), names.end(), chosen) == names.end())
       names.push_back(chosen);
     const Design design(
-      names, parameters_.billet, parameters_.dies, nominal, billet, parameters_.press.stroke);
+      names, parameters_.billet, parameters_.dies, scene.nominal, scene.billet, parameters_.press.stroke);
     const std::vector<double> mu     = design.at(parameters_.design.at);
     const auto               &listed = parameters_.design.names;
     std::set<std::string>     folders;

@@ -9,6 +9,8 @@
 
 namespace retroforge
 {
+  struct Case;
+
   /// The command `scan`: design parameters varied one after the other on the first mesh of the nominal
   /// design. Each point is a run of this program of its own, in `points/` below the folder of the results,
   /// that a user can repeat by hand (`command.txt`).
@@ -23,7 +25,7 @@ namespace retroforge
     int run();
 
   private:
-    void                     make_lines(MPI_Comm comm);
+    void                     make_lines(const Case &scene);
     void                     prepare_folder() const;
     CommandLine              command_of(const ScanPoint &point) const;
     std::vector<std::string> words_of(const CommandLine &command) const;

@@ -94,7 +94,7 @@ def failing_points():
     judge("without gradients no slopes", objective["slopes"] == 0 and objective["bias"] is None and rows[0]["energy: gradient"] == "")
     done = start([REPORT, "--no-vtk", "failing"])
     judge("reported", done.returncode == 0 and "inside it" in text_of("failing/report.html"), done.stderr)
-    done = run("scan", "all", "Die upper/point=0, 0, 13", "Scan/parameter=material/K")
+    done = run("scan", "all", "Press/max cuts=0", "Press/largest move=0.01", "Scan/parameter=material/K")
     judge("all failed", done.returncode == 1 and "5 points, 5 failed" in done.stdout, done.stderr)
 
 
@@ -109,9 +109,10 @@ def refused():
     done = start(["mpirun", "-np", "2", *command("scan", "ranks")])
     judge("mpirun", done.returncode != 0 and "leave mpirun out" in done.stderr, done.stderr.strip()[:200])
     for what, setting, expected in (("unknown parameter", "Scan/parameter=billet/raduis", "did you mean 'billet/radius'"),
-                                    ("too few points", "Scan/points=3", "at least 4 points")):
+                                    ("too few points", "Scan/points=3", "at least 4 points"),
+                                    ("a die in the billet", "Die upper/point=0, 0, 13", "stands 2 mm inside it")):
         done = run("scan", "wrong", setting)
-        judge(what, done.returncode == 1 and expected in done.stderr, done.stderr.strip())
+        judge(what, done.returncode == 1 and expected in done.stderr and not os.path.exists("wrong"), done.stderr.strip())
 
 
 def stopped():
