@@ -1,27 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/core/exception_message.h>
-#include <retroforge/core/version.h>
+#include <retroforge/program.h>
 #include <retroforge/scan.h>
-#include <retroforge/simulation.h>
-
-#include <chrono>
-#include <iostream>
-#include <thread>
-
-namespace
-{
-  int answer(const retroforge::CommandLine &command)
-  {
-    if (command.help)
-      std::cout << retroforge::help_text();
-    else if (command.version)
-      std::cout << "Retroforge " << retroforge::version << ' ' << retroforge::commit << '\n';
-    else
-      retroforge::Parameters::print_template(std::cout);
-    return 0;
-  }
-} // namespace
 
 int main(int argc, char **argv)
 {
@@ -34,26 +14,5 @@ int main(int argc, char **argv)
   int    n_arguments = 1;
 
   dealii::Utilities::MPI::MPI_InitFinalize mpi(n_arguments, arguments, 1);
-  try
-  {
-    const auto command = retroforge::CommandLine::parse(argc, argv);
-    if (command.help || command.version || command.print_parameters)
-      return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0 ? answer(command) : 0;
-    if (command.command == "scan")
-      return retroforge::Scan(command, environment, MPI_COMM_WORLD).run();
-    return retroforge::Simulation(command, MPI_COMM_WORLD).run();
-  }
-  catch (...)
-  {
-    const std::string problem = retroforge::message_of(std::current_exception());
-    // An error of all ranks is told once: the first speaks at once and ends the others. One that only another
-    // rank met is told by that rank, a moment later.
-    const bool alone = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
-    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
-      std::this_thread::sleep_for(std::chrono::seconds(2));
-    std::cerr << "retroforge: " << problem << std::endl;
-    if (!alone)
-      MPI_Abort(MPI_COMM_WORLD, 1);
-    return 1;
-  }
+  return retroforge::run_program(argc, argv, environment);
 }

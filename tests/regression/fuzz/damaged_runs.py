@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""Whole runs with damaged input:   damaged_runs.py PROGRAM [--trials parameters=2000,meshes=300,dies=300,records=200]
-                                                     [--seed 1] [--only KIND:NUMBER] [--jobs 2] [--keep FOLDER]
+"""Whole runs with damaged input:   damaged_runs.py PROGRAM FORK_SERVER [--trials parameters=2000,meshes=300,dies=300,records=200]
+                                                     [--seed 1] [--only KIND:NUMBER] [--jobs 2] [--keep FOLDER] [--told]
 
 A trial is a small scene of which a parameter file, a mesh, an STL file or a record was damaged; a third of the trials meet the results
 of an earlier run in their folder. A trial ends (exit status 0, results finite), or is refused or stopped with one message of the form
@@ -19,8 +19,8 @@ import os
 import pathlib
 import random
 import re
-import resource
 import shutil
+import signal
 import struct
 import subprocess
 import sys
@@ -39,9 +39,6 @@ NASTY = ("0", "-0", "1", "-1", "2", "3", "7", "1.5", "0.5", "100", "1000000", "2
 RAW = re.compile(r"terminate called|An error occurred in|what\(\)|std::|dealii::|MPI_ABORT|HDF5-DIAG|[Aa]ssert|PETSC|Teuchos|Epetra|"
                  r"^(Error|Info|Warning) +: |Traceback|bad_alloc|basic_string|vector::|segmentation", re.MULTILINE)
 MESSAGE = re.compile(r"retroforge: [^\n]+?: [^\n]+; [^\n]+; [^\n]+\n")
-# Commands of many runs tell what became of each, and their verdict with their status.
-SEVERAL = {"check": re.compile(r"FAILED"), "scan": re.compile(r"points, [1-9]\d* failed")}
-
 DIES = """
 subsection Dies
   set names = lower, upper
@@ -120,8 +117,9 @@ def stl_binary(facets):
 class Tools:
     """The program, and what it makes once for all trials."""
 
-    def __init__(self, program, folder):
-        self.program, self.folder = program, folder
+    def __init__(self, program, server, folder, told):
+        self.program, self.server_program, self.folder, self.told = program, server, folder, told
+        self.of_thread = threading.local()
         self.mesh, self.facets = box_mesh(2, 20.0), die_stl()
         done = subprocess.run([program, "--print-parameters"], capture_output=True, text=True, check=True)
         self.settings = self.known_settings(done.stdout)
@@ -159,11 +157,16 @@ class Tools:
 
     def environment(self, folder):
         return {**os.environ, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-                "TMPDIR": str(folder)}
+                "OMPI_MCA_mpi_warn_on_fork": "0", "TMPDIR": str(folder)}
 
     def start(self, folder, arguments):
         return subprocess.run([self.program] + arguments, cwd=folder, env=self.environment(folder), capture_output=True, text=True,
                               errors="replace", check=False)
+
+    def server(self):
+        if not hasattr(self.of_thread, "server"):
+            self.of_thread.server = Server(self.server_program, self.environment(self.folder))
+        return self.of_thread.server
 
     def write_scene(self, folder, scene):
         folder.mkdir()
@@ -342,34 +345,31 @@ def contents(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
-def follow(command, folder, environment):
-    """Runs it for a minute at most. @return exit status or None, output, errors, seconds since it last said something"""
-    def limits():
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+class Server:
+    """Starts the program without loading it anew, see fork_server.cc; one run at a time."""
 
-    said = {"stdout": [], "stderr": []}
-    last = [time.monotonic()]
+    def __init__(self, program, environment):
+        self.process = subprocess.Popen([program, str(MEMORY)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment)
 
-    def read(name, stream):
-        for line in stream:
-            said[name].append(line)
-            last[0] = time.monotonic()
+    def follow(self, folder, arguments):
+        """Runs it for a minute at most. @return exit status, negative of a signal's number, None where it was stopped; output;
+        errors; seconds since it last said something"""
+        files = [folder / "../stdout", folder / "../stderr"]
+        self.process.stdin.write("\x1f".join(map(str, [folder, *files, *arguments])) + "\n")
+        self.process.stdin.flush()
+        pid = int(self.process.stdout.readline())
+        silent = []
 
-    with subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          errors="replace", preexec_fn=limits) as process:
-        readers = [threading.Thread(target=read, args=(name, getattr(process, name))) for name in said]
-        for reader in readers:
-            reader.start()
-        try:
-            status = process.wait(LONGEST)
-        except subprocess.TimeoutExpired:
-            status = None
-            silent = time.monotonic() - last[0]
-            process.kill()
-        for reader in readers:
-            reader.join()
-    return status, "".join(said["stdout"]), "".join(said["stderr"]), silent if status is None else 0.0
+        def stop():
+            silent.append(time.time() - max(file.stat().st_mtime for file in files))
+            os.kill(pid, signal.SIGKILL)
+
+        timer = threading.Timer(LONGEST, stop)
+        timer.start()
+        kind, number = self.process.stdout.readline().split()
+        timer.cancel()
+        status = None if silent else int(number) if kind == "exit" else -int(number)
+        return status, *(file.read_text(encoding="utf-8", errors="replace") for file in files), silent[0] if silent else 0.0
 
 
 def not_finite(results):
@@ -395,11 +395,9 @@ def trial(tools, kind, number, seed, keep):
     rng = random.Random(f"{seed}:{kind}:{number}")
     folder = pathlib.Path(tempfile.mkdtemp(dir=tools.folder)) / "run"
     arguments = KINDS[kind](rng, tools, folder)
-    word = "gradient" if kind == "records" else rng.choice(("gradient",) * 6 + ("simulate",) * 3 + ("check", "scan"))
+    word = "gradient" if kind == "records" else rng.choice(("gradient",) * 6 + ("simulate",) * 3 + ("check",))
     if word == "check":
         arguments += ["--set", "Check/steps=1e-3", "--set", "Check/free differences=false", "--set", "Check/taylor halvings=2"]
-    if word == "scan":
-        arguments += ["--set", "Scan/points=5", "--set", "Scan/processes=1"]
     output = folder / "out"
     beside = kind != "records" and rng.random() < 1 / 3
     if beside:
@@ -407,7 +405,7 @@ def trial(tools, kind, number, seed, keep):
         arguments += rng.choice(([], ["--overwrite"], ["--overwrite"]))
     before = contents(output) if output.exists() else {}
     command = [tools.program, word, "case.prm", "--output", "out"] + arguments
-    status, said, errors, silent = follow(command, folder, tools.environment(folder))
+    status, said, errors, silent = tools.server().follow(folder, command[1:])
     accepted = re.search(r"^ +1 +\d", said, re.MULTILINE) is not None or status in (0, None)
     defect = None
     if status is None:
@@ -423,7 +421,7 @@ def trial(tools, kind, number, seed, keep):
         outcome = "stopped" if accepted else "refused"
         if RAW.search(errors + said):
             defect = "raw: " + RAW.search(errors + said).group()
-        elif not MESSAGE.fullmatch(errors) and not (word in SEVERAL and not errors and SEVERAL[word].search(said)):
+        elif not MESSAGE.fullmatch(errors) and not (word == "check" and not errors and "FAILED" in said):
             defect = "no message of the form where: what; rule; remedy"
     else:
         outcome, defect = "crashed", f"exit status {status}"
@@ -444,6 +442,7 @@ def trial(tools, kind, number, seed, keep):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
+    parser.add_argument("fork_server")
     parser.add_argument("--trials", default="parameters=2000,meshes=300,dies=300,records=200")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", help="one trial, KIND:NUMBER")
@@ -457,8 +456,7 @@ def main():
         kind, _, number = options.only.partition(":")
         todo = [(kind, int(number))]
     with tempfile.TemporaryDirectory() as folder:
-        tools = Tools(os.path.abspath(options.program), pathlib.Path(folder))
-        tools.told = options.told
+        tools = Tools(os.path.abspath(options.program), os.path.abspath(options.fork_server), pathlib.Path(folder), options.told)
         outcomes, defects = collections.defaultdict(collections.Counter), []
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
             for (kind, _), (outcome, defect) in zip(todo, pool.map(lambda at: trial(tools, *at, options.seed, options.keep), todo)):

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace retroforge
+{
+  /// What the program does with its command line, once MPI runs. Nothing is thrown: problems are told on the
+  /// error stream, once, also where several ranks meet them.
+  /// @param environment  that of the program before MPI added to it; runs that it starts get it
+  /// @return the exit status
+  int run_program(int argc, char **argv, const std::vector<std::string> &environment);
+} // namespace retroforge
