@@ -167,9 +167,10 @@ namespace retroforge
     if (summary.deepest.relative > largest_depth)
       print_depth(summary.deepest);
     if (summary.volume_repaired > 0.)
-      std::printf("  the surface crossed itself in places thinner than an element: %.3g mm^3 were taken away "
-                  "there, and put back elsewhere\n",
-                  summary.volume_repaired);
+      std::printf(
+        "  the surface crossed itself, or cells at it stayed flat, in places thinner than an element: "
+        "%.3g mm^3 were taken away there, and put back elsewhere\n",
+        summary.volume_repaired);
     for (const std::string &die : untouched)
       std::printf("  warning: no node touched die %s\n", die.c_str());
     const auto total = summary.wall_seconds.find("total");

@@ -80,9 +80,10 @@ namespace retroforge
 
   void Forging::remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const
   {
-    const auto timing = timings_.scope("remeshing");
-    record.remesh =
-      remesher_.remesh(state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies, timings_);
+    const auto   timing     = timings_.scope("remeshing");
+    const double repairable = remesher_.largest_repair() * state.volume - state.repaired;
+    record.remesh           = remesher_.remesh(
+      state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies, repairable, timings_);
     change_mesh(*record.remesh, state);
     state.X = record.remesh->mesh.X; // J X + c to the last bit
   }

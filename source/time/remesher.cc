@@ -10,6 +10,7 @@
 #include <retroforge/mesh/renumber.h>
 #include <retroforge/mesh/self_crossing.h>
 #include <retroforge/remeshing/rebuild.h>
+#include <retroforge/remeshing/slivers.h>
 #include <retroforge/remeshing/trigger.h>
 #include <retroforge/remeshing/uncross.h>
 #include <retroforge/time/remesher.h>
@@ -66,12 +67,14 @@ namespace retroforge
       "Remesh when a surface edge with both ends on a curved die is deeper inside it than this "
       "part of the element size. Units: none.",
       Double(1e-6));
-    prm.add_parameter(
-      "largest repair",
-      largest_repair,
-      "Metal thinner than an element may be taken away where the surface crosses itself, in all this part of "
-      "the workpiece's volume; what crosses beyond that is a fold, and the run stops. Units: none.",
-      Double(0., 1.));
+    prm.add_parameter("largest repair",
+                      largest_repair,
+                      "Metal thinner than an element may be taken away where the surface crosses itself, or "
+                      "where a flat cell at "
+                      "it would stay, in all this part of the workpiece's volume; what crosses beyond that "
+                      "is a fold, and the "
+                      "run stops. Units: none.",
+                      Double(0., 1.));
     prm.add_parameter(
       "first mesh", first_mesh, "Improve the billet's mesh by one pass before the run begins. Units: none.");
     prm.leave_subsection();
@@ -283,6 +286,7 @@ namespace retroforge
                               const NodalVectors<double> &X,
                               const SizeField            &size,
                               const DieStates            &states,
+                              const double                repairable,
                               double                     &repaired) const
   {
     const PushOut    push_out = this->push_out(states);
@@ -292,16 +296,17 @@ namespace retroforge
     start.mesh.X = X;
     start.old_node.resize(mesh.n_nodes());
     std::iota(start.old_node.begin(), start.old_node.end(), 0);
+    const auto use = [&](RepairedMesh &&made) {
+      compose(start.old_node, made.mesh.old_node);
+      start = std::move(made.mesh);
+      repaired += made.removed;
+    };
     // What remeshing moves can cross again beside what was taken away.
     constexpr unsigned int n_tries = 3;
     for (unsigned int i = 1;; ++i)
     {
       if (auto uncrossed = uncross(start.mesh, start.mesh.X, size))
-      {
-        compose(start.old_node, uncrossed->mesh.old_node);
-        start = std::move(uncrossed->mesh);
-        repaired += uncrossed->removed;
-      }
+        use(std::move(*uncrossed));
       if (parameters_.method != "local" || minimum_quality(start.mesh.cells, start.mesh.X) <= 0.)
       {
         RebuiltMesh rebuilt = rebuild_inside(start.mesh, start.mesh.X, size, "Remeshing");
@@ -311,22 +316,28 @@ namespace retroforge
       RemeshedMesh local =
         remesh_locally(start.mesh, start.mesh.X, size, parameters_.local, push_out, touches, before);
       compose(start.old_node, local.old_node);
-      if (i == n_tries || self_crossings(local.mesh, local.mesh.X).empty())
+      if (i == n_tries)
+        return local;
+      auto peeled = without_slivers(local.mesh, local.mesh.X, size, repairable - repaired);
+      if (!peeled && self_crossings(local.mesh, local.mesh.X).empty())
         return local;
       start = {std::move(local.mesh), std::move(local.old_node)};
+      if (peeled)
+        use(std::move(*peeled));
     }
   }
 
   std::shared_ptr<const RemeshRecord> Remesher::remesh(const TetMesh              &mesh,
                                                        const NodalVectors<double> &X,
                                                        const DieStates            &states,
+                                                       const double                repairable,
                                                        Timings                    &timings) const
   {
     auto                   record = std::make_shared<RemeshRecord>();
     std::vector<NodeIndex> old_node;
     const auto             make_numbered = [&]() {
       const NodalVectors<double> rounded = on_grid(X);
-      RemeshedMesh               made = make(mesh, rounded, size_field(states), states, record->repaired);
+      RemeshedMesh made = make(mesh, rounded, size_field(states), states, repairable, record->repaired);
       for (NodeIndex k = 0; k < made.mesh.n_nodes(); ++k)
         if (const NodeIndex old = made.old_node[k]; old != invalid_index)
           made.mesh.X[k] += X[old] - rounded[old];

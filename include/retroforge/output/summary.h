@@ -79,7 +79,7 @@ namespace retroforge
 
     double volume_initial  = unknown;
     double volume_final    = unknown;
-    double volume_repaired = 0.; ///< taken away where the surface crossed itself, mm^3
+    double volume_repaired = 0.; ///< taken away where metal was thinner than an element, mm^3
 
     /// The deepest the surface has been in a die, over the run.
     struct Depth

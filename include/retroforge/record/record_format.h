@@ -35,7 +35,7 @@
 ///       active                [n_solves][n_pairs]     uint8
 ///       remesh                only of an increment that begins on a new mesh: that mesh as in the header
 ///         X_before            [n_old][3]              double [mm]   positions on the mesh before
-///         attribute: repaired, volume taken away where the surface had crossed itself [mm^3]
+///         attribute: repaired, volume of metal thinner than an element taken away [mm^3]
 ///         begin               [n_nodes + 1]           uint32        rows of J,
 ///         node weight         [n_entries]             uint32, double
 /// A finished file has at its root the attribute n_increments.

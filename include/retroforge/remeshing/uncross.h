@@ -2,18 +2,12 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/remeshing/rebuild.h>
+#include <retroforge/remeshing/peeled_mesh.h>
 
 #include <optional>
 
 namespace retroforge
 {
-  struct UncrossedMesh
-  {
-    RebuiltMesh mesh;
-    double      removed = 0.; ///< volume [mm^3]
-  };
-
   /// Takes cells away where the boundary crosses itself, the smallest first, until it does not: metal that is
   /// thinner than an element (a lip that the side left as it rolled onto a die, or a chord) cannot be
   /// followed by the mesh. A cell may go when the boundary stays a surface; those that go lose together less
@@ -22,7 +16,7 @@ namespace retroforge
   /// @param X     current positions
   /// @param size  wanted length of edges at a point
   /// Deterministic. To be called with the same arguments on all ranks or on one.
-  std::optional<UncrossedMesh> uncross(const TetMesh                             &mesh,
-                                       const NodalVectors<double>                &X,
-                                       const std::function<double(const Vec3 &)> &size);
+  std::optional<RepairedMesh> uncross(const TetMesh                             &mesh,
+                                      const NodalVectors<double>                &X,
+                                      const std::function<double(const Vec3 &)> &size);
 } // namespace retroforge

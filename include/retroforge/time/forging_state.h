@@ -15,7 +15,7 @@ namespace retroforge
     Field<double>        W;      ///< the last increment's solution, where the next one starts
     double               stroke   = 0.;
     double               volume   = 0.; ///< at the start of the run [mm^3]
-    double               repaired = 0.; ///< taken away where the surface crossed itself [mm^3]
+    double               repaired = 0.; ///< metal thinner than an element taken away [mm^3]
     unsigned int         depth    = 0;  ///< an increment is the whole one / 2^depth
     double slip = 0.; ///< of the last increment: largest one along a curved die, in edges [mm^-1]
 

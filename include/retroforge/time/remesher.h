@@ -69,11 +69,14 @@ namespace retroforge
     std::vector<bool> frozen(const TetMesh &mesh) const;
 
     /// Collective: made on rank 0, the same everywhere. Numbered with renumber().
+    /// @param repairable  volume of slivers at the surface that may be taken away, see without_slivers()
+    /// [mm^3]
     /// @param timings  "transfer" gets what it takes to find J
     /// @throws Error  when no method gives a sound mesh
     std::shared_ptr<const RemeshRecord> remesh(const TetMesh              &mesh,
                                                const NodalVectors<double> &X,
                                                const DieStates            &states,
+                                               double                      repairable,
                                                Timings                    &timings) const;
 
     /// Whether a surface that crosses itself can be repaired, because what crosses is thinner than an
@@ -98,6 +101,7 @@ namespace retroforge
                       const NodalVectors<double> &X,
                       const SizeField            &size,
                       const DieStates            &states,
+                      double                      repairable,
                       double                     &repaired) const;
     PushOut      push_out(const DieStates &states) const;
     TouchesDie   touches(const DieStates &states) const;
