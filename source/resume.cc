@@ -131,6 +131,13 @@ namespace retroforge
                   "restore these values" + anew + untouched);
   }
 
+  void Resumption::check_increments() const
+  {
+    const RecordReader record(directory_);
+    for (unsigned int i = 0; i < n_increments; ++i)
+      record.read(i);
+  }
+
   void Resumption::check_start(const TetMesh              &mesh,
                                const NodalVectors<double> &X_0,
                                const std::vector<Die>     &dies) const

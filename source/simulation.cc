@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <numeric>
 #include <utility>
 
 namespace retroforge
@@ -49,10 +50,16 @@ namespace retroforge
         require_finite(objective.gradient[j],
                        "Objective " + objective.name,
                        "its derivative by " + design.parameters()[j].name);
-      double size = 0.;
-      for (const Vec3 &x : objective.shape.X_0)
-        size += x.norm();
-      require_finite(size, "Objective " + objective.name, "its derivative by the nodes of the billet");
+      const auto size = [](const NodalVectors<double> &x) {
+        return std::accumulate(
+          x.begin(), x.end(), 0., [](const double sum, const Vec3 &v) { return sum + v.norm(); });
+      };
+      require_finite(size(objective.shape.X_0),
+                     "Objective " + objective.name,
+                     "its derivative by the nodes of the billet");
+      for (const NodalVectors<double> &vertices : objective.shape.dies)
+        require_finite(
+          size(vertices), "Objective " + objective.name, "its derivative by the vertices of a die");
     }
 
     /// A check reads the increments many times over; a gradient once, from the record.
@@ -101,6 +108,8 @@ namespace retroforge
     const CommandLine &command = case_.command;
     if (case_.resumption)
       case_.resumption->check_start(case_.billet, case_.X_0, case_.model.dies);
+    if (case_.resumption && root_)
+      case_.resumption->check_increments();
     MPI_Barrier(case_.comm); // all have read before anything changes
     if (root_ && command.resume)
       remove_all_but_record(command.output_directory, command.command == "check");
@@ -114,6 +123,8 @@ namespace retroforge
       "parameters.prm", "history.csv", "objectives.csv", "fields.pvd", "summary.json"};
     if (case_.command.command != "simulate")
       files.push_back("sensitivity.vtu");
+    if (case_.command.command == "check")
+      files.push_back("check.json");
     if (case_.parameters.output.record)
       files.push_back("record.h5");
     for (const Die &die : case_.model.dies)

@@ -42,6 +42,9 @@ namespace retroforge
     void
     check_start(const TetMesh &mesh, const NodalVectors<double> &X_0, const std::vector<Die> &dies) const;
 
+    /// Reads all increments, before anything of the folder changes. @throws Error  where one is damaged
+    void check_increments() const;
+
   private:
     std::string directory_;
   };

@@ -10,6 +10,7 @@
 #include <cfenv>
 #include <clocale>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <gmsh.h>
 #include <map>
@@ -317,10 +318,12 @@ namespace retroforge
     // Refuses what is another kind of file.
     void check_is_msh(const std::string &file_name)
     {
-      std::ifstream file(file_name);
-      if (!file)
+      std::ifstream   file(file_name);
+      std::error_code ignored;
+      const bool      is_device = std::filesystem::is_character_file(file_name, ignored);
+      if (!file || is_device)
         throw Error(file_name,
-                    "the file cannot be read",
+                    is_device ? "is a device" : "the file cannot be read",
                     "the mesh of the billet must exist",
                     "check the path; it is taken from the folder in which the program runs");
       const auto  dot = file_name.rfind('.');

@@ -189,6 +189,7 @@ MISTAKES = {
     "die in metres": (settings("Die lower/shape=stl", "Die lower/file=in_metres.stl"), r"Die lower.*0\.0424264 mm.*scale"),
     "die in nanometres": (settings("Die lower/shape=stl", "Die lower/file=in_nanometres.stl"), r"Die lower.*4\.24264e\+07 mm.*scale"),
     "device for a die": (settings("Die lower/shape=stl", "Die lower/file=/dev/zero"), r"/dev/zero.*device"),
+    "device for a mesh": (file_mesh("small") + settings("Billet/file name=/dev/zero"), r"/dev/zero.*device"),
     "billet in metres": (file_mesh("small") + settings("Billet/scale=0.001"), r"Die upper.*does not come against the billet.*scale"),
     "two bodies": (file_mesh("two_bodies"), r"two_bodies\.msh.*bodies that no face connects"),
     "a mesh that is there twice": (file_mesh("twice"), r"twice\.msh.*bodies that no face connects"),
@@ -206,6 +207,7 @@ MISTAKES = {
     "facing of infinite length": (settings("Die upper/facing=0, 0, -1e200"), r"Die upper/facing.*infinite"),
     "facets without number": (settings("Die upper/shape=tripod", "Die upper/chord error=1e-6"), r"Die upper/Tripod.*facets.*1e6"),
     "restart without bound": (settings("Linear solver/restart=2000000000"), r"Linear solver/restart.*1000"),
+    "volume that goes": (settings("Press/largest volume change=1e-12"), r"Press/stroke: at stroke .* has lost .* of its volume"),
     "too few Newton steps": (settings("Newton/max iterations=1"), r"Newton"),
 }
 
@@ -268,10 +270,19 @@ def resumed():
     record = "done/record.h5"
     with open(record, "rb") as file:
         whole = file.read()
-    for name, content in (("truncated", whole[:len(whole) // 2]), ("foreign", b"not a record at all\n" * 100), ("empty", b"")):
+    for name, content in (("truncated", whole[:len(whole) // 2]), ("foreign", b"not a record at all\n" * 100), ("empty", b""),
+                          ("damaged", damaged(whole))):
         with open(record, "wb") as file:
             file.write(content)
+        before = contents("done")
         judge_message(f"{name} record", run(["case.prm", "--output", "done", "--resume"] + short), r"record\.h5")
+        judge(f"{name} record: no result is lost", contents("done") == before)
+
+
+def damaged(record):
+    """A bit changed behind the header, in an increment, whose checksum tells it."""
+    at = 9 * len(record) // 10
+    return record[:at] + bytes([record[at] ^ 1]) + record[at + 1:]
 
 
 def replaced():
@@ -355,6 +366,7 @@ def told():
             ("step of exact derivatives", settings("Adjoint/perturbation=1e-5"),
              r"note: Adjoint/perturbation = 1e-5 has no effect: derivatives = exact reads"),
             ("weight in no sum", objective("energy", "weight=2"), r"note: Objective energy/weight = 2 has no effect: .*gradients = each"),
+            ("metal in a die", settings("Contact/largest depth=0"), r"the surface was up to .* inside die"),
             ("die that nothing touches", settings("Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0"),
              r"warning: no node touched die side")):
         done = run(["case.prm", "--output", "told", "--overwrite"] + short + more, command="simulate")
@@ -383,9 +395,9 @@ def per_cent_of_zero():
 
 
 def forbidden_output():
-    for file in ("summary.json", "sensitivity.vtu", "record.h5"):
+    for file, command in (("summary.json", "gradient"), ("sensitivity.vtu", "gradient"), ("record.h5", "gradient"), ("check.json", "check")):
         os.makedirs(os.path.join("taken", file))
-        done = run(["case.prm", "--output", "taken"])
+        done = run(["case.prm", "--output", "taken"], command)
         judge_message(f"{file} is a folder", done, re.escape(file))
         judge("and that is found before the run", "  1 " not in done.stdout, done.stdout)
         os.rmdir(os.path.join("taken", file))

@@ -373,19 +373,21 @@ class Server:
 
 
 def not_finite(results):
-    """The first result that is no finite number, if there is one."""
-    def refuse(word):
-        raise ValueError(word)
-
-    try:
-        if (results / "summary.json").exists():
-            json.loads((results / "summary.json").read_text(encoding="utf-8"), parse_constant=refuse)
-    except ValueError as problem:
-        return f"summary.json: {problem}"
+    """The first result that is no finite number, if there is one; summary.json has null for those."""
+    if (results / "summary.json").exists():
+        summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+        numbers = [(objective["name"], objective["value"]) for objective in summary["objectives"]]
+        numbers += [(parameter["name"], number) for parameter in summary.get("parameters", []) for number in parameter.get("gradient", {}).values()]
+        numbers += [(name, summary[name]) for name in ("volume_initial", "volume_final")]
+        for name, number in numbers:
+            if number is None:
+                return f"summary.json: {name} is no number"
     for file in results.glob("*.csv"):
         with open(file, encoding="utf-8", newline="") as stream:
-            for row in csv.reader(stream):
-                bad = [x for x in row if x.strip().lower().lstrip("+-") in ("nan", "inf", "infinity")]
+            for row in csv.DictReader(stream):
+                # Of the whole part nothing is known where the planes of symmetry bound none.
+                bad = [(name, x) for name, x in row.items() if not name.startswith("whole") and x.strip().lower().lstrip("+-")
+                       in ("nan", "inf", "infinity")]
                 if bad:
                     return f"{file.name}: {bad[0]}"
     return None
@@ -425,7 +427,7 @@ def trial(tools, kind, number, seed, keep):
             defect = "no message of the form where: what; rule; remedy"
     else:
         outcome, defect = "crashed", f"exit status {status}"
-    if beside and not ("--overwrite" in arguments and accepted):
+    if before and not (accepted and ("--overwrite" in arguments or "--resume" in arguments)):
         lost = [name for name, data in before.items() if not (output / name).exists() or (output / name).read_bytes() != data]
         if lost and not defect:
             defect = "lost of an earlier run: " + ", ".join(lost)

@@ -17,7 +17,7 @@ COARSE = {"Billet/element size": 12}
 
 
 def remeshed(times, method="local"):
-    return {"Remeshing/when": "increments", "Remeshing/every": EVERY[times], "Remeshing/method": method} if times else {}
+    return {"Remeshing/when": "increments", "Remeshing/every": EVERY[times], "Remeshing/method": method} if times else {"Remeshing/when": "never"}
 
 
 def change(build):
