@@ -8,7 +8,7 @@ A trial is a small scene of which a parameter file, a mesh, an STL file or a rec
 of an earlier run in their folder. A trial ends (exit status 0, results finite), or is refused or stopped with one message of the form
 `retroforge: where: what; rule; remedy`; results of the earlier run are left alone, but by `--overwrite` of a command that was accepted.
 A run that is still going on after a minute is stopped: input may well ask for a long one; but it must have printed something in the last
-half of that minute, else it hangs. Each trial depends on seed, kind and number alone. The exit status is zero when no trial is a defect."""
+half of that minute, unless its mesh is large, else it hangs. Each trial depends on seed, kind and number alone. The exit status is zero when no trial is a defect."""
 import argparse
 import collections
 import concurrent.futures
@@ -31,6 +31,7 @@ import time
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 LONGEST, SILENT = 60, 30  # seconds
+LARGE = 2000  # nodes, of which one increment may take that long
 MEMORY = 6 << 30  # bytes a trial may ask for
 NASTY = ("0", "-0", "1", "-1", "2", "3", "7", "1.5", "0.5", "100", "1000000", "2147483647", "2147483648", "-2147483649", "4294967296",
          "9223372036854775807", "99999999999999999999999", "1e-320", "1e-30", "1e-9", "1e9", "1e30", "1e154", "1e308", "-1e308", "1e999",
@@ -412,7 +413,8 @@ def trial(tools, kind, number, seed, keep):
     defect = None
     if status is None:
         outcome = "long"
-        if silent > SILENT:
+        nodes = re.findall(r"(\d+) nodes", said)
+        if silent > SILENT and not (nodes and int(nodes[-1]) > LARGE):
             defect = f"hangs: silent for {silent:.0f} s"
     elif status == 0:
         outcome = "ended"
