@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/case.h>
+#include <retroforge/run_messages.h>
 
 namespace retroforge
 {
@@ -27,6 +28,8 @@ namespace retroforge
 
     TetMesh make_first_mesh(const Parameters &parameters, Timings &timings, MPI_Comm comm)
     {
+      if (dealii::Utilities::MPI::this_mpi_process(comm) == 0)
+        print_meshing(parameters);
       const TetMesh mesh = make_billet(parameters.billet, comm);
       if (!parameters.remeshing.first_mesh)
         return mesh;

@@ -1,17 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/billet/fineness.h>
 #include <retroforge/core/text.h>
 #include <retroforge/core/version.h>
 #include <retroforge/output/blas.h>
 #include <retroforge/output/console.h>
 #include <retroforge/run_messages.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <iostream>
 #include <thread>
 
 namespace retroforge
 {
+  namespace
+  {
+    constexpr double many_cells = 1e6;
+
+    void note_fineness(const std::string &parameter, const double element_size, const double n_cells)
+    {
+      if (n_cells > many_cells)
+        std::cout << "  note: " << parameter << " = " << element_size << " makes about " << as_text(n_cells)
+                  << " tetrahedra; expect hours, and gigabytes of memory\n"
+                  << std::flush;
+    }
+  } // namespace
+
+  void print_meshing(const Parameters &parameters)
+  {
+    note_fineness("Billet/element size", parameters.billet.element_size, expected_cells(parameters.billet));
+  }
+
   void print_begin(const Case &at)
   {
     const unsigned int ranks = dealii::Utilities::MPI::n_mpi_processes(at.comm);
@@ -24,6 +44,8 @@ namespace retroforge
               << note_on_load(ranks, load, std::thread::hardware_concurrency());
     for (const std::string &sentence : at.parameters.without_effect)
       std::cout << "  note: " << sentence << '\n';
+    if (const double size = at.parameters.remeshing.element_size; size > 0.)
+      note_fineness("Remeshing/element size", size, expected_cells(std::pow(at.size().side, 3), size));
     if (at.process.stretch != 1.)
       std::cout << "  note: die " << at.parameters.dies[at.process.leading_die].name
                 << " follows the billet: its path is " << at.process.stretch * at.parameters.press.stroke

@@ -6,6 +6,9 @@
 
 namespace retroforge
 {
+  /// Before a mesh of millions of tetrahedra is made, which takes minutes: how many there will be.
+  void print_meshing(const Parameters &parameters);
+
   /// What runs: version, size, and what a user may not expect of it.
   void print_begin(const Case &at);
 

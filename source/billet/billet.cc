@@ -4,6 +4,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <retroforge/billet/billet.h>
+#include <retroforge/billet/fineness.h>
 #include <retroforge/billet/gmsh_mesher.h>
 #include <retroforge/core/error.h>
 #include <retroforge/geometry/triangle_surface.h>
@@ -129,14 +130,10 @@ namespace retroforge
                         "remove one of them");
     }
 
-    // About 8 tetrahedra per cube of the element size; far more than this machine holds is a slip of the pen.
+    // Far more than this machine holds is a slip of the pen.
     void check_fineness(const BilletParameters &p)
     {
-      const double body    = p.shape == "box"       ? p.size[0] * p.size[1] * p.size[2]
-                             : p.shape == "ring"    ? volume_of_revolution(p.ring.section())
-                             : p.shape == "profile" ? volume_of_revolution(p.profile.section())
-                                                    : M_PI * p.radius * p.radius * p.height;
-      const double n_cells = 8 * body / std::pow(p.element_size, 3);
+      const double n_cells = expected_cells(p);
       if (n_cells > 1e9)
         throw Error("Billet/element size",
                     "is " + as_text(p.element_size) + ", which makes about " + as_text(n_cells) +
@@ -492,5 +489,16 @@ namespace retroforge
     parameters.check();
     return make_on_root(
       "Billet", [&]() { return make_on_one_rank(parameters); }, communicator);
+  }
+
+  double expected_cells(const BilletParameters &p)
+  {
+    if (p.shape == "file")
+      return 0.;
+    const double body = p.shape == "box"       ? p.size[0] * p.size[1] * p.size[2]
+                        : p.shape == "ring"    ? volume_of_revolution(p.ring.section())
+                        : p.shape == "profile" ? volume_of_revolution(p.profile.section())
+                                               : M_PI * p.radius * p.radius * p.height;
+    return expected_cells(body, p.element_size);
   }
 } // namespace retroforge

@@ -366,6 +366,8 @@ def told():
             ("step of exact derivatives", settings("Adjoint/perturbation=1e-5"),
              r"note: Adjoint/perturbation = 1e-5 has no effect: derivatives = exact reads"),
             ("weight in no sum", objective("energy", "weight=2"), r"note: Objective energy/weight = 2 has no effect: .*gradients = each"),
+            ("remeshings of millions", settings("Remeshing/element size=0.1"),
+             r"note: Remeshing/element size = 0.1 makes about 2e\+06 tetrahedra"),
             ("metal in a die", settings("Contact/largest depth=0"), r"the surface was up to .* inside die"),
             ("die that nothing touches", settings("Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0"),
              r"warning: no node touched die side")):
