@@ -44,7 +44,8 @@ namespace retroforge
               << note_on_load(ranks, load, std::thread::hardware_concurrency());
     for (const std::string &sentence : at.parameters.without_effect)
       std::cout << "  note: " << sentence << '\n';
-    if (const double size = at.parameters.remeshing.element_size; size > 0.)
+    if (const double size = at.parameters.remeshing.element_size;
+        size > 0. && at.parameters.remeshing.when != "never")
       note_fineness("Remeshing/element size", size, expected_cells(std::pow(at.size().side, 3), size));
     if (at.process.stretch != 1.)
       std::cout << "  note: die " << at.parameters.dies[at.process.leading_die].name
