@@ -8,7 +8,8 @@ A trial is a small scene of which a parameter file, a mesh, an STL file or a rec
 of an earlier run in their folder. A trial ends (exit status 0, results finite), or is refused or stopped with one message of the form
 `retroforge: where: what; rule; remedy`; results of the earlier run are left alone, but by `--overwrite` of a command that was accepted.
 A run that is still going on after a minute is stopped: input may well ask for a long one; but it must have printed something in the last
-half of that minute, unless its mesh is large, or was announced to be. Each trial depends on seed, kind and number alone. The exit status is zero when no trial is a defect."""
+half of that minute, unless its mesh is large, or was announced to be. Each trial depends on seed, kind and number alone. The exit
+status is zero when no trial is a defect."""
 import argparse
 import collections
 import concurrent.futures
