@@ -3,6 +3,7 @@
 #include <retroforge/billet/fineness.h>
 #include <retroforge/core/text.h>
 #include <retroforge/core/version.h>
+#include <retroforge/geometry/surface_rims.h>
 #include <retroforge/output/blas.h>
 #include <retroforge/output/console.h>
 #include <retroforge/run_messages.h>
@@ -25,6 +26,18 @@ namespace retroforge
                   << " tetrahedra; expect hours, and gigabytes of memory\n"
                   << std::flush;
     }
+
+    /// An outer rim is what dies have; what else is open may be a facet that an export lost.
+    void note_holes(const Die &die)
+    {
+      if (!die.surface())
+        return;
+      const std::vector<SurfaceRim> rims = find_rims(*die.surface());
+      for (std::size_t i = 1; i < rims.size(); ++i)
+        std::cout << "  note: the surface of die " << die.name << " has a hole, " << as_text(rims[i].length)
+                  << " mm around, at (" << rims[i].centre[0] << ", " << rims[i].centre[1] << ", "
+                  << rims[i].centre[2] << "); metal flows through it; if it is not meant, repair the file\n";
+    }
   } // namespace
 
   void print_meshing(const Parameters &parameters)
@@ -44,6 +57,8 @@ namespace retroforge
               << note_on_load(ranks, load, std::thread::hardware_concurrency());
     for (const std::string &sentence : at.parameters.without_effect)
       std::cout << "  note: " << sentence << '\n';
+    for (const Die &die : at.model.dies)
+      note_holes(die);
     if (const double size = at.parameters.remeshing.element_size;
         size > 0. && at.parameters.remeshing.when != "never")
       note_fineness("Remeshing/element size", size, expected_cells(std::pow(at.size().side, 3), size));

@@ -106,7 +106,15 @@ def square(side):
     return (-a, -a, 0, a, -a, 0, a, a, 0), (-a, -a, 0, a, a, 0, -a, a, 0)
 
 
+def holed(side):
+    """Nine such squares, without the one in the middle."""
+    third = side / 3
+    return [tuple(x + third * shift for x, shift in zip(facet, (i, j, 0) * 3)) for facet in square(third)
+            for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+
+
 STLS = {
+    "holed.stl": binary_stl(*holed(30), announced=16),
     "open.stl": OPEN_STL.encode(),
     "half_dropped.stl": binary_stl(*square(30), announced=1),
     "in_metres.stl": binary_stl(*square(0.03), announced=2),
@@ -367,6 +375,8 @@ def told():
             ("step of exact derivatives", settings("Adjoint/perturbation=1e-5"),
              r"note: Adjoint/perturbation = 1e-5 has no effect: derivatives = exact reads"),
             ("weight in no sum", objective("energy", "weight=2"), r"note: Objective energy/weight = 2 has no effect: .*gradients = each"),
+            ("a die with a hole", settings("Die lower/shape=stl", "Die lower/file=holed.stl"),
+             r"note: the surface of die lower has a hole, 40 mm around, at \(0, 0, 0\)"),
             ("metal in a die", settings("Contact/largest depth=0"), r"the surface was up to .* inside die"),
             ("die that nothing touches", settings("Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0"),
              r"warning: no node touched die side")):
