@@ -8,6 +8,7 @@ import os
 import sys
 
 import numpy as np
+from scipy.integrate import trapezoid
 from scipy.optimize import minimize_scalar
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -38,7 +39,7 @@ def straight_ring(m, n=200):
         def power(c):
             strain_rate = np.sqrt(1.0 + c**2 / (3.0 * r**4)) / height
             slip = np.abs(r - c / r) / (2.0 * height)
-            return np.trapz(r * (strain_rate * height + 2.0 * m / np.sqrt(3.0) * slip), r)
+            return trapezoid(r * (strain_rate * height + 2.0 * m / np.sqrt(3.0) * slip), r)
         c = minimize_scalar(power, bounds=(-4.0 * outer**2, outer**2), method="bounded", options={"xatol": 1e-6}).x
         inner, outer = (radius + step * (radius - c / radius) / (2.0 * height) for radius in (inner, outer))
         height -= step
