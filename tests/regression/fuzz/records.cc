@@ -145,7 +145,11 @@ std::vector<Place> places_in(const hid_t file)
       static_cast<std::vector<Place> *>(places)->push_back({name, info->type});
     return 0;
   };
+#if H5_VERSION_GE(1, 12, 0) // whose H5O_info_t is what its third version takes
+  hdf5::check(H5Ovisit3(file, H5_INDEX_NAME, H5_ITER_INC, add, &places, H5O_INFO_BASIC), "visit");
+#else
   hdf5::check(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, add, &places, H5O_INFO_BASIC), "visit");
+#endif
   return places;
 }
 
