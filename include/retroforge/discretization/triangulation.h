@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <deal.II/grid/tria.h>
+
+#include <retroforge/mesh/tet_mesh.h>
+
+namespace retroforge
+{
+  /// Fills an empty triangulation, serial or shared, with a mesh: cells in their order with their corners,
+  /// vertices with the numbers of the nodes, the index of its patch as the boundary id of each face.
+  /// deal.II accepts cells that are turned inside out and surfaces that are none: check the mesh before.
+  /// @param X  positions of the nodes [mm]
+  void make_triangulation(const TetMesh              &mesh,
+                          const NodalVectors<double> &X,
+                          dealii::Triangulation<3>   &triangulation);
+} // namespace retroforge
