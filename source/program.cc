@@ -26,7 +26,7 @@ namespace retroforge
     }
   } // namespace
 
-  int run_program(const int argc, char **argv, const std::vector<std::string> &environment)
+  int run_program(const int argc, char *argv[], const std::vector<std::string> &environment)
   {
     try
     {

@@ -11,5 +11,5 @@ namespace retroforge
   /// error stream, once, also where several ranks meet them.
   /// @param environment  that of the program before MPI added to it; runs that it starts get it
   /// @return the exit status
-  int run_program(int argc, char **argv, const std::vector<std::string> &environment);
+  int run_program(int argc, char *argv[], const std::vector<std::string> &environment);
 } // namespace retroforge
