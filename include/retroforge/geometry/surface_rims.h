@@ -16,6 +16,7 @@ namespace retroforge
     Vec3         centre;       ///< mean of its vertices [mm]
   };
 
-  /// The rims of a surface, the longest first. An open die has one, its outer one; others bound holes.
+  /// The rims of a surface, the longest first. An open die has one, its outer one; others bound holes. Holes
+  /// that touch at a vertex have one rim.
   std::vector<SurfaceRim> find_rims(const TriangleSurface &surface);
 } // namespace retroforge

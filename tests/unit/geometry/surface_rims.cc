@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 
 // Rims. Proved: a closed surface has none, a plate one; a hole is found with its edges, length and place; two
-// holes that touch at a vertex are two.
+// holes that touch at a vertex have one rim, which goes through it twice.
 
 #include <retroforge/geometry/surface_rims.h>
 
