@@ -3,8 +3,11 @@
 """A scene of prm/tutorial in its short form: it comes to its end from any folder, keeps its volume, leaves no metal in a die, finds the
 objectives that scene.json states, and gradients of the signs stated there. Usage: short_scene.py FOLDER-OF-retroforge.py SCENE
 
+The values are those of the meshes that Gmsh 4.8 makes. Another Gmsh makes others, on which these coarse scenes are up to 5 % off.
+
 scene.json: {"picture": ..., "short": {"settings": {"Section/name": value}, "values": {objective: value},
                                        "signs": {objective: {parameter: "+" or "-"}}}}"""
+import ctypes.util
 import json
 import os
 import pathlib
@@ -15,7 +18,9 @@ FOLDER, SCENE = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 sys.path.insert(0, str(FOLDER))
 import retroforge  # noqa: E402
 
-VOLUME, DEPTH, VALUE = 2e-3, 0.05, 1e-3  # relative change, parts of the element size, relative difference
+SAME_MESH = ctypes.util.find_library("gmsh") == "libgmsh.so.4.8"
+# relative change, parts of the element size, relative difference
+VOLUME, DEPTH, VALUE = 2e-3, 0.05, 1e-3 if SAME_MESH else 6e-2
 failures = 0
 
 
