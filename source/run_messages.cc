@@ -27,16 +27,17 @@ namespace retroforge
                   << std::flush;
     }
 
-    /// An outer rim is what dies have; what else is open may be a facet that an export lost.
+    /// An outer rim is what open dies have; another one may be that of a facet that an export lost.
     void note_holes(const Die &die)
     {
       if (!die.surface())
         return;
       const std::vector<SurfaceRim> rims = find_rims(*die.surface());
       for (std::size_t i = 1; i < rims.size(); ++i)
-        std::cout << "  note: the surface of die " << die.name << " has a hole, " << as_text(rims[i].length)
-                  << " mm around, at (" << rims[i].centre[0] << ", " << rims[i].centre[1] << ", "
-                  << rims[i].centre[2] << "); metal flows through it; if it is not meant, repair the file\n";
+        std::cout << "  note: the surface of die " << die.name << " has another rim, "
+                  << as_text(rims[i].length) << " mm around, at (" << rims[i].centre[0] << ", "
+                  << rims[i].centre[1] << ", " << rims[i].centre[2]
+                  << "): a hole, or a part by itself; if it is not meant, repair the file\n";
     }
   } // namespace
 

@@ -376,7 +376,7 @@ def told():
              r"note: Adjoint/perturbation = 1e-5 has no effect: derivatives = exact reads"),
             ("weight in no sum", objective("energy", "weight=2"), r"note: Objective energy/weight = 2 has no effect: .*gradients = each"),
             ("a die with a hole", settings("Die lower/shape=stl", "Die lower/file=holed.stl"),
-             r"note: the surface of die lower has a hole, 40 mm around, at \(0, 0, 0\)"),
+             r"note: the surface of die lower has another rim, 40 mm around, at \(0, 0, 0\)"),
             ("metal in a die", settings("Contact/largest depth=0"), r"the surface was up to .* inside die"),
             ("die that nothing touches", settings("Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0"),
              r"warning: no node touched die side")):

@@ -20,56 +20,9 @@
 #include <set>
 
 #include "../element/element_test_tools.h"
+#include "../remeshing/remeshing_test_tools.h"
 
 using namespace retroforge;
-
-/// n^3 cubes of six tetrahedra, their inner nodes shaken; a patch for each side.
-TetMesh box(const unsigned int n)
-{
-  Random     random;
-  TetMesh    mesh;
-  const auto index = [&](const std::array<unsigned int, 3> &i) {
-    return i[0] + (n + 1) * (i[1] + (n + 1) * i[2]);
-  };
-  std::array<unsigned int, 3> i;
-  for (i[2] = 0; i[2] <= n; ++i[2])
-    for (i[1] = 0; i[1] <= n; ++i[1])
-      for (i[0] = 0; i[0] <= n; ++i[0])
-      {
-        const Vec3 noise = random.vector();
-        Vec3       x;
-        for (unsigned int d = 0; d < 3; ++d)
-          x[d] = i[d] + (i[d] > 0 && i[d] < n ? 0.1 * noise[d] : 0.);
-        mesh.X.push_back(x);
-      }
-  const unsigned int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
-  for (i[2] = 0; i[2] < n; ++i[2])
-    for (i[1] = 0; i[1] < n; ++i[1])
-      for (i[0] = 0; i[0] < n; ++i[0])
-        for (unsigned int o = 0; o < 6; ++o)
-        {
-          auto                     at   = i;
-          std::array<NodeIndex, 4> cell = {{index(at), 0, 0, 0}};
-          for (unsigned int step = 0; step < 3; ++step)
-          {
-            ++at[orders[o][step]];
-            cell[step + 1] = index(at);
-          }
-          if (o > 2)
-            std::swap(cell[2], cell[3]);
-          mesh.cells.push_back(cell);
-        }
-  for (unsigned int d = 0; d < 3; ++d)
-    for (const char *side : {"-", "+"})
-      mesh.patches.push_back({side + std::string(1, "xyz"[d]), {}});
-  for (const CellFace &face : boundary_cell_faces(mesh.cells))
-    for (unsigned int d = 0; d < 3; ++d)
-      for (const double at : {0., double(n)})
-        if (mesh.X[face.nodes[0]][d] == at && mesh.X[face.nodes[1]][d] == at &&
-            mesh.X[face.nodes[2]][d] == at)
-          mesh.faces.push_back({face.nodes, 2 * d + (at > 0.)});
-  return mesh;
-}
 
 Four<Vec3> corners_of(const TetMesh &mesh, const CellIndex c)
 {
@@ -265,7 +218,7 @@ void check_ranks(const TetMesh &mesh)
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  const TetMesh                            mesh = box(3);
+  const TetMesh                            mesh = kuhn_box(3, 0.1);
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
   {
     check_triangulation(mesh);
