@@ -6,7 +6,6 @@
 
 and what was computed before the trouble can still be read. Usage: bad_input.py RETROFORGE"""
 import csv
-import itertools
 import os
 import re
 import struct
@@ -14,50 +13,18 @@ import subprocess
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+import block_meshes  # noqa: E402
 import whole_runs  # noqa: E402
 from whole_runs import PROGRAM, ROOT, contents, judge, prm, start, summary_of, text_of, write  # noqa: E402
 
 CASE = prm(whole_runs.cube(10, 4, 1, 3))
 
-# A pyramid of two tetrahedra; {cells} names their nodes.
-MSH = """$MeshFormat
-2.2 0 8
-$EndMeshFormat
-$Nodes
-{n}
-{nodes}
-$EndNodes
-$Elements
-{m}
-{elements}
-$EndElements
-"""
-
 
 def msh(nodes, cells, kind=4):
-    return MSH.format(n=len(nodes), nodes="\n".join(f"{i + 1} {x} {y} {z}" for i, (x, y, z) in enumerate(nodes)),
-                      m=len(cells), elements="\n".join(f"{i + 1} {kind} 2 1 1 " + " ".join(str(k + 1) for k in cell)
-                                                       for i, cell in enumerate(cells)))
+    return block_meshes.msh(nodes, [(kind, 1, cell) for cell in cells])
 
 
 CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, -1, -1)]
-
-
-def cube(side):
-    """Eight cubes of six tetrahedra each, on z = 0."""
-    def corner(i, j, k):
-        return 9 * i + 3 * j + k
-
-    cells = []
-    for i, j, k in itertools.product(range(2), repeat=3):
-        for order in itertools.permutations(range(3)):
-            at, cell = [i, j, k], [corner(i, j, k)]
-            for axis in order:
-                at[axis] += 1
-                cell.append(corner(*at))
-            odd = order in ((0, 2, 1), (1, 0, 2), (2, 1, 0))
-            cells.append([cell[0], cell[2], cell[1], cell[3]] if odd else cell)
-    return msh([tuple(side / 2 * x for x in node) for node in itertools.product(range(3), repeat=3)], cells)
 
 
 # Flattening or inverting a tetrahedron between two others cannot be told from a matter of orientation alone: the first
@@ -70,8 +37,8 @@ MESHES = {
     "flat": msh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 1, 2, 3)]),
     "non_manifold": msh(CORNERS, [(0, 1, 2, 3), (0, 1, 2, 4), (0, 1, 5, 2)]),
     "no_tets": msh(CORNERS[:3], [(0, 1, 2)], kind=2),
-    "cube": cube(10),
-    "cube_in_metres": cube(0.01),
+    "cube": block_meshes.msh_of_cube(2, 10.0),
+    "cube_in_metres": block_meshes.msh_of_cube(2, 0.01),
     "garbage": "this is not a mesh\n",
 }
 

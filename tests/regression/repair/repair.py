@@ -14,26 +14,10 @@ import sys
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from block_meshes import block, msh, oriented  # noqa: E402
 from whole_runs import changed, judge, main, prm, run, summary_of, upsetting  # noqa: E402
 
 EDGE = 5.0  # of a cube, mm
-
-
-def block(n, place=lambda corner: corner, missing=lambda cube: False):
-    """Corners [EDGE] and tetrahedra, six to a cube around its diagonal (Kuhn), of n[0] x n[1] x n[2] cubes.
-    @param place    where a corner of the grid is"""
-    number, points, cells = {}, [], []
-    for cube in itertools.product(*map(range, n)):
-        for axes in itertools.permutations(range(3)) if not missing(cube) else ():
-            walk = [cube]
-            for axis in axes:
-                walk.append(tuple(c + (i == axis) for i, c in enumerate(walk[-1])))
-            for corner in walk:
-                if corner not in number:
-                    number[corner] = len(points)
-                    points.append(place(corner))
-            cells.append([number[corner] for corner in walk])
-    return points, cells
 
 
 def outer_faces(cells):
@@ -45,16 +29,12 @@ def outer_faces(cells):
 
 
 def gmsh(points, cells):
-    """The text of a Gmsh file, version 2.2, with two physical surfaces: `right`, at the largest x, and `skin`."""
+    """Its file, with two physical surfaces: `right`, at the largest x, and `skin`."""
     points = EDGE * np.array(points)
-    cells = [cell if np.linalg.det(points[cell[1:]] - points[cell[0]]) > 0 else [cell[1], cell[0], *cell[2:]] for cell in cells]
     right = points[:, 0] > points[:, 0].max() - 0.01 * EDGE
-    elements = [(2, 1 + all(right[list(face)]), face) for face in outer_faces(cells)] + [(4, 3, cell) for cell in cells]
-    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", 3, '2 1 "skin"', '2 2 "right"', '3 3 "body"', "$EndPhysicalNames",
-             "$Nodes", len(points), *(f"{k + 1} {x!r} {y!r} {z!r}" for k, (x, y, z) in enumerate(points.tolist())), "$EndNodes", "$Elements",
-             len(elements), *(" ".join(map(str, [i + 1, kind, 2, group, group, *(k + 1 for k in nodes)]))
-                              for i, (kind, group, nodes) in enumerate(elements)), "$EndElements", ""]
-    return "\n".join(map(str, lines))
+    elements = [(2, 1 + all(right[list(face)]), face) for face in outer_faces(cells)]
+    elements += [(4, 3, cell) for cell in oriented(points, cells)]
+    return msh(points.tolist(), elements, ((2, 1, "skin"), (2, 2, "right"), (3, 3, "body")))
 
 
 def toothed():
