@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/element/strain_history.h>
+#include <retroforge/linear_algebra/direct_solver.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/self_crossing.h>
-#include <retroforge/solver/direct_solver.h>
 #include <retroforge/time/forging.h>
 #include <retroforge/transfer/cell_transfer.h>
 

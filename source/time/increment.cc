@@ -365,7 +365,7 @@ namespace retroforge
         Field<double> minus_rhs(scene_.mesh), lambda;
         minus_rhs.add(-1., rhs);
         auto &guesses = earlier_lambdas_[s][j];
-        system_.solve(minus_rhs, model_.adjoint_tolerance, lambda, guesses);
+        system_.solve(minus_rhs, model_.adjoint_tolerance, lambda, guesses, Transposition::transposed);
         guesses.insert(guesses.begin(), lambda);
         guesses.resize(std::min<std::size_t>(guesses.size(), 3));
         reverse_residual(view, lambda, stage_bar);

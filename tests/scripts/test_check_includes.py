@@ -25,6 +25,14 @@ class CheckIncludes(ScratchTest):
         self.assertIn("include/retroforge/geometry/die.h:2: <retroforge/solver/newton.h>: geometry may not include solver",
                       said)
 
+    def test_trilinos_in_one_place(self):
+        for header in ("Epetra_Map.h", "deal.II/lac/trilinos_vector.h", "ml_MultiLevelPreconditioner.h"):
+            status, said = self.violations("source/solver/newton.cc", f"#include <{header}>")
+            self.assertEqual(status, 1)
+            self.assertIn(f"source/solver/newton.cc:2: <{header}>: only linear_algebra knows Trilinos", said)
+        status, said = self.violations("source/linear_algebra/node_matrix.cc", "#include <Epetra_Map.h>")
+        self.assertNotIn("source/linear_algebra", said)
+
     def test_top_level_is_last(self):
         status, said = self.violations("source/output/vtu.cc", "#include <retroforge/simulation.h>")
         self.assertEqual(status, 1)

@@ -2,29 +2,13 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <deal.II/base/array_view.h>
-
+#include <retroforge/core/rows.h>
 #include <retroforge/mesh/tet_mesh.h>
 
 #include <array>
-#include <vector>
 
 namespace retroforge
 {
-  /// One list per row, stored end to end (compressed rows).
-  template <typename T>
-  struct Rows
-  {
-    std::vector<unsigned int> begin = {0}; ///< one entry per row, and the end of the last
-    std::vector<T>            entries;
-
-    unsigned int               size() const { return begin.size() - 1; }
-    dealii::ArrayView<const T> operator[](const unsigned int row) const
-    {
-      return {entries.data() + begin[row], begin[row + 1] - begin[row]};
-    }
-  };
-
   /// Who touches whom: lists that depend on the connectivity and the patches only, not on positions.
   struct Topology
   {

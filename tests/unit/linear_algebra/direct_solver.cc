@@ -11,7 +11,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
-#include <retroforge/solver/direct_solver.h>
+#include <retroforge/linear_algebra/direct_solver.h>
 
 #include <cmath>
 #include <iostream>
@@ -73,7 +73,7 @@ namespace
       x = 0.;
       try
       {
-        const unsigned int            calls = solve_by_mumps(A, b, x, spare);
+        const unsigned int            calls = solve_by_mumps(A, b, x, Transposition::plain, spare);
         TrilinosWrappers::MPI::Vector r(b);
         const double                  residual = A.residual(r, x, b) / b.l2_norm();
         if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/solver/preconditioner.h>
+#include <retroforge/linear_algebra/preconditioner.h>
 
 #include <Teuchos_ParameterList.hpp>
 #include <ml_MultiLevelPreconditioner.h>
@@ -12,7 +12,7 @@ namespace retroforge
     using namespace dealii::TrilinosWrappers;
 
     /// Smoothed aggregation with Chebyshev smoothing and a direct coarse solve.
-    Teuchos::ParameterList multigrid_parameters(std::vector<double> &near_kernel)
+    Teuchos::ParameterList multigrid_parameters(const std::vector<double> &near_kernel)
     {
       Teuchos::ParameterList list;
       ML_Epetra::SetDefaults("SA", list);
@@ -27,17 +27,18 @@ namespace retroforge
       list.set("coarse: max size", 400);
       list.set("null space: type", "pre-computed");
       list.set("null space: dimension", 3);
-      list.set("null space: vectors", near_kernel.data());
+      list.set("null space: vectors", const_cast<double *>(near_kernel.data()));
       return list;
     }
   } // namespace
 
-  Preconditioner::Preconditioner(const Matrix        &A,
-                                 const Matrix        &B,
-                                 const Matrix        &S,
-                                 const bool           multigrid,
-                                 std::vector<double> &near_kernel)
-      : B_(B), momentum_(A.locally_owned_range_indices(), A.get_mpi_communicator())
+  Preconditioner::Preconditioner(const la::SparseMatrix    &A,
+                                 const la::SparseMatrix    &B,
+                                 const la::SparseMatrix    &D,
+                                 const la::SparseMatrix    &S,
+                                 const bool                 multigrid,
+                                 const std::vector<double> &near_kernel)
+      : B_(B), D_(D), momentum_(A.locally_owned_range_indices(), A.get_mpi_communicator())
   {
     if (multigrid)
     {
@@ -54,11 +55,20 @@ namespace retroforge
     S_.initialize(S);
   }
 
-  void Preconditioner::vmult(BlockVector &z, const BlockVector &r) const
+  void Preconditioner::vmult(la::BlockVector &z, const la::BlockVector &r) const
   {
     S_.vmult(z.block(1), r.block(1));
     z.block(1) *= -1.;
     B_.vmult(momentum_, z.block(1));
+    momentum_.sadd(-1., 1., r.block(0));
+    A_->vmult(z.block(0), momentum_);
+  }
+
+  void Preconditioner::Tvmult(la::BlockVector &z, const la::BlockVector &r) const
+  {
+    S_.vmult(z.block(1), r.block(1));
+    z.block(1) *= -1.;
+    D_.Tvmult(momentum_, z.block(1));
     momentum_.sadd(-1., 1., r.block(0));
     A_->vmult(z.block(0), momentum_);
   }

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/core/error.h>
+
+#include <retroforge/linear_algebra/types.h>
+
+namespace retroforge
+{
+  /// A linear system has no solution in doubles: it is singular, or its numbers have left their range.
+  struct NoLinearSolution : Error
+  {
+    using Error::Error;
+  };
+
+  /// x = A^(-1) b, or A^(-T) b, by MUMPS. How much memory pivoting takes is known only once it is done: where
+  /// the estimate was too small, MUMPS is called again with more. Collective.
+  /// @param spare  memory beyond the estimate at first, per cent of it
+  /// @return how often MUMPS was called
+  /// @throws NoLinearSolution
+  /// @throws Error  where there is not enough memory
+  unsigned int solve_by_mumps(const la::SparseMatrix &A,
+                              const la::Vector       &b,
+                              la::Vector             &x,
+                              Transposition           transposition = Transposition::plain,
+                              int                     spare         = 20);
+
+  /// The same of a matrix of blocks.
+  unsigned int solve_by_mumps(const la::BlockSparseMatrix &A,
+                              const la::BlockVector       &b,
+                              la::BlockVector             &x,
+                              Transposition                transposition = Transposition::plain);
+} // namespace retroforge

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/core/rows.h>
+#include <retroforge/linear_algebra/types.h>
+
+#include <memory>
+
+namespace retroforge
+{
+  /// Nodes of a space, [begin, end) of n of which are this rank's.
+  struct NodeRange
+  {
+    unsigned int begin = 0, end = 0, n = 0;
+
+    unsigned int n_owned() const { return end - begin; }
+    bool         owns(const unsigned int node) const { return begin <= node && node < end; }
+    /// Of the degrees of freedom that are this rank's, `width` to a node.
+    dealii::IndexSet dofs(unsigned int width) const;
+  };
+
+  /// The nodes of one space that the owned nodes of another meet in the rows of a matrix.
+  class NodePattern
+  {
+  public:
+    /// @param neighbours  the column nodes of each node of the rows' space, in any order; only those of
+    /// owned nodes are read
+    NodePattern(const NodeRange &rows, const NodeRange &columns, const Rows<unsigned int> &neighbours);
+
+    const NodeRange &rows() const { return rows_; }
+    const NodeRange &columns() const { return columns_; }
+    /// Columns have local numbers: owned ones, then the others that are met, both ascending.
+    const std::vector<unsigned int> &column_nodes() const { return column_nodes_; }
+    /// The columns that row node `local` (counted from rows().begin) meets, by local number, ascending.
+    dealii::ArrayView<const unsigned int> row(const unsigned int local) const { return of_row_[local]; }
+    /// Where a column node, by its global number, stands in that list.
+    /// @throws dealii::ExcMessage where the two do not meet
+    unsigned int position(unsigned int local_row, unsigned int column) const;
+
+  private:
+    unsigned int local_number(unsigned int column) const;
+
+    NodeRange                 rows_, columns_;
+    std::vector<unsigned int> column_nodes_;
+    Rows<unsigned int>        of_row_;
+  };
+
+  /// The entries of a matrix whose nodes have several degrees of freedom each, in place: all r-th rows of a
+  /// node have its columns in the order of the pattern, the degrees of freedom of a column node one after the
+  /// other.
+  class NodeMatrix
+  {
+  public:
+    /// @param matrix         gets the pattern, with zeros; must live as long
+    /// @param rows, columns  degrees of freedom of a row node, and of a column node
+    NodeMatrix(la::SparseMatrix                  &matrix,
+               std::shared_ptr<const NodePattern> pattern,
+               unsigned int                       rows,
+               unsigned int                       columns,
+               MPI_Comm                           comm);
+
+    /// One row: n entries, each with the local number of its degree of freedom.
+    struct Row
+    {
+      const int   *columns;
+      double      *values;
+      unsigned int n;
+    };
+
+    const NodePattern &pattern() const { return *pattern_; }
+    unsigned int       n_rows() const { return rows_ * pattern_->rows().n_owned(); }
+    unsigned int       n_columns() const { return columns_ * pattern_->column_nodes().size(); }
+
+    Row row(const unsigned int i) const
+    {
+      return {column_indices_ + begin_[i],
+              values_ + begin_[i],
+              static_cast<unsigned int>(begin_[i + 1] - begin_[i])};
+    }
+
+    /// The entries of column node `position` in the r-th row of a row node.
+    double *entry(const unsigned int local_node, const unsigned int r, const unsigned int position) const
+    {
+      return values_ + begin_[rows_ * local_node + r] + columns_ * position;
+    }
+
+    /// Global number of a local degree of freedom of the columns.
+    unsigned int column(const unsigned int local) const
+    {
+      return columns_ * pattern_->column_nodes()[local / columns_] + local % columns_;
+    }
+
+    void clear() const { std::fill(values_, values_ + begin_[n_rows()], 0.); }
+
+    /// Every entry times the factor of its row, by local number, and of its column, by global number.
+    void scale(const std::vector<double> &row_factors, const std::vector<double> &column_factors) const;
+
+  private:
+    std::shared_ptr<const NodePattern> pattern_;
+    unsigned int                       rows_, columns_;
+    const int                         *begin_, *column_indices_;
+    double                            *values_;
+  };
+} // namespace retroforge

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/solver/saddle_matrix.h>
+
+namespace retroforge
+{
+  /// Adds to x what makes the residual r vanish in the penalised rows of A, all other unknowns held: exactly
+  /// where these rows share no entries, else as well as a few steps of conjugate gradients can. Of a
+  /// symmetric system; entries that another rank owns are held, too.
+  /// @param r, x  by local rows of A
+  void solve_penalised_rows(const SaddleSystem &system, const double *r, double *x);
+} // namespace retroforge

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/core/timer.h>
+#include <retroforge/linear_algebra/preconditioner.h>
+#include <retroforge/solver/saddle_matrix.h>
+
+namespace retroforge
+{
+  struct LinearSolverParameters
+  {
+    std::string  method         = "auto";
+    unsigned int multigrid_from = 2500;
+    unsigned int max_iterations = 600;
+    unsigned int restart        = 120;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+  };
+
+  /// Solves saddle point systems, one after the other, as well as asked for: by Krylov's method with a
+  /// preconditioner that is kept while it works, or directly.
+  class SaddleSolver
+  {
+  public:
+    /// @param system  its matrix may change between solves
+    SaddleSolver(const SaddleSystem &system, const LinearSolverParameters &parameters, Timings &timings);
+
+    /// @param tolerance  relative to b
+    /// @param guesses    like the solutions of earlier systems: the best combination of them is the start
+    /// @return number of Krylov iterations, 0 for a direct solve
+    unsigned int solve(const la::BlockVector              &b,
+                       double                              tolerance,
+                       const std::vector<la::BlockVector> &guesses,
+                       Transposition                       transposition,
+                       la::BlockVector                    &x);
+
+    /// Forget the preconditioner: the next solve makes a new one.
+    void reset() { preconditioner_.reset(); }
+
+  private:
+    unsigned int solve_iteratively(const la::BlockVector              &b,
+                                   double                              tolerance,
+                                   const std::vector<la::BlockVector> &guesses,
+                                   Transposition                       transposition,
+                                   la::BlockVector                    &x);
+    /// Sets x to the combination of the guesses with the least residual, and returns its norm.
+    double start_from(const std::vector<la::BlockVector> &guesses,
+                      const la::BlockVector              &b,
+                      Transposition                       transposition,
+                      la::BlockVector                    &x) const;
+    void   make_preconditioner();
+    /// Solves the rows of penalised components exactly, the others held: an error there that the norm hardly
+    /// sees would decide which nodes a die pushes, because a contact force is the penalty times a small
+    /// difference. Of symmetric systems only.
+    void polish_penalised(const la::BlockVector &b, la::BlockVector &x) const;
+    void solve_directly(const la::BlockVector &b, Transposition transposition, la::BlockVector &x) const;
+    /// The one that is as good and simpler: of a symmetric matrix, the plain one.
+    Transposition simplest(const Transposition transposition) const
+    {
+      return system_.symmetric ? Transposition::plain : transposition;
+    }
+
+    const SaddleSystem             &system_;
+    const LinearSolverParameters   &parameters_;
+    Timings                        &timings_;
+    std::unique_ptr<Preconditioner> preconditioner_;
+    double                          first_rate_ = 0.; ///< iterations per decade when it was fresh
+  };
+} // namespace retroforge

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/solver/node_frames.h>
+
+namespace retroforge
+{
+  namespace
+  {
+    /// Appends `direction`, orthonormalised against the first n rows, unless it lies nearly in their span.
+    unsigned int append_axis(dealii::Tensor<2, 3> &axes, const unsigned int n, Vec3 direction)
+    {
+      if (n == 3)
+        return 3;
+      for (unsigned int i = 0; i < n; ++i)
+        direction -= (axes[i] * direction) * axes[i];
+      if (direction.norm() < 1e-3)
+        return n;
+      axes[n] = direction / direction.norm();
+      return n + 1;
+    }
+  } // namespace
+
+  std::vector<NodeFrame> make_frames(const Scene &scene, const ContactSet<double> &contact)
+  {
+    std::vector<NodeFrame>    frames(scene.mesh.n_nodes());
+    std::vector<unsigned int> n_axes(scene.mesh.n_nodes(), 0);
+    const auto                append = [&](const NodeIndex k, const Vec3 &direction) {
+      n_axes[k] = append_axis(frames[k].axes, n_axes[k], direction);
+    };
+    for (NodeIndex k = 0; k < frames.size(); ++k)
+    {
+      for (const Vec3 &direction : scene.topology.fixed_directions[k])
+        append(k, direction);
+      frames[k].n_fixed = n_axes[k];
+    }
+    // Nodes come before edges, so that a node that touches has its own normal for an axis.
+    for (const bool of_nodes : {true, false})
+      for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+        if (const ContactPoint &point = contact.pairs[p].point; point.is_node() == of_nodes)
+          for (unsigned int i = 0; i < point.n_nodes(); ++i)
+            append(point.nodes[i], contact.projections[p].n);
+    for (NodeIndex k = 0; k < frames.size(); ++k)
+      if (n_axes[k] > 0)
+      {
+        frames[k].identity = false;
+        for (unsigned int i = 0; i < 3 && n_axes[k] < 3; ++i)
+        {
+          Vec3 unit;
+          unit[(i + 1) % 3] = 1.;
+          // A direction far from the axes there are keeps the completion well conditioned.
+          Vec3 rest = unit;
+          for (unsigned int j = 0; j < n_axes[k]; ++j)
+            rest -= (frames[k].axes[j] * unit) * frames[k].axes[j];
+          if (rest.norm() > 0.5)
+            append(k, unit);
+        }
+      }
+    return frames;
+  }
+} // namespace retroforge

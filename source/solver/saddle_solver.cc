@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/core/text.h>
+#include <retroforge/linear_algebra/direct_solver.h>
+#include <retroforge/solver/penalised_rows.h>
+#include <retroforge/solver/saddle_solver.h>
+
+#include <deal.II/lac/solver_gmres.h>
+
+namespace retroforge
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /// A preconditioner is made anew when a solve with it takes `patience` times the iterations that it took
+    /// when it was new, and so many more; and for the next solve from `aged` times on.
+    constexpr double patience = 2.5, spare_iterations = 10., aged = 1.7;
+
+    /// M or its preconditioner, or the transpose of either.
+    template <typename Matrix>
+    struct Operator
+    {
+      const Matrix &matrix;
+      Transposition transposition;
+
+      void vmult(la::BlockVector &y, const la::BlockVector &x) const
+      {
+        if (transposition == Transposition::plain)
+          matrix.vmult(y, x);
+        else
+          matrix.Tvmult(y, x);
+      }
+    };
+  } // namespace
+
+  void LinearSolverParameters::add_parameters(ParameterHandler &prm)
+  {
+    prm.enter_subsection("Linear solver");
+    prm.add_parameter(
+      "method",
+      method,
+      "auto takes `ilu` on small and `multigrid` on large meshes, and falls back to `direct` when they "
+      "fail. Units: none.",
+      Patterns::Selection("auto|ilu|multigrid|direct"));
+    prm.add_parameter(
+      "multigrid from", multigrid_from, "Number of nodes from which `auto` takes multigrid. Units: none.");
+    prm.add_parameter("max iterations",
+                      max_iterations,
+                      "Krylov iterations after which the direct solver takes over. Units: none.",
+                      Patterns::Integer(1));
+    prm.add_parameter("restart", restart, "Krylov vectors kept. Units: none.", Patterns::Integer(5, 1000));
+    prm.leave_subsection();
+  }
+
+  SaddleSolver::SaddleSolver(const SaddleSystem           &system,
+                             const LinearSolverParameters &parameters,
+                             Timings                      &timings)
+      : system_(system), parameters_(parameters), timings_(timings)
+  {
+  }
+
+  unsigned int SaddleSolver::solve(const la::BlockVector              &b,
+                                   const double                        tolerance,
+                                   const std::vector<la::BlockVector> &guesses,
+                                   const Transposition                 asked,
+                                   la::BlockVector                    &x)
+  {
+    const Transposition transposition = simplest(asked);
+    x                                 = 0.;
+    if (parameters_.method != "direct")
+      return solve_iteratively(b, tolerance, guesses, transposition, x);
+    solve_directly(b, transposition, x);
+    return 0;
+  }
+
+  double SaddleSolver::start_from(const std::vector<la::BlockVector> &guesses,
+                                  const la::BlockVector              &b,
+                                  const Transposition                 transposition,
+                                  la::BlockVector                    &x) const
+  {
+    const Operator<la::BlockSparseMatrix> M{system_.matrix, transposition};
+    la::BlockVector                       r = b;
+    std::vector<la::BlockVector>          images, sources;
+    for (const la::BlockVector &guess : guesses)
+    {
+      la::BlockVector source(guess), y(x);
+      M.vmult(y, source);
+      const double whole = y.l2_norm();
+      for (std::size_t j = 0; j < images.size(); ++j)
+      {
+        const double c = y * images[j];
+        y.add(-c, images[j]);
+        source.add(-c, sources[j]);
+      }
+      const double norm = y.l2_norm();
+      if (!(norm > 1e-8 * whole))
+        continue;
+      y *= 1. / norm;
+      source *= 1. / norm;
+      const double c = y * r;
+      r.add(-c, y);
+      x.add(c, source);
+      images.push_back(y);
+      sources.push_back(source);
+    }
+    return r.l2_norm();
+  }
+
+  void SaddleSolver::make_preconditioner()
+  {
+    const auto timing = timings_.scope("preconditioner");
+    const bool multigrid =
+      parameters_.method == "multigrid" ||
+      (parameters_.method == "auto" && system_.A->pattern().rows().n >= parameters_.multigrid_from);
+    preconditioner_ = std::make_unique<Preconditioner>(system_.matrix.block(0, 0),
+                                                       system_.matrix.block(0, 1),
+                                                       system_.matrix.block(1, 0),
+                                                       system_.schur,
+                                                       multigrid,
+                                                       system_.translations);
+    first_rate_     = 0.;
+  }
+
+  void SaddleSolver::polish_penalised(const la::BlockVector &b, la::BlockVector &x) const
+  {
+    la::BlockVector r(x);
+    system_.matrix.residual(r, x, b);
+    solve_penalised_rows(system_, r.block(0).begin(), x.block(0).begin());
+  }
+
+  unsigned int SaddleSolver::solve_iteratively(const la::BlockVector              &b,
+                                               const double                        tolerance,
+                                               const std::vector<la::BlockVector> &guesses,
+                                               const Transposition                 transposition,
+                                               la::BlockVector                    &x)
+  {
+    const double norm = b.l2_norm();
+    if (norm == 0.)
+      return 0;
+    const double start = start_from(guesses, b, transposition, x);
+    if (start <= tolerance * norm)
+      return 0;
+    const double decades = std::max(0.5, std::log10(start / (tolerance * norm)));
+    unsigned int total   = 0;
+    for (unsigned int attempt = 0; attempt < 2; ++attempt)
+    {
+      const bool fresh = !preconditioner_;
+      if (fresh)
+        make_preconditioner();
+      const Operator<la::BlockSparseMatrix> M{system_.matrix, transposition};
+      const Operator<Preconditioner>        P{*preconditioner_, transposition};
+      const unsigned int                    limit =
+        fresh ? parameters_.max_iterations
+                                 : std::min<unsigned int>(parameters_.max_iterations,
+                                       patience * first_rate_ * decades + spare_iterations);
+      const auto                    timing = timings_.scope("krylov");
+      SolverControl                 control(limit, tolerance * norm, false, false);
+      SolverFGMRES<la::BlockVector> krylov(
+        control,
+        typename SolverFGMRES<la::BlockVector>::AdditionalData(std::min(parameters_.restart, limit + 2)));
+      try
+      {
+        krylov.solve(M, x, b, P);
+        if (system_.symmetric)
+          polish_penalised(b, x);
+        total += control.last_step();
+        const double rate = control.last_step() / decades;
+        if (fresh)
+          first_rate_ = rate;
+        else if (rate > aged * first_rate_ + 1.)
+          reset();
+        return total;
+      }
+      catch (const SolverControl::NoConvergence &)
+      {
+        total += control.last_step();
+        reset();
+        if (fresh)
+          break;
+      }
+    }
+    if (parameters_.method != "auto")
+      throw Error("Linear solver/method",
+                  "'" + parameters_.method + "' did not reach " + as_text(tolerance) + " in " +
+                    std::to_string(parameters_.max_iterations) + " iterations",
+                  "the linear system must be solved",
+                  "use 'auto', which falls back to the direct solver, or check that the billet cannot slide "
+                  "or spin freely");
+    solve_directly(b, transposition, x);
+    return total;
+  }
+
+  void SaddleSolver::solve_directly(const la::BlockVector &b,
+                                    const Transposition    transposition,
+                                    la::BlockVector       &x) const
+  {
+    const auto timing = timings_.scope("direct solver");
+    solve_by_mumps(system_.matrix, b, x, transposition);
+  }
+} // namespace retroforge
