@@ -2,15 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/element/mini_element.h>
 #include <retroforge/element/mini_element.templates.h>
-
-// One source for one cell and for a pack of cells: what is between them must vanish into the caller, which
-// alone is compiled for several processors.
-#define RETROFORGE_INLINE inline __attribute__((always_inline))
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define RETROFORGE_FOR_EACH_PROCESSOR __attribute__((target_clones("arch=haswell", "default")))
-#else
-#define RETROFORGE_FOR_EACH_PROCESSOR
-#endif
+#include <retroforge/element/tangent_pack.templates.h>
 
 namespace retroforge
 {
@@ -23,23 +15,6 @@ namespace retroforge
     {
       T volume, g[4][3], eps[4][6], half[4], rank_one[4];
     };
-
-    /// Calls f(entry of pack, entry of one lane) for all entries, which must be doubles in the same order.
-    template <typename Blocks, typename One, typename F>
-    RETROFORGE_INLINE void for_each_entry(Blocks &pack, One &one, const F &f)
-    {
-      static_assert(sizeof(Blocks) == n_lanes * sizeof(One), "a pack must hold the same entries");
-      auto *p = reinterpret_cast<double *>(&pack);
-      auto *x = reinterpret_cast<double *>(&one);
-      for (unsigned int k = 0; k < sizeof(One) / sizeof(double); ++k)
-        f(p[n_lanes * k], x[k]);
-    }
-
-    /// eps:eps
-    double square(const double (&e)[6])
-    {
-      return e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + 2. * (e[3] * e[3] + e[4] * e[4] + e[5] * e[5]);
-    }
 
     void fill(const CellGeometry<double> &geometry,
               const Vec3                 *V,
@@ -74,21 +49,6 @@ namespace retroforge
         input.half[a]       = 0.5 * factor;
         input.rank_one[a]   = 2. * law.slope(eps2) * factor;
       }
-    }
-
-    /// y = eps_a g_c
-    template <typename T>
-    RETROFORGE_INLINE void eps_times_g(const T (&e)[6], const T (&g)[3], T (&y)[3])
-    {
-      y[0] = e[0] * g[0] + e[5] * g[1] + e[4] * g[2];
-      y[1] = e[5] * g[0] + e[1] * g[1] + e[3] * g[2];
-      y[2] = e[4] * g[0] + e[3] * g[1] + e[2] * g[2];
-    }
-
-    template <typename T>
-    RETROFORGE_INLINE T dot(const T (&a)[3], const T (&b)[3])
-    {
-      return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     }
 
     /// Inverse of a symmetric matrix.

@@ -4,32 +4,14 @@
 #include <retroforge/element/mini_element.templates.h>
 #include <retroforge/element/strain_history.h>
 
-#include <cmath>
-
 namespace retroforge
 {
-  namespace
-  {
-    // sqrt(2/3 eps:eps). At rest it is zero with zero derivative: sqrt alone would give 0/0.
-    template <typename Number>
-    Number equivalent(const std::array<Number, 6> &eps)
-    {
-      using std::sqrt;
-      const Number square = 2. / 3. * double_contraction(eps, eps);
-      return value_of(square) > 0. ? Number(sqrt(square)) : Number(0.);
-    }
-  } // namespace
-
   template <typename Number>
   Number cell_strain_rate(const CellGeometry<Number>  &geometry,
                           const Four<Vector3<Number>> &V,
                           const Vector3<Number>       &beta)
   {
-    const SubStrainRates<Number> rates(geometry, V, beta);
-    Number                       sum(0.);
-    for (const auto &eps : rates.eps)
-      sum += equivalent(eps);
-    return 0.25 * sum;
+    return mean_equivalent_rate(SubStrainRates<Number>(geometry, V, beta).eps);
   }
 
   void reverse_cell_strain_rate(const CellGeometry<double> &geometry,
@@ -40,21 +22,10 @@ namespace retroforge
                                 Vec3                       &beta_bar,
                                 Four<Vec3>                 &X_bar)
   {
-    const SubStrainRates<double> rates(geometry, V, beta);
-    // E_a = weight/4 de_a/deps_a = weight/4 (2/3 eps_a / e_a), and its sum over a
-    Four<std::array<double, 6>> E;
-    std::array<double, 6>       E_sum = {};
-    for (unsigned int a = 0; a < 4; ++a)
-    {
-      const double e      = equivalent(rates.eps[a]);
-      const double factor = e > 0. ? weight / (6. * e) : 0.;
-      for (unsigned int k = 0; k < 6; ++k)
-      {
-        E[a][k] = factor * rates.eps[a][k];
-        E_sum[k] += E[a][k];
-      }
-    }
-    Four<Vec3> g_bar;
+    const PointRates<double> E =
+      reverse_mean_equivalent_rate(SubStrainRates<double>(geometry, V, beta).eps, weight);
+    const Symmetric<double> E_sum = sum(E);
+    Four<Vec3>              g_bar;
     for (unsigned int c = 0; c < 4; ++c)
     {
       V_bar[c] += times(E_sum, geometry.g[c]);

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <retroforge/element/mini_element.h>
+#include <retroforge/element/point_rates.h>
 
 namespace retroforge
 {
-  /// Components xx, yy, zz, yz, xz, xy of a symmetric tensor.
-  using SymmetricTensor = std::array<double, 6>;
+  using SymmetricTensor = Symmetric<double>;
 
   /// Deviatoric stress of a cell [MPa]: the mean over the four sub-tetrahedra, of equal volume, of the law's
   /// s_a = 2 K q_a^((m-1)/2) eps_a, without the trace that is left where the discrete flow is not quite

@@ -2,10 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/geometry/vector_algebra.h>
-#include <retroforge/material/material_law.h>
-
-#include <array>
+#include <retroforge/element/cell_geometry.h>
+#include <retroforge/element/tangent_pack.h>
 
 /// @file
 /// The tetrahedron with P1 + hat bubble velocity and P1 pressure, integrated in closed form.
@@ -19,17 +17,6 @@
 /// (36)-(39)
 namespace retroforge
 {
-  template <typename Number>
-  using Four = std::array<Number, 4>;
-
-  /// Volume [mm^3] and gradients g_a = grad lambda_a [1/mm] of a tetrahedron.
-  template <typename Number>
-  struct CellGeometry
-  {
-    Number                volume;
-    Four<Vector3<Number>> g;
-  };
-
   /// Unknowns of one cell, or anything dual to them (residual, adjoint).
   template <typename Number>
   struct CellValues
@@ -38,22 +25,6 @@ namespace retroforge
     Vector3<Number>       beta; ///< bubble velocity [mm/s]
     Four<Number>          P;    ///< nodal pressures [MPa]
   };
-
-  /// Derivatives of a scalar of the cell in everything that is not an unknown.
-  struct CellSensitivity
-  {
-    Four<Vec3>          X = {};
-    MaterialLaw<double> law;
-  };
-
-  template <typename Number>
-  CellGeometry<Number> cell_geometry(const Four<Vector3<Number>> &X);
-
-  /// Adds to X_bar the pull-back of (volume_bar, g_bar) through cell_geometry:  dg_a = -sum_c (g_a·dX_c) g_c.
-  void reverse_cell_geometry(const CellGeometry<double> &geometry,
-                             double                      volume_bar,
-                             const Four<Vec3>           &g_bar,
-                             Four<Vec3>                 &X_bar);
 
   /// Value of Pi_T [mJ/s].
   template <typename Number>
@@ -118,24 +89,12 @@ namespace retroforge
   };
 
   using CellTangent = TangentBlocks<double>;
+  using TangentPack = TangentBlocks<Pack>;
 
   void compute_cell_tangent(const CellGeometry<double> &geometry,
                             const CellValues<double>   &w,
                             const MaterialLaw<double>  &law,
                             CellTangent                &tangent);
-
-  /// Four cells at once, one per lane of a vector register: what the assembly of the whole matrix uses.
-  typedef double                Pack __attribute__((vector_size(32)));
-  inline constexpr unsigned int n_lanes = 4;
-  using TangentPack                     = TangentBlocks<Pack>;
-
-  /// What stands for the derivative of the stresses: the derivative, or (Picard) the viscosity at the strain
-  /// rates of w alone. Both leave the solution where it is; Newton is the faster one close to it.
-  enum class Linearisation
-  {
-    newton,
-    picard
-  };
 
   /// As compute_cell_tangent, for n_lanes cells.
   /// @param elimination  where each lane's part that must be kept goes
