@@ -174,7 +174,7 @@ namespace retroforge
       }
     }
 
-    RETROFORGE_FOR_EACH_PROCESSOR
+    RETROFORGE_ALSO_FOR("arch=haswell")
     void tangent_pack(const TangentInput<Pack> &input, const bool linear, TangentPack &tangent)
     {
       tangent_blocks(input, linear, tangent);

@@ -9,9 +9,9 @@
 /// into the caller, which alone is compiled for several processors.
 #define RETROFORGE_INLINE inline __attribute__((always_inline))
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define RETROFORGE_FOR_EACH_PROCESSOR __attribute__((target_clones("arch=haswell", "default")))
+#define RETROFORGE_ALSO_FOR(processor) __attribute__((target_clones(processor, "default")))
 #else
-#define RETROFORGE_FOR_EACH_PROCESSOR
+#define RETROFORGE_ALSO_FOR(processor)
 #endif
 
 namespace retroforge

@@ -4,6 +4,7 @@
 
 #include "../random_numbers.h"
 #include <retroforge/element/mini_element.templates.h>
+#include <retroforge/element/taylor_hood.templates.h>
 
 #include <cmath>
 #include <iostream>
@@ -25,6 +26,16 @@ namespace retroforge
         w.P[a] = scalar();
       }
       w.beta = vector();
+      return w;
+    }
+
+    TaylorHoodValues<double> taylor_hood_values()
+    {
+      TaylorHoodValues<double> w;
+      for (Vec3 &v : w.V)
+        v = vector();
+      for (double &p : w.P)
+        p = scalar();
       return w;
     }
 
@@ -97,15 +108,44 @@ namespace retroforge
     return flat;
   }
 
+  template <typename Number>
+  void add_entries(Vector3<Number> &v, std::vector<Number *> &all)
+  {
+    for (unsigned int i = 0; i < 3; ++i)
+      all.push_back(&v[i]);
+  }
+
   /// The 19 unknowns of a cell in the order V (node, component), beta, P.
   template <typename Number>
-  std::vector<Number> flatten(const CellValues<Number> &w)
+  std::vector<Number *> entries(CellValues<Number> &w)
+  {
+    std::vector<Number *> all;
+    for (auto &v : w.V)
+      add_entries(v, all);
+    add_entries(w.beta, all);
+    for (Number &p : w.P)
+      all.push_back(&p);
+    return all;
+  }
+
+  /// The 34 unknowns of a cell in the order V (node, component), P.
+  template <typename Number>
+  std::vector<Number *> entries(TaylorHoodValues<Number> &w)
+  {
+    std::vector<Number *> all;
+    for (auto &v : w.V)
+      add_entries(v, all);
+    for (Number &p : w.P)
+      all.push_back(&p);
+    return all;
+  }
+
+  template <template <typename> class Values, typename Number>
+  std::vector<Number> flatten(Values<Number> w)
   {
     std::vector<Number> flat;
-    for (const auto &v : w.V)
-      flat.insert(flat.end(), v.begin_raw(), v.end_raw());
-    flat.insert(flat.end(), w.beta.begin_raw(), w.beta.end_raw());
-    flat.insert(flat.end(), w.P.begin(), w.P.end());
+    for (const Number *entry : entries(w))
+      flat.push_back(*entry);
     return flat;
   }
 } // namespace retroforge
