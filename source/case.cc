@@ -102,7 +102,8 @@ namespace retroforge
       , mu(design.at(parameters.design.at))
       , process(design.process(mu))
       , X_0(design.positions(mu))
-      , model{make_dies(parameters, process),
+      , model{ElementPair::mini,
+              make_dies(parameters, process),
               parameters.step_model(),
               parameters.newton,
               parameters.linear_solver,

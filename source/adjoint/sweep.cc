@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/adjoint/sweep.h>
-#include <retroforge/element/strain_history.h>
+#include <retroforge/discretization/strain_history.h>
 #include <retroforge/transfer/cell_transfer.h>
 
 #include <deal.II/base/mpi.h>
@@ -191,7 +191,8 @@ namespace retroforge
         for (std::size_t o = 0; o < run.objectives.size(); ++o)
           if (run.objectives[o].path)
             add_integrals(*run.objectives[o].path, view, rows[o].back());
-        strain = accumulate_strain(leg->scene.mesh, view.stage.X, view.W, Dual(view.weight * dt), strain);
+        strain = accumulate_strain(
+          leg->scene.mesh, leg->scene.spaces, view.stage.X, view.W, Dual(view.weight * dt), strain);
       });
     }
     const auto        dies = process.at_stroke(end).dies;

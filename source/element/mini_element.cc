@@ -25,7 +25,8 @@ namespace retroforge
   template CellValues<Number> cell_residual(                                                \
     const CellGeometry<Number> &, const CellValues<Number> &, const MaterialLaw<Number> &); \
   template Number cell_dissipation(                                                         \
-    const CellGeometry<Number> &, const CellValues<Number> &, const MaterialLaw<Number> &);
+    const CellGeometry<Number> &, const CellValues<Number> &, const MaterialLaw<Number> &); \
+  template Number cell_strain_rate(const CellGeometry<Number> &, const CellValues<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE
@@ -33,6 +34,25 @@ namespace retroforge
   Four<double> cell_strain_rates(const CellGeometry<double> &geometry, const CellValues<double> &w)
   {
     return equivalent_rates(SubStrainRates<double>(geometry, w.V, w.beta).eps);
+  }
+
+  void reverse_cell_strain_rate(const CellGeometry<double> &geometry,
+                                const CellValues<double>   &w,
+                                const double                weight,
+                                CellValues<double>         &w_bar,
+                                Four<Vec3>                 &X_bar)
+  {
+    const PointRates<double> E =
+      reverse_mean_equivalent_rate(SubStrainRates<double>(geometry, w.V, w.beta).eps, weight);
+    const Symmetric<double> E_sum = sum(E);
+    Four<Vec3>              g_bar = {};
+    for (unsigned int c = 0; c < 4; ++c)
+    {
+      w_bar.V[c] += times(E_sum, geometry.g[c]);
+      w_bar.beta += 4. * times(E[c], geometry.g[c]);
+    }
+    add_strain_pullback(E, w.V, w.beta, g_bar);
+    reverse_cell_geometry(geometry, 0., g_bar, X_bar);
   }
 
   CellSensitivity reverse_cell_residual(const CellGeometry<double> &geometry,

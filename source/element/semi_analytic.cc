@@ -30,25 +30,40 @@ namespace retroforge
         }
       return slope;
     }
-  } // namespace
 
-  Four<Vec3> difference_cell_residual(const Four<Vec3>          &X,
-                                      const CellValues<double>  &w,
-                                      const CellValues<double>  &lambda,
-                                      const MaterialLaw<double> &law,
-                                      const ShapeDerivatives    &how)
-  {
-    return differences(X, how, [&](const Four<Vec3> &at) {
-      const CellValues<double> r   = cell_residual(cell_geometry(at), w, law);
-      double                   sum = r.beta * lambda.beta;
+    double dot(const CellValues<double> &r, const CellValues<double> &lambda)
+    {
+      double sum = r.beta * lambda.beta;
       for (unsigned int a = 0; a < 4; ++a)
         sum += r.V[a] * lambda.V[a] + r.P[a] * lambda.P[a];
       return sum;
-    });
+    }
+
+    double dot(const TaylorHoodValues<double> &r, const TaylorHoodValues<double> &lambda)
+    {
+      double sum = 0.;
+      for (unsigned int a = 0; a < 10; ++a)
+        sum += r.V[a] * lambda.V[a];
+      for (unsigned int a = 0; a < 4; ++a)
+        sum += r.P[a] * lambda.P[a];
+      return sum;
+    }
+  } // namespace
+
+  template <typename Values>
+  Four<Vec3> difference_cell_residual(const Four<Vec3>          &X,
+                                      const Values              &w,
+                                      const Values              &lambda,
+                                      const MaterialLaw<double> &law,
+                                      const ShapeDerivatives    &how)
+  {
+    return differences(
+      X, how, [&](const Four<Vec3> &at) { return dot(cell_residual(cell_geometry(at), w, law), lambda); });
   }
 
+  template <typename Values>
   Four<Vec3> difference_cell_dissipation(const Four<Vec3>          &X,
-                                         const CellValues<double>  &w,
+                                         const Values              &w,
                                          const MaterialLaw<double> &law,
                                          const double               weight,
                                          const ShapeDerivatives    &how)
@@ -56,4 +71,16 @@ namespace retroforge
     return differences(
       X, how, [&](const Four<Vec3> &at) { return weight * cell_dissipation(cell_geometry(at), w, law); });
   }
+
+#define RETROFORGE_INSTANTIATE(Values)                                      \
+  template Four<Vec3> difference_cell_residual(const Four<Vec3> &,          \
+                                               const Values &,              \
+                                               const Values &,              \
+                                               const MaterialLaw<double> &, \
+                                               const ShapeDerivatives &);   \
+  template Four<Vec3> difference_cell_dissipation(                          \
+    const Four<Vec3> &, const Values &, const MaterialLaw<double> &, double, const ShapeDerivatives &);
+  RETROFORGE_INSTANTIATE(CellValues<double>)
+  RETROFORGE_INSTANTIATE(TaylorHoodValues<double>)
+#undef RETROFORGE_INSTANTIATE
 } // namespace retroforge

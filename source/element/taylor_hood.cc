@@ -24,7 +24,7 @@ namespace retroforge
     const CellGeometry<Number> &, const TaylorHoodValues<Number> &, const MaterialLaw<Number> &); \
   template Number cell_dissipation(                                                               \
     const CellGeometry<Number> &, const TaylorHoodValues<Number> &, const MaterialLaw<Number> &); \
-  template Number cell_strain_rate(const CellGeometry<Number> &, const VelocityNodes<Vector3<Number>> &);
+  template Number cell_strain_rate(const CellGeometry<Number> &, const TaylorHoodValues<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE
@@ -34,16 +34,16 @@ namespace retroforge
     return equivalent_rates(TaylorHoodRates<double>(geometry, w.V).eps);
   }
 
-  void reverse_cell_strain_rate(const CellGeometry<double> &geometry,
-                                const VelocityNodes<Vec3>  &V,
-                                const double                weight,
-                                VelocityNodes<Vec3>        &V_bar,
-                                Four<Vec3>                 &X_bar)
+  void reverse_cell_strain_rate(const CellGeometry<double>     &geometry,
+                                const TaylorHoodValues<double> &w,
+                                const double                    weight,
+                                TaylorHoodValues<double>       &w_bar,
+                                Four<Vec3>                     &X_bar)
   {
-    const TaylorHoodRates<double> rates(geometry, V);
+    const TaylorHoodRates<double> rates(geometry, w.V);
     const PointRates<double>      eps_bar = reverse_mean_equivalent_rate(rates.eps, weight);
     Four<Vec3>                    g_bar   = {};
-    add_velocity_pullback(geometry, eps_bar, V_bar);
+    add_velocity_pullback(geometry, eps_bar, w_bar.V);
     add_gradient_pullback(eps_bar, rates.U, g_bar);
     reverse_cell_geometry(geometry, 0., g_bar, X_bar);
   }

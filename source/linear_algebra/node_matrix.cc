@@ -28,13 +28,13 @@ namespace retroforge
       column_nodes_.push_back(a);
     std::set<unsigned int> others;
     for (unsigned int a = rows.begin; a < rows.end; ++a)
-      for (const unsigned int b : neighbours[a])
+      for (const unsigned int b : neighbours[a - rows.begin])
         if (!columns.owns(b))
           others.insert(b);
     column_nodes_.insert(column_nodes_.end(), others.begin(), others.end());
     for (unsigned int a = rows.begin; a < rows.end; ++a)
     {
-      for (const unsigned int b : neighbours[a])
+      for (const unsigned int b : neighbours[a - rows.begin])
         of_row_.entries.push_back(local_number(b));
       std::sort(of_row_.entries.begin() + of_row_.begin.back(), of_row_.entries.end());
       of_row_.begin.push_back(of_row_.entries.size());

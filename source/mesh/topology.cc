@@ -92,15 +92,21 @@ namespace retroforge
         directions.push_back(normal / normal.norm());
     }
 
-    // Those of symmetry, ascending.
-    Rows<unsigned int> planes_at_nodes(const TetMesh &mesh)
+    // Those of symmetry, ascending, that each of n places lies on. @param places  on a boundary face
+    template <typename Places>
+    Rows<unsigned int> planes_at(const TetMesh &mesh, const unsigned int n, const Places &places)
     {
       std::vector<std::pair<unsigned int, unsigned int>> pairs;
-      for (const auto &face : mesh.faces)
-        if (!mesh.is_surface(face))
-          for (const NodeIndex node : face.nodes)
-            pairs.emplace_back(node, face.patch);
-      return make_rows(std::move(pairs), mesh.n_nodes());
+      for (unsigned int f = 0; f < mesh.faces.size(); ++f)
+        if (!mesh.is_surface(mesh.faces[f]))
+          for (const unsigned int place : places(f))
+            pairs.emplace_back(place, mesh.faces[f].patch);
+      return make_rows(std::move(pairs), n);
+    }
+
+    Rows<unsigned int> planes_at_nodes(const TetMesh &mesh)
+    {
+      return planes_at(mesh, mesh.n_nodes(), [&](const unsigned int f) { return mesh.faces[f].nodes; });
     }
 
     // Of a piece of the workpiece, around what lies on all of these planes, in the whole. Planes whose angle
@@ -134,14 +140,12 @@ namespace retroforge
       return images;
     }
 
-    Rows<Vec3> fixed_directions_of_nodes(const TetMesh &mesh)
+    Rows<Vec3> fixed_directions_on(const TetMesh &mesh, const Rows<unsigned int> &patches)
     {
-      const auto patches = planes_at_nodes(mesh);
-
       Rows<Vec3> rows;
-      for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
+      for (unsigned int place = 0; place < patches.size(); ++place)
       {
-        for (const unsigned int patch : patches[node])
+        for (const unsigned int patch : patches[place])
           orthonormalise_into(rows.entries, rows.begin.back(), mesh.patches[patch].symmetry->normal);
         rows.begin.push_back(rows.entries.size());
       }
@@ -149,13 +153,19 @@ namespace retroforge
     }
   } // namespace
 
+  Rows<Vec3> fixed_directions_of_edges(const TetMesh &mesh, const MeshEdges &edges)
+  {
+    return fixed_directions_on(
+      mesh, planes_at(mesh, edges.size(), [&](const unsigned int f) { return edges.of_faces[f]; }));
+  }
+
   Topology::Topology(const TetMesh &mesh)
       : surface_faces(surface_faces_at_nodes(mesh))
       , surface_edges(edges_of_surface(mesh))
       , edge_images(images_of_edges(mesh, surface_edges))
       , cells(cells_at_nodes(mesh))
       , neighbours(neighbours_of_nodes(mesh, cells))
-      , fixed_directions(fixed_directions_of_nodes(mesh))
+      , fixed_directions(fixed_directions_on(mesh, planes_at_nodes(mesh)))
   {
   }
 } // namespace retroforge

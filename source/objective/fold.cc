@@ -2,8 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/core/text.h>
-#include <retroforge/element/mini_element.templates.h>
-#include <retroforge/element/strain_history.h>
+#include <retroforge/discretization/element_pairs.h>
+#include <retroforge/element/cell_geometry.templates.h>
 #include <retroforge/objective/fold.h>
 #include <retroforge/objective/surface_areas.h>
 
@@ -16,29 +16,29 @@ namespace retroforge
     template <typename Number>
     Number strain_rate(const StageView<Number> &view, const CellIndex c)
     {
-      const TetMesh           &mesh = view.stage.scene.mesh;
-      const CellValues<Number> w    = view.W.on_cell(mesh, c);
-      return cell_strain_rate(cell_geometry(positions_of_cell(mesh, view.stage.X, c)), w.V, w.beta);
+      const Scene &scene = view.stage.scene;
+      return with_pair(scene.spaces, [&](const auto pair) -> Number {
+        return cell_strain_rate(geometry_of_cell(scene.mesh, view.stage.X, c),
+                                pair.on_cell(scene.spaces, view.W, c));
+      });
     }
 
     void
     reverse_strain_rate(const StageView<double> &view, const CellIndex c, const double weight, StageBar &bar)
     {
-      const TetMesh           &mesh  = view.stage.scene.mesh;
-      const CellValues<double> w     = view.W.on_cell(mesh, c);
-      Four<Vec3>               V_bar = {}, X_bar = {};
-      reverse_cell_strain_rate(cell_geometry(positions_of_cell(mesh, view.stage.X, c)),
-                               w.V,
-                               w.beta,
-                               weight,
-                               V_bar,
-                               bar.W.beta[c],
-                               X_bar);
-      for (unsigned int a = 0; a < 4; ++a)
-      {
-        bar.W.V[mesh.cells[c][a]] += V_bar[a];
-        bar.X[mesh.cells[c][a]] += X_bar[a];
-      }
+      const Scene &scene = view.stage.scene;
+      with_pair(scene.spaces, [&](const auto pair) {
+        typename decltype(pair)::template Values<double> w_bar = {};
+        Four<Vec3>                                       X_bar = {};
+        reverse_cell_strain_rate(geometry_of_cell(scene.mesh, view.stage.X, c),
+                                 pair.on_cell(scene.spaces, view.W, c),
+                                 weight,
+                                 w_bar,
+                                 X_bar);
+        pair.add(scene.spaces, w_bar, c, bar.W);
+        for (unsigned int a = 0; a < 4; ++a)
+          bar.X[scene.mesh.cells[c][a]] += X_bar[a];
+      });
     }
 
     /// A face that counts.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/discretization/element_pairs.h>
 #include <retroforge/objective/volume.h>
 
 namespace retroforge

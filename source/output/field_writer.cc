@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/element/strain_history.h>
+#include <retroforge/discretization/element_pairs.h>
 #include <retroforge/output/contact_fields.h>
 #include <retroforge/output/die_pictures.h>
 #include <retroforge/output/field_writer.h>
@@ -14,6 +14,7 @@ namespace retroforge
   struct FieldWriter::Workpiece
   {
     const TetMesh              &mesh;
+    const Spaces               &spaces;
     const NodalVectors<double> &X;
     const NodalVectors<double> &position; ///< where W is an equilibrium
     const Field<double>        &W;
@@ -32,19 +33,22 @@ namespace retroforge
     };
 
     CellFields cell_fields(const TetMesh              &mesh,
+                           const Spaces               &spaces,
                            const NodalVectors<double> &X,
                            const Field<double>        &W,
                            const MaterialLaw<double>  &law)
     {
       CellFields fields;
-      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
-      {
-        const auto geometry = cell_geometry(positions_of_cell(mesh, X, c));
-        const auto w        = W.on_cell(mesh, c);
-        fields.strain_rate.push_back(cell_strain_rate(geometry, w.V, w.beta));
-        fields.stress.push_back(cell_deviatoric_stress(geometry, w, law));
-        fields.von_mises.push_back(von_mises(fields.stress.back()));
-      }
+      with_pair(spaces, [&](const auto pair) {
+        for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+        {
+          const auto geometry = geometry_of_cell(mesh, X, c);
+          const auto w        = pair.on_cell(spaces, W, c);
+          fields.strain_rate.push_back(cell_strain_rate(geometry, w));
+          fields.stress.push_back(cell_deviatoric_stress(geometry, w, law));
+          fields.von_mises.push_back(von_mises(fields.stress.back()));
+        }
+      });
       return fields;
     }
 
@@ -73,7 +77,8 @@ namespace retroforge
 
   void FieldWriter::write(const std::string &file, const Workpiece &workpiece) const
   {
-    const CellFields cells = cell_fields(workpiece.mesh, workpiece.position, workpiece.W, process_.law);
+    const CellFields cells =
+      cell_fields(workpiece.mesh, workpiece.spaces, workpiece.position, workpiece.W, process_.law);
     std::vector<ScalarField> scalars = {{"pressure [MPa]", workpiece.W.P}};
     std::vector<VectorField> vectors = {{"velocity [mm/s]", workpiece.W.V}};
     if (workpiece.displacement)
@@ -125,10 +130,11 @@ namespace retroforge
     if (!pvd_.steps().empty())
       return;
     const std::string         file = "fields_" + six_digits(0) + ".vtu";
-    const Field<double>       at_rest(billet_);
+    const Spaces              spaces(billet_, Topology(billet_), model_.element);
+    const Field<double>       at_rest(spaces);
     const std::vector<double> zero(billet_.n_nodes(), 0.), strain(billet_.n_cells(), 0.);
     const ContactFields       contact{zero, zero, at_rest.V};
-    write(file, {billet_, X_0_, X_0_, at_rest, strain, &at_rest.V, &contact});
+    write(file, {billet_, spaces, X_0_, X_0_, at_rest, strain, &at_rest.V, &contact});
     add_step(0., file, six_digits(0), X_0_);
   }
 
@@ -149,7 +155,7 @@ namespace retroforge
     const ContactFields contact = contact_fields(last.stage, run.W, last.active);
     const std::string   number = six_digits(run.increments), file = "fields_" + number + ".vtu";
     add_billet();
-    write(file, {scene.mesh, run.X, last.X, run.W, run.strain, &displacement_, &contact});
+    write(file, {scene.mesh, scene.spaces, run.X, last.X, run.W, run.strain, &displacement_, &contact});
     add_step(run.stroke, file, number, run.X);
   }
 
@@ -159,7 +165,14 @@ namespace retroforge
     const auto *displacement = state.remeshed.size() == n_remeshings_ ? &displacement_ : nullptr;
     add_billet();
     write("failed.vtu",
-          {state.leg->scene.mesh, state.X, state.X, state.W, state.strain, displacement, nullptr});
+          {state.leg->scene.mesh,
+           state.leg->scene.spaces,
+           state.X,
+           state.X,
+           state.W,
+           state.strain,
+           displacement,
+           nullptr});
     add_step(state.stroke, "failed.vtu", "failed", state.X);
   }
 } // namespace retroforge

@@ -54,7 +54,7 @@ namespace retroforge
         if (pairs[p].point.is_node())
           edges[p] = 0;
       Field<double> r = stage.residual(W, edges);
-      stage.scene.partition.gather(r.V);
+      stage.scene.velocities.gather(r.V);
       std::vector<double> force(pairs.size(), 0.);
       double              sum = 0.;
       unsigned int        n   = 0;

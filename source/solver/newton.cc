@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/discretization/element_pairs.h>
 #include <retroforge/solver/contact_steps.h>
 #include <retroforge/solver/newton.h>
 
@@ -42,7 +43,7 @@ namespace retroforge
       const Partition &partition = stage.scene.partition;
       double           volume = 0., speed = 0.;
       for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
-        volume += cell_geometry(positions_of_cell(stage.scene.mesh, stage.X, c)).volume;
+        volume += geometry_of_cell(stage.scene.mesh, stage.X, c).volume;
       for (const auto &die : stage.physics.dies)
         speed = std::max(speed, die.velocity.norm());
       return {partition.sum(volume), speed};
@@ -75,8 +76,9 @@ namespace retroforge
     const auto  scale     = residual_scale(stage, W);
     double      bubble2   = 0.;
     const auto &partition = scene_.partition;
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
-      bubble2 += r.beta[c].norm_square();
+    if (scene_.spaces.n_bubbles() > 0)
+      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+        bubble2 += r.beta[c].norm_square();
     const double momentum = std::sqrt(norm.first * norm.first + partition.sum(bubble2));
     // Where nothing pushes yet, all there is is rounding: what is small against the flow at the dies' speed
     // is measured against that.
@@ -91,10 +93,11 @@ namespace retroforge
   {
     const auto &partition = scene_.partition;
     double      sum       = 0.;
-    for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
-      sum += r.V[k] * step.V[k];
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
-      sum += r.beta[c] * step.beta[c];
+    for (unsigned int i = 0; i < scene_.velocities.n_owned(); ++i)
+      sum += r.V[scene_.velocities.node(i)] * step.V[scene_.velocities.node(i)];
+    if (scene_.spaces.n_bubbles() > 0)
+      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+        sum += r.beta[c] * step.beta[c];
     return partition.sum(sum);
   }
 
@@ -167,7 +170,7 @@ namespace retroforge
     for (unsigned int pass = 0; pass < 3; ++pass)
     {
       Field<double> r = linear.residual(W, active);
-      Field<double> rhs(scene_.mesh);
+      Field<double> rhs(scene_.spaces);
       rhs.add(-1., r);
       system_.assemble(linear, W, active);
       statistics.krylov += system_.solve(rhs, 1e-4, step);
@@ -180,7 +183,7 @@ namespace retroforge
     // No die reaches the metal: it stays where it is, and does not drift along a motion that costs nothing.
     active = frozen.empty() ? linear.decide_active(W) : frozen;
     if (std::none_of(active.begin(), active.end(), [](const char pressed) { return pressed != 0; }))
-      W = Field<double>(scene_.mesh);
+      W = Field<double>(scene_.spaces);
   }
 
   /// Steps within which contacts are to be found at once.
@@ -245,7 +248,7 @@ namespace retroforge
       const double promise = std::max(0.1 * statistics.residual, std::pow(statistics.residual / last, 2));
       double       forcing = linear ? goal : std::max(goal, std::min(largest_forcing, promise));
       forcing              = std::min(0.5, std::max(1e-12, forcing));
-      Field<double> rhs(scene_.mesh);
+      Field<double> rhs(scene_.spaces);
       rhs.add(-1., r);
       statistics.krylov += system_.solve(rhs, forcing, step);
       ++statistics.iterations;

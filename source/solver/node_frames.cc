@@ -22,14 +22,14 @@ namespace retroforge
 
   std::vector<NodeFrame> make_frames(const Scene &scene, const ContactSet<double> &contact)
   {
-    std::vector<NodeFrame>    frames(scene.mesh.n_nodes());
-    std::vector<unsigned int> n_axes(scene.mesh.n_nodes(), 0);
+    std::vector<NodeFrame>    frames(scene.spaces.n_velocity_nodes());
+    std::vector<unsigned int> n_axes(scene.spaces.n_velocity_nodes(), 0);
     const auto                append = [&](const NodeIndex k, const Vec3 &direction) {
       n_axes[k] = append_axis(frames[k].axes, n_axes[k], direction);
     };
     for (NodeIndex k = 0; k < frames.size(); ++k)
     {
-      for (const Vec3 &direction : scene.topology.fixed_directions[k])
+      for (const Vec3 &direction : scene.spaces.fixed_directions(k))
         append(k, direction);
       frames[k].n_fixed = n_axes[k];
     }

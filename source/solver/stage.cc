@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/element/mini_element.templates.h>
+#include <retroforge/discretization/element_pairs.h>
+#include <retroforge/element/cell_geometry.templates.h>
 #include <retroforge/solver/contact_pullback.h>
 
 namespace retroforge
@@ -45,18 +46,15 @@ namespace retroforge
   Field<Number> Stage<Number>::residual(const Field<Number> &W, const ActiveSet &active) const
   {
     const Partition &partition = scene.partition;
-    Field<Number>    r(scene.mesh);
-    for (const CellIndex c : partition.visited_cells)
-    {
-      const CellValues<Number> cell = cell_residual(
-        cell_geometry(positions_of_cell(scene.mesh, X, c)), W.on_cell(scene.mesh, c), physics.law);
-      for (unsigned int a = 0; a < 4; ++a)
-      {
-        r.V[scene.mesh.cells[c][a]] += cell.V[a];
-        r.P[scene.mesh.cells[c][a]] += cell.P[a];
-      }
-      r.beta[c] = cell.beta;
-    }
+    Field<Number>    r(scene.spaces);
+    with_pair(scene.spaces, [&](const auto pair) {
+      for (const CellIndex c : partition.visited_cells)
+        pair.add(
+          scene.spaces,
+          cell_residual(geometry_of_cell(scene.mesh, X, c), pair.on_cell(scene.spaces, W, c), physics.law),
+          c,
+          r);
+    });
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (partition.sees(contact.pairs[p].point.nodes))
         contact.pairs[p].point.add(contact_force(contact_node(p, W, active), physics.law, physics.contact),
@@ -69,9 +67,11 @@ namespace retroforge
   {
     const Partition          &partition = scene.partition;
     std::pair<Number, Number> power{Number(0.), Number(0.)};
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
-      power.first += cell_dissipation(
-        cell_geometry(positions_of_cell(scene.mesh, X, c)), W.on_cell(scene.mesh, c), physics.law);
+    with_pair(scene.spaces, [&](const auto pair) {
+      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+        power.first +=
+          cell_dissipation(geometry_of_cell(scene.mesh, X, c), pair.on_cell(scene.spaces, W, c), physics.law);
+    });
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (partition.owns(contact.pairs[p].point.nodes[0]))
         power.second += friction_power(contact_node(p, W, active), physics.law, physics.contact);
@@ -83,29 +83,28 @@ namespace retroforge
 
   std::pair<double, double> residual_scale(const Stage<double> &stage, const Field<double> &W)
   {
-    const TetMesh      &mesh      = stage.scene.mesh;
-    const Partition    &partition = stage.scene.partition;
-    std::vector<double> force(mesh.n_nodes(), 0.), flow(mesh.n_nodes(), 0.);
-    for (const CellIndex c : partition.visited_cells)
-    {
-      const auto   geometry = cell_geometry(positions_of_cell(mesh, stage.X, c));
-      const auto   w        = W.on_cell(mesh, c);
-      const auto   r        = cell_residual(geometry, w, stage.physics.law);
-      const auto   rates    = cell_strain_rates(geometry, w);
-      const double flow_c   = 0.25 * geometry.volume * 0.25 * (rates[0] + rates[1] + rates[2] + rates[3]);
-      for (unsigned int a = 0; a < 4; ++a)
+    const Scene        &scene = stage.scene;
+    std::vector<double> force(scene.spaces.n_velocity_nodes(), 0.), flow(scene.mesh.n_nodes(), 0.);
+    with_pair(scene.spaces, [&](const auto pair) {
+      for (const CellIndex c : scene.partition.visited_cells)
       {
-        force[mesh.cells[c][a]] += r.V[a].norm();
-        flow[mesh.cells[c][a]] += flow_c;
+        const auto   geometry = geometry_of_cell(scene.mesh, stage.X, c);
+        const auto   w        = pair.on_cell(scene.spaces, W, c);
+        const auto   r        = cell_residual(geometry, w, stage.physics.law);
+        const auto   rates    = cell_strain_rates(geometry, w);
+        const double flow_c   = 0.25 * geometry.volume * 0.25 * (rates[0] + rates[1] + rates[2] + rates[3]);
+        for (unsigned int a = 0; a < r.V.size(); ++a)
+          force[scene.spaces.velocity_nodes(c)[a]] += r.V[a].norm();
+        for (const NodeIndex k : scene.mesh.cells[c])
+          flow[k] += flow_c;
       }
-    }
+    });
     double force2 = 0., flow2 = 0.;
-    for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
-    {
-      force2 += force[k] * force[k];
+    for (unsigned int i = 0; i < scene.velocities.n_owned(); ++i)
+      force2 += std::pow(force[scene.velocities.node(i)], 2);
+    for (NodeIndex k = scene.partition.node_begin; k < scene.partition.node_end; ++k)
       flow2 += flow[k] * flow[k];
-    }
-    return {std::sqrt(partition.sum(force2)), std::sqrt(partition.sum(flow2))};
+    return {std::sqrt(scene.partition.sum(force2)), std::sqrt(scene.partition.sum(flow2))};
   }
 
   std::vector<Vec3> die_forces(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
@@ -119,16 +118,17 @@ namespace retroforge
 
   void recover_bubbles(const Stage<double> &stage, Field<double> &W)
   {
-    const TetMesh   &mesh      = stage.scene.mesh;
-    const Partition &partition = stage.scene.partition;
+    const Scene     &scene     = stage.scene;
+    const Partition &partition = scene.partition;
+    if (scene.spaces.n_bubbles() == 0)
+      return;
     for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
     {
       W.beta[c] = Vec3();
       W.beta[c] = solve_bubble(
-        cell_geometry(positions_of_cell(mesh, stage.X, c)), W.on_cell(mesh, c), stage.physics.law);
+        geometry_of_cell(scene.mesh, stage.X, c), MiniPair::on_cell(scene.spaces, W, c), stage.physics.law);
     }
-    if (mesh.n_cells() > 0)
-      partition.gather_cells(W.beta.data()->begin_raw(), 3);
+    partition.gather_cells(W.beta.data()->begin_raw(), 3);
   }
 
   void reverse_residual(const StageView<double> &view, const Field<double> &lambda, StageBar &bar)
@@ -136,18 +136,20 @@ namespace retroforge
     const Stage<double> &stage     = view.stage;
     const TetMesh       &mesh      = stage.scene.mesh;
     const Partition     &partition = stage.scene.partition;
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
-    {
-      const auto               X        = positions_of_cell(mesh, stage.X, c);
-      const CellValues<double> w        = view.W.on_cell(mesh, c);
-      const CellValues<double> lambda_c = lambda.on_cell(mesh, c);
-      CellSensitivity          s = reverse_cell_residual(cell_geometry(X), w, lambda_c, stage.physics.law);
-      if (bar.shape.method != ShapeDerivatives::Method::exact)
-        s.X = difference_cell_residual(X, w, lambda_c, stage.physics.law, bar.shape);
-      for (unsigned int a = 0; a < 4; ++a)
-        bar.X[mesh.cells[c][a]] += s.X[a];
-      add_numbers(s.law, bar.physics.law);
-    }
+    with_pair(stage.scene.spaces, [&](const auto pair) {
+      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+      {
+        const auto      X        = positions_of_cell(mesh, stage.X, c);
+        const auto      w        = pair.on_cell(stage.scene.spaces, view.W, c);
+        const auto      lambda_c = pair.on_cell(stage.scene.spaces, lambda, c);
+        CellSensitivity s        = reverse_cell_residual(cell_geometry(X), w, lambda_c, stage.physics.law);
+        if (bar.shape.method != ShapeDerivatives::Method::exact)
+          s.X = difference_cell_residual(X, w, lambda_c, stage.physics.law, bar.shape);
+        for (unsigned int a = 0; a < 4; ++a)
+          bar.X[mesh.cells[c][a]] += s.X[a];
+        add_numbers(s.law, bar.physics.law);
+      }
+    });
     ContactPullback pullback(view, bar);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (const ContactPoint &point = stage.contact.pairs[p].point; partition.owns(point.nodes[0]))
@@ -165,23 +167,22 @@ namespace retroforge
     const Stage<double> &stage     = view.stage;
     const TetMesh       &mesh      = stage.scene.mesh;
     const Partition     &partition = stage.scene.partition;
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
-    {
-      const auto               X     = positions_of_cell(mesh, stage.X, c);
-      const CellValues<double> w     = view.W.on_cell(mesh, c);
-      CellValues<double>       w_bar = {};
-      CellSensitivity          s =
-        reverse_cell_dissipation(cell_geometry(X), w, stage.physics.law, deformation, w_bar);
-      if (bar.shape.method != ShapeDerivatives::Method::exact)
-        s.X = difference_cell_dissipation(X, w, stage.physics.law, deformation, bar.shape);
-      for (unsigned int a = 0; a < 4; ++a)
+    with_pair(stage.scene.spaces, [&](const auto pair) {
+      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
       {
-        bar.X[mesh.cells[c][a]] += s.X[a];
-        bar.W.V[mesh.cells[c][a]] += w_bar.V[a];
+        const auto                                       X     = positions_of_cell(mesh, stage.X, c);
+        const auto                                       w     = pair.on_cell(stage.scene.spaces, view.W, c);
+        typename decltype(pair)::template Values<double> w_bar = {};
+        CellSensitivity                                  s =
+          reverse_cell_dissipation(cell_geometry(X), w, stage.physics.law, deformation, w_bar);
+        if (bar.shape.method != ShapeDerivatives::Method::exact)
+          s.X = difference_cell_dissipation(X, w, stage.physics.law, deformation, bar.shape);
+        for (unsigned int a = 0; a < 4; ++a)
+          bar.X[mesh.cells[c][a]] += s.X[a];
+        pair.add(stage.scene.spaces, w_bar, c, bar.W);
+        add_numbers(s.law, bar.physics.law);
       }
-      bar.W.beta[c] += w_bar.beta;
-      add_numbers(s.law, bar.physics.law);
-    }
+    });
     ContactPullback pullback(view, bar);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (partition.owns(stage.contact.pairs[p].point.nodes[0]))

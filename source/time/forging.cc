@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/element/strain_history.h>
+#include <retroforge/discretization/strain_history.h>
 #include <retroforge/linear_algebra/direct_solver.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/self_crossing.h>
@@ -25,7 +25,7 @@ namespace retroforge
     ForgingState state;
     state.X      = X_0;
     state.volume = volume(leg->scene.mesh.cells, X_0);
-    state.W      = Field<double>(leg->scene.mesh);
+    state.W      = Field<double>(leg->scene.spaces);
     state.strain = std::vector<double>(leg->scene.mesh.n_cells(), 0.);
     state.leg    = std::move(leg);
     return state;
@@ -66,15 +66,15 @@ namespace retroforge
   void Forging::change_mesh(const RemeshRecord &remesh, ForgingState &state) const
   {
     state.repaired += remesh.repaired;
-    const TransferOperator &J = remesh.transfer;
-    Field<double>           W(remesh.mesh);
-    W.V         = J.apply(state.W.V);
-    W.P         = J.apply(state.W.P);
+    const TransferOperator   &J = remesh.transfer;
+    NodalVectors<double>      V(state.W.V.begin(), state.W.V.begin() + state.X.size());
+    const std::vector<double> P = J.apply(state.W.P);
+    V                           = J.apply(V);
     auto strain = transfer_cells(state.leg->scene.mesh, state.X, J, remesh.mesh, state.strain);
     state.strains_before.push_back(std::exchange(state.strain, std::move(strain)));
     state.X   = J.positions(state.X);
-    state.W   = std::move(W);
     state.leg = std::make_shared<Leg>(remesh.mesh, model_, timings_);
+    state.W   = interpolated(state.leg->scene.spaces, std::move(V), P);
     state.remeshed.push_back(state.increments);
   }
 
@@ -96,8 +96,12 @@ namespace retroforge
   {
     const NodalVectors<double> X_before = std::exchange(state.X, solved.X);
     for (const auto &stage : solved.stages)
-      state.strain = accumulate_strain(
-        state.leg->scene.mesh, stage->X, stage->W, stage->weight * solved.start->dt, state.strain);
+      state.strain = accumulate_strain(state.leg->scene.mesh,
+                                       state.leg->scene.spaces,
+                                       stage->X,
+                                       stage->W,
+                                       stage->weight * solved.start->dt,
+                                       state.strain);
     state.W    = solved.last().W;
     state.slip = limits_.slip(process, record, X_before, state.X) / record.step;
     state.stroke += record.step;
@@ -233,7 +237,7 @@ namespace retroforge
       record.newton = record.krylov = record.linear_solves = 0;
       if (record.remesh)
         change_mesh(*record.remesh, state);
-      Guess guess{Field<double>(state.leg->scene.mesh)};
+      Guess guess{Field<double>(state.leg->scene.spaces)};
       guess.W.V                    = record.solves[0].V;
       guess.W.P                    = record.solves[0].P;
       const SolvedIncrement solved = state.leg->increment.forward(process, state.X, true, guess, record);

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/element/strain_history.h>
+#include <retroforge/discretization/strain_history.h>
 #include <retroforge/time/increment.h>
 
 namespace retroforge
@@ -25,7 +25,8 @@ namespace retroforge
     void sum_over_ranks(Field<double> &field, MPI_Comm comm)
     {
       sum_over_ranks(field.V, comm);
-      sum_over_ranks(field.beta, comm);
+      if (!field.beta.empty())
+        sum_over_ranks(field.beta, comm);
       MPI_Allreduce(MPI_IN_PLACE, field.P.data(), field.P.size(), MPI_DOUBLE, MPI_SUM, comm);
     }
 
@@ -68,8 +69,9 @@ namespace retroforge
     {
       Field<Dual> W;
       for (std::size_t k = 0; k < value.V.size(); ++k)
-      {
         W.V.push_back(make_dual(value.V[k], dot.V[k]));
+      for (std::size_t k = 0; k < value.P.size(); ++k)
+      {
         W.P.push_back(Dual(value.P[k]));
         W.P.back().fastAccessDx(0) = dot.P[k];
       }
@@ -104,7 +106,7 @@ namespace retroforge
       , active(solve.active)
       , weight(weight)
       , stage(scene, start.physics, start.contact, X)
-      , W(scene.mesh)
+      , W(scene.spaces)
   {
     W.V = solve.V;
     W.P = solve.P;
@@ -333,7 +335,7 @@ namespace retroforge
         IncrementBar        &bar     = bars[j];
         Costate             &costate = costates[j];
         NodalVectors<double> position_bar(X.size());
-        Field<double>        rhs(scene_.mesh);
+        Field<double>        rhs(scene_.spaces);
         StageBar             stage_bar{rhs, position_bar, bar.contact, bar.physics, model_.shape_derivatives};
         // The velocity leads to X' = X + dt sum b_s V_s and to the Y_r = X + dt sum a_rs V_s that follow.
         std::vector<std::pair<double, const NodalVectors<double> *>> led_to;
@@ -351,6 +353,7 @@ namespace retroforge
           if (!costate.strain.empty())
             bar.physics.dt +=
               scheme.b[s] * reverse_accumulate_strain(scene_.mesh,
+                                                      scene_.spaces,
                                                       at->X,
                                                       at->W,
                                                       scheme.b[s] * start.dt,
@@ -362,7 +365,7 @@ namespace retroforge
         for (const auto &[weight, there] : led_to)
           for (std::size_t k = 0; k < X.size(); ++k)
             rhs.V[k] += weight * start.dt * (*there)[k];
-        Field<double> minus_rhs(scene_.mesh), lambda;
+        Field<double> minus_rhs(scene_.spaces), lambda;
         minus_rhs.add(-1., rhs);
         auto &guesses = earlier_lambdas_[s][j];
         system_.solve(minus_rhs, model_.adjoint_tolerance, lambda, guesses, Transposition::transposed);
@@ -392,14 +395,13 @@ namespace retroforge
 
   Field<Dual> Increment::tangent_field(const Stage<Dual> &stage, const SolvedStage &at)
   {
-    const Field<Dual> still = make_dual(at.W, Field<double>(scene_.mesh));
+    const Field<Dual> still = make_dual(at.W, Field<double>(scene_.spaces));
     const Field<Dual> R     = stage.residual(still, at.active);
-    Field<double>     minus_R_dot(scene_.mesh), W_dot;
+    Field<double>     minus_R_dot(scene_.spaces), W_dot;
     for (std::size_t k = 0; k < R.V.size(); ++k)
-    {
       minus_R_dot.V[k] = -dot_of(R.V[k]);
+    for (std::size_t k = 0; k < R.P.size(); ++k)
       minus_R_dot.P[k] = -R.P[k].dx(0);
-    }
     for (std::size_t c = 0; c < R.beta.size(); ++c)
       minus_R_dot.beta[c] = -dot_of(R.beta[c]);
     system_.assemble(at.stage, at.W, at.active);

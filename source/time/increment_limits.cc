@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/discretization/element_pairs.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/self_crossing.h>
 #include <retroforge/time/increment_limits.h>

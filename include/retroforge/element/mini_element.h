@@ -47,6 +47,19 @@ namespace retroforge
   /// Equivalent strain rates e = sqrt(2/3 eps:eps) [1/s] on the four sub-tetrahedra.
   Four<double> cell_strain_rates(const CellGeometry<double> &geometry, const CellValues<double> &w);
 
+  /// ebar_T = 1/4 sum_a e_a [1/s]. Not smooth where an eps_a vanishes: the derivative of that e_a, where one
+  /// is asked for, is then zero.
+  template <typename Number>
+  Number cell_strain_rate(const CellGeometry<Number> &geometry, const CellValues<Number> &w);
+
+  /// Adds the derivatives of weight * cell_strain_rate in the unknowns and in the positions of the nodes to
+  /// w_bar and X_bar.
+  void reverse_cell_strain_rate(const CellGeometry<double> &geometry,
+                                const CellValues<double>   &w,
+                                double                      weight,
+                                CellValues<double>         &w_bar,
+                                Four<Vec3>                 &X_bar);
+
   /// Derivative of lambda·cell_residual in X and the law at fixed unknowns: one closed-form sweep, no matrix.
   CellSensitivity reverse_cell_residual(const CellGeometry<double> &geometry,
                                         const CellValues<double>   &w,

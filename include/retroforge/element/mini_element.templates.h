@@ -91,4 +91,10 @@ namespace retroforge
   {
     return 0.25 * geometry.volume * dissipation_sum(SubStrainRates<Number>(geometry, w.V, w.beta).eps, law);
   }
+
+  template <typename Number>
+  Number cell_strain_rate(const CellGeometry<Number> &geometry, const CellValues<Number> &w)
+  {
+    return mean_equivalent_rate(SubStrainRates<Number>(geometry, w.V, w.beta).eps);
+  }
 } // namespace retroforge

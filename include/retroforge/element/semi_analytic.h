@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/element/mini_element.h>
+#include <retroforge/element/taylor_hood.h>
 
 namespace retroforge
 {
@@ -22,15 +23,17 @@ namespace retroforge
   };
 
   /// Derivative of lambda·cell_residual in X by differences, of the method that `how` says (not exact).
+  template <typename Values>
   Four<Vec3> difference_cell_residual(const Four<Vec3>          &X,
-                                      const CellValues<double>  &w,
-                                      const CellValues<double>  &lambda,
+                                      const Values              &w,
+                                      const Values              &lambda,
                                       const MaterialLaw<double> &law,
                                       const ShapeDerivatives    &how);
 
   /// Derivative of weight * cell_dissipation in X, likewise.
+  template <typename Values>
   Four<Vec3> difference_cell_dissipation(const Four<Vec3>          &X,
-                                         const CellValues<double>  &w,
+                                         const Values              &w,
                                          const MaterialLaw<double> &law,
                                          double                     weight,
                                          const ShapeDerivatives    &how);

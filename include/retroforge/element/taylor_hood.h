@@ -56,15 +56,15 @@ namespace retroforge
   /// 1/4 sum_q e_q [1/s]. Not smooth where an eps_q vanishes: the derivative of that e_q, where one is asked
   /// for, is then zero.
   template <typename Number>
-  Number cell_strain_rate(const CellGeometry<Number> &geometry, const VelocityNodes<Vector3<Number>> &V);
+  Number cell_strain_rate(const CellGeometry<Number> &geometry, const TaylorHoodValues<Number> &w);
 
-  /// Adds the derivatives of weight * cell_strain_rate in V and in the positions of the corners to V_bar and
-  /// X_bar.
-  void reverse_cell_strain_rate(const CellGeometry<double> &geometry,
-                                const VelocityNodes<Vec3>  &V,
-                                double                      weight,
-                                VelocityNodes<Vec3>        &V_bar,
-                                Four<Vec3>                 &X_bar);
+  /// Adds the derivatives of weight * cell_strain_rate in the unknowns and in the positions of the corners to
+  /// w_bar and X_bar.
+  void reverse_cell_strain_rate(const CellGeometry<double>     &geometry,
+                                const TaylorHoodValues<double> &w,
+                                double                          weight,
+                                TaylorHoodValues<double>       &w_bar,
+                                Four<Vec3>                     &X_bar);
 
   /// Mean over the four points of the stress s, without the trace that is left where the discrete flow is not
   /// quite incompressible [MPa].

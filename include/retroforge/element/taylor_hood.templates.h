@@ -128,8 +128,8 @@ namespace retroforge
   }
 
   template <typename Number>
-  Number cell_strain_rate(const CellGeometry<Number> &geometry, const VelocityNodes<Vector3<Number>> &V)
+  Number cell_strain_rate(const CellGeometry<Number> &geometry, const TaylorHoodValues<Number> &w)
   {
-    return mean_equivalent_rate(TaylorHoodRates<Number>(geometry, V).eps);
+    return mean_equivalent_rate(TaylorHoodRates<Number>(geometry, w.V).eps);
   }
 } // namespace retroforge

@@ -24,8 +24,7 @@ namespace retroforge
   class NodePattern
   {
   public:
-    /// @param neighbours  the column nodes of each node of the rows' space, in any order; only those of
-    /// owned nodes are read
+    /// @param neighbours  the column nodes of each owned row node, in any order
     NodePattern(const NodeRange &rows, const NodeRange &columns, const Rows<unsigned int> &neighbours);
 
     const NodeRange &rows() const { return rows_; }

@@ -28,6 +28,12 @@ namespace retroforge
     void gather(NodalVectors<double> &x) const { gather_nodes(x.data()->begin_raw(), 3); }
     void gather(std::vector<double> &x) const { gather_nodes(x.data(), 1); }
 
+    /// The same of any array in which rank r's entries, of `width` doubles, are begin[r] … begin[r + 1] - 1.
+    void gather_ranges(double *values, unsigned int width, const std::vector<unsigned int> &begin) const;
+
+    /// First node of each rank, and the end.
+    const std::vector<unsigned int> &node_ranges() const { return node_ranges_; }
+
     /// Sum over ranks of one number per rank.
     double sum(double x) const;
 
@@ -37,8 +43,6 @@ namespace retroforge
     MPI_Comm               comm;
 
   private:
-    void gather_ranges(double *values, unsigned int width, const std::vector<unsigned int> &begin) const;
-
     std::vector<unsigned int> node_ranges_, cell_ranges_; ///< begin of each rank, and the end
   };
 } // namespace retroforge

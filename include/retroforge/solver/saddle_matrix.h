@@ -2,8 +2,11 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/element/mini_element.h>
 #include <retroforge/linear_algebra/node_matrix.h>
 #include <retroforge/solver/node_frames.h>
+
+#include <cstdint>
 
 namespace retroforge
 {
@@ -54,10 +57,15 @@ namespace retroforge
     std::pair<double, double> residual_norm(const Field<double> &r) const;
 
   private:
+    /// Where a column node stands in the row of another.
+    using Place = std::uint16_t;
+
+    void make_patterns();
     void make_positions();
     /// Sums over cells; sets pressure_scale_.
     void add_cells(const Stage<double> &stage, const Field<double> &W, Linearisation linearisation);
-    void add_cell(CellIndex c, unsigned int visited, const TangentPack &tangent, unsigned int lane);
+    template <typename Tangents>
+    void add_cell(unsigned int visited, const Tangents &tangents, unsigned int lane);
     /// @return what it adds to the diagonal of A's local rows
     std::vector<double>
     add_contact(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
@@ -66,17 +74,22 @@ namespace retroforge
     void    scale_and_fix(const std::vector<double> &viscous_diagonal);
     /// Penalised rows and translations.
     void describe_rows();
+    /// A right-hand side whose bubbles are eliminated; right on owned nodes.
+    Field<double> condensed(const Field<double> &rhs) const;
 
     const Scene                           &scene_;
-    NodeRange                              nodes_;
+    const VelocityOwnership               &velocities_;
+    NodeRange                              pressures_;
     SaddleSystem                           system_;
-    std::vector<NodeFrame>                 frames_;
-    std::vector<double>                    scale_; ///< of each velocity component in its frame
+    std::vector<NodeFrame>                 frames_; ///< of each velocity node
+    std::vector<double>                    scale_;  ///< of each velocity component in its frame
     double                                 pressure_scale_ = 1.;
-    std::vector<BubbleElimination<double>> eliminations_;  ///< of the visited cells
+    std::vector<BubbleElimination<double>> eliminations_;  ///< of the visited cells; empty without bubbles
     std::vector<CellIndex>                 visited_index_; ///< cell -> position in visited_cells
     std::vector<unsigned int>              diagonal_;      ///< where an owned node stands in its own row
-    /// Of each visited cell: where node b stands in the row of node a (invalid_index when a is not owned).
-    std::vector<std::array<std::array<unsigned int, 4>, 4>> positions_;
+    /// Of each visited cell, for n velocity nodes: n x n places in rows of A, n x 4 of B, 4 x n of D, 4 x 4
+    /// of C; zero in rows of other ranks.
+    std::vector<Place> places_;
+    unsigned int       places_per_cell_ = 0;
   };
 } // namespace retroforge

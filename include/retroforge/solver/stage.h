@@ -3,24 +3,33 @@
 #pragma once
 
 #include <retroforge/contact/contact.h>
-#include <retroforge/element/field.h>
+#include <retroforge/discretization/field.h>
+#include <retroforge/discretization/velocity_ownership.h>
 #include <retroforge/element/semi_analytic.h>
 #include <retroforge/mesh/partition.h>
 
 namespace retroforge
 {
-  /// What does not move: the mesh, who works on what of it, and the shapes of the dies.
+  /// What does not move: the mesh, the spaces on it, who works on what of it, and the shapes of the dies.
   struct Scene
   {
-    TetMesh          mesh;
-    Topology         topology;
-    Partition        partition;
-    std::vector<Die> dies;
+    TetMesh           mesh;
+    Topology          topology;
+    Spaces            spaces;
+    Partition         partition;
+    VelocityOwnership velocities;
+    std::vector<Die>  dies;
 
-    Scene(TetMesh made_mesh, std::vector<Die> dies, MPI_Comm comm)
-        : mesh(std::move(made_mesh)), topology(mesh), partition(mesh, comm), dies(std::move(dies))
+    Scene(TetMesh made_mesh, const ElementPair pair, std::vector<Die> dies, MPI_Comm comm)
+        : mesh(std::move(made_mesh))
+        , topology(mesh)
+        , spaces(mesh, topology, pair)
+        , partition(mesh, comm)
+        , velocities(spaces, partition)
+        , dies(std::move(dies))
     {
     }
+    Scene(const Scene &) = delete; // its members refer to each other
 
     /// With dies and nodes there. What is passed must live as long.
     template <typename Number>

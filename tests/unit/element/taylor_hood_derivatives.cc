@@ -154,13 +154,13 @@ void check_strain_rate(const TaylorHoodCase &c, Errors &errors)
   const double weight = 0.4;
   auto         w_bar  = c.lambda;
   Four<Vec3>   X_bar  = {};
-  reverse_cell_strain_rate(c.geometry(), c.w.V, weight, w_bar.V, X_bar);
-  const Inputs inputs = weight * cell_strain_rate(c.independent_geometry(), constant_values<Inputs>(c.w).V);
+  reverse_cell_strain_rate(c.geometry(), c.w, weight, w_bar, X_bar);
+  const Inputs inputs = weight * cell_strain_rate(c.independent_geometry(), constant_values<Inputs>(c.w));
   std::vector<double> in_X = gradient(inputs);
   in_X.resize(12);
   errors.compare("strain rate in X", flatten(X_bar), in_X);
   std::vector<double> expected =
-    gradient(Number(weight * cell_strain_rate(constant_geometry<Number>(c.X), independent(c.w).V)));
+    gradient(Number(weight * cell_strain_rate(constant_geometry<Number>(c.X), independent(c.w))));
   const std::vector<double> before = flatten(c.lambda);
   for (unsigned int i = 0; i < n; ++i)
     expected[i] += before[i];

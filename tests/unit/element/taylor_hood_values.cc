@@ -77,7 +77,7 @@ void linear_by_hand(Random &random, const double m, Errors &errors)
   const auto   e      = cell_strain_rates(T, upset);
   const auto   stress = cell_deviatoric_stress(T, upset, law);
   errors.compare("strain rates of upsetting", {e.begin(), e.end()}, {s, s, s, s});
-  errors.compare("mean strain rate", cell_strain_rate(T, upset.V), s);
+  errors.compare("mean strain rate", cell_strain_rate(T, upset), s);
   errors.compare("dissipation", cell_dissipation(T, upset, law), T.volume * factor * 1.5 * s * s);
   errors.compare(
     "stress", {stress.begin(), stress.end()}, {factor * s / 2, factor * s / 2, -factor * s, 0, 0, 0});

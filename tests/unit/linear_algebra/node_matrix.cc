@@ -30,10 +30,10 @@ namespace
   }
 
   /// @param coarsening  how many row nodes there are to a column node
-  Rows<unsigned int> neighbours(const unsigned int coarsening)
+  Rows<unsigned int> neighbours(const NodeRange &range, const unsigned int coarsening)
   {
     Rows<unsigned int> rows;
-    for (unsigned int a = 0; a < n; ++a)
+    for (unsigned int a = range.begin; a < range.end; ++a)
     {
       std::vector<unsigned int> met;
       for (const unsigned int b : {a, a + 1, a + n - 1, a + n / 2})
@@ -60,12 +60,12 @@ namespace
   void check(const unsigned int coarsening, const unsigned int rows, const unsigned int columns)
   {
     const NodeRange          row_nodes = range_of(n), column_nodes = range_of(n / coarsening);
-    const Rows<unsigned int> meets   = neighbours(coarsening);
+    const Rows<unsigned int> meets   = neighbours(row_nodes, coarsening);
     const auto               pattern = std::make_shared<const NodePattern>(row_nodes, column_nodes, meets);
     la::SparseMatrix         matrix;
     const NodeMatrix         view(matrix, pattern, rows, columns, MPI_COMM_WORLD);
     for (unsigned int a = row_nodes.begin; a < row_nodes.end; ++a)
-      for (const unsigned int b : meets[a])
+      for (const unsigned int b : meets[a - row_nodes.begin])
         for (unsigned int i = 0; i < rows; ++i)
           for (unsigned int j = 0; j < columns; ++j)
             view.entry(a - row_nodes.begin, i, pattern->position(a - row_nodes.begin, b))[j] =
@@ -74,8 +74,8 @@ namespace
     for (unsigned int a = row_nodes.begin; a < row_nodes.end; ++a)
       for (unsigned int i = 0; i < rows; ++i)
       {
-        found = found && matrix.row_length(rows * a + i) == columns * meets[a].size();
-        for (const unsigned int b : meets[a])
+        found = found && matrix.row_length(rows * a + i) == columns * meets[a - row_nodes.begin].size();
+        for (const unsigned int b : meets[a - row_nodes.begin])
           for (unsigned int j = 0; j < columns; ++j)
             found = found && matrix.el(rows * a + i, columns * b + j) == value(rows * a + i, columns * b + j);
       }
@@ -92,7 +92,7 @@ namespace
     {
       const unsigned int row = rows * row_nodes.begin + local;
       double             sum = 0.;
-      for (const unsigned int b : meets[row / rows])
+      for (const unsigned int b : meets[local / rows])
         for (unsigned int j = 0; j < columns; ++j)
           sum += row_factors[local] * value(row, columns * b + j) * column_factors[columns * b + j];
       factors_found = factors_found && std::abs(sums[row] - sum) < 1e-12 * sum;
