@@ -102,7 +102,7 @@ namespace retroforge
       , mu(design.at(parameters.design.at))
       , process(design.process(mu))
       , X_0(design.positions(mu))
-      , model{ElementPair::mini,
+      , model{parameters.discretization.pair(),
               make_dies(parameters, process),
               parameters.step_model(),
               parameters.newton,

@@ -212,6 +212,7 @@ namespace retroforge
       die.add_parameters(prm);
     material.add_parameters(prm);
     press.add_parameters(prm);
+    discretization.add_parameters(prm);
     contact.add_parameters(prm);
     newton.add_parameters(prm);
     linear_solver.add_parameters(prm);
@@ -405,6 +406,11 @@ end
     for (unsigned int d = 0; d < dies.size(); ++d)
     {
       dies[d].check();
+      if (discretization.pair() == ElementPair::taylor_hood && dies[d].shape.name != "plane")
+        throw Error("Discretization/element",
+                    "is P2-P1, and die '" + dies[d].name + "' is no plane",
+                    "straight-sided elements with quadratic velocities are tried between planes only",
+                    "leave it at mini");
       if (dies[d].friction > 0. && !material.law.is_linear() && contact.slip_fraction < least_slip)
         throw Error("Contact/slip regularisation",
                     "is " + as_text(contact.slip_fraction) +

@@ -5,6 +5,7 @@
 #include <retroforge/adjoint/check.h>
 #include <retroforge/core/parameter_input.h>
 #include <retroforge/design/design.h>
+#include <retroforge/discretization/discretization_parameters.h>
 #include <retroforge/material/material_parameters.h>
 #include <retroforge/objective/objective_parameters.h>
 #include <retroforge/scan/scan_parameters.h>
@@ -85,6 +86,7 @@ namespace retroforge
     std::vector<DieParameters> dies;
     MaterialParameters         material;
     PressParameters            press;
+    DiscretizationParameters   discretization;
     ContactParameters          contact;
     NewtonParameters           newton;
     LinearSolverParameters     linear_solver;

@@ -99,7 +99,7 @@ namespace retroforge
       for (const auto &[a, b] : topology.surface_edges)
       {
         const ContactPoint point   = ContactPoint::middle(a, b);
-        const Vec3         x       = point.mean(X);
+        const Vec3         x       = point.position(X);
         const DieFeature   feature = die.closest(x, state.displacement, reach);
         if (!feature.found())
           continue;
@@ -126,7 +126,7 @@ namespace retroforge
                                               const double               reach,
                                               const bool                 with_edges)
   {
-    const auto &[mesh, topology, dies, states, X] = view;
+    const auto &[mesh, topology, dies, states, X, edges] = view;
     std::vector<ContactPair> pairs;
     for (unsigned int d = 0; d < dies.size(); ++d)
     {
@@ -141,7 +141,18 @@ namespace retroforge
           if (delta[k] <= reach)
             pairs.push_back({ContactPoint::node(k), d, delta[k] <= ramp.width, feature});
         }
-      if (with_edges && dies[d].surface())
+      if (edges)
+        for (const auto &[a, b] : topology.surface_edges)
+        {
+          const ContactPoint point   = ContactPoint::middle(a, b, mesh.n_nodes() + edges->find(a, b));
+          const Vec3         x       = point.position(X);
+          const DieFeature   feature = dies[d].closest(x, states[d].displacement, reach);
+          if (!feature.found())
+            continue;
+          if (const double gap = dies[d].project(x, states[d], feature).delta; gap <= reach)
+            pairs.push_back({point, d, gap <= ramp.width, feature});
+        }
+      else if (with_edges && dies[d].surface())
         add_edges(topology, dies[d], d, states[d], X, delta, ramp, reach, pairs);
     }
     return pairs;
@@ -160,7 +171,7 @@ namespace retroforge
           of_node[{pairs[p].die, pairs[p].point.nodes[0]}] = p;
       std::vector<std::array<unsigned int, 2>> touched;
       for (unsigned int p = 0; p < pairs.size(); ++p)
-        if (const ContactPoint &point = pairs[p].point; !point.is_node())
+        if (const ContactPoint &point = pairs[p].point; !point.has_own_velocity())
         {
           const std::array<NodeIndex, 2> ends{{point.nodes[0], point.nodes[1]}};
           const auto                    &edges = topology.surface_edges;
@@ -199,50 +210,70 @@ namespace retroforge
     }
   } // namespace
 
+  namespace
+  {
+    /// The triangles of velocity nodes that a face is made of.
+    template <typename Use>
+    void for_each_triangle(const TetMesh &mesh, const MeshEdges *edges, const unsigned int f, const Use &use)
+    {
+      const auto &k = mesh.faces[f].nodes;
+      if (!edges)
+        return use(k);
+      std::array<NodeIndex, 3> m; // between corner i and the next
+      for (unsigned int i = 0; i < 3; ++i)
+        m[i] = mesh.n_nodes() + edges->of_faces[f][i];
+      use({{k[0], m[0], m[2]}});
+      use({{k[1], m[1], m[0]}});
+      use({{k[2], m[2], m[1]}});
+      use({{m[0], m[1], m[2]}});
+    }
+  } // namespace
+
   template <typename Number>
   ContactSet<Number> make_contact_set(const ContactView<Number>      &view,
                                       const std::vector<ContactPair> &pairs,
                                       const ContactApproach<Number>  &approach)
   {
     ContactSet<Number> contact;
-    const auto &[mesh, topology, dies, states, X] = view;
-    contact.edge_stiffness                        = approach.edge_stiffness;
-    contact.pairs                                 = pairs;
-    contact.tau                                   = approach.tau;
-    contact.approach                              = approach.law;
-    std::map<std::pair<unsigned int, NodeIndex>, unsigned int> index; // (die, node) -> pair
+    const auto &[mesh, topology, dies, states, X, edges] = view;
+    contact.edge_stiffness                               = approach.edge_stiffness;
+    contact.pairs                                        = pairs;
+    contact.tau                                          = approach.tau;
+    contact.approach                                     = approach.law;
+    contact.quadratic                                    = edges != nullptr;
+    std::map<std::pair<unsigned int, NodeIndex>, unsigned int> index; // (die, velocity node) -> pair
     for (const ContactPair &pair : pairs)
     {
-      if (pair.point.is_node())
-        index[{pair.die, pair.point.nodes[0]}] = contact.projections.size();
+      if (pair.point.has_own_velocity())
+        index[{pair.die, pair.point.velocity_node}] = contact.projections.size();
       contact.projections.push_back(
-        dies[pair.die].project(pair.point.mean(X), states[pair.die], pair.feature));
+        dies[pair.die].project(pair.point.position(X), states[pair.die], pair.feature));
       contact.ramps.push_back(approach.ramp(contact.projections.back().delta, pair.touching));
     }
     contact.touched_by_edges = touched_by_edges(topology, pairs);
     for (const auto &[node, edge] : contact.touched_by_edges)
       contact.ramps[node] += (1. - contact.ramps[node]) * contact.ramps[edge];
-    // A face is visited from its first pair of each die.
+    // A triangle is visited from its first pair of each die.
     for (unsigned int p = 0; p < pairs.size(); ++p)
-      if (pairs[p].point.is_node() && value_of(states[pairs[p].die].friction) != 0. &&
-          value_of(contact.ramps[p]) > 0.)
-        for (const unsigned int f : topology.surface_faces[pairs[p].point.nodes[0]])
-        {
-          typename ContactSet<Number>::Face face{f, {}, Number(1.)};
-          bool                              whole = true;
-          for (unsigned int c = 0; c < 3 && whole; ++c)
-          {
-            const auto found = index.find({pairs[p].die, mesh.faces[f].nodes[c]});
-            whole            = found != index.end() && found->second >= p;
-            if (!whole)
-              break;
-            face.points[c] = found->second;
-            face.weight *= contact.ramps[found->second];
-            whole = value_of(contact.ramps[found->second]) > 0.;
-          }
-          if (whole)
+      if (const ContactPoint &point = pairs[p].point; point.has_own_velocity() &&
+                                                      value_of(states[pairs[p].die].friction) != 0. &&
+                                                      value_of(contact.ramps[p]) > 0.)
+        point.for_each_face(mesh, topology, [&](const unsigned int f) {
+          for_each_triangle(mesh, edges, f, [&](const std::array<NodeIndex, 3> &corners) {
+            if (std::find(corners.begin(), corners.end(), point.velocity_node) == corners.end())
+              return;
+            typename ContactSet<Number>::Face face{f, {}, Number(1.)};
+            for (unsigned int c = 0; c < 3; ++c)
+            {
+              const auto found = index.find({pairs[p].die, corners[c]});
+              if (found == index.end() || found->second < p || !(value_of(contact.ramps[found->second]) > 0.))
+                return;
+              face.points[c] = found->second;
+              face.weight *= contact.ramps[found->second];
+            }
             contact.friction_faces.push_back(face);
-        }
+          });
+        });
     return contact;
   }
 
@@ -260,7 +291,7 @@ namespace retroforge
       const double delta_bar    = bar.delta[p] + ramps_bar[p] * ramp.derivative(contact.projections[p].delta);
       DieState<double> &die_bar = dies_bar[pair.die];
       Vec3              at_point;
-      view.dies[pair.die].reverse_project(pair.point.mean(view.X),
+      view.dies[pair.die].reverse_project(pair.point.position(view.X),
                                           view.states[pair.die].displacement,
                                           pair.feature,
                                           delta_bar,
@@ -268,7 +299,7 @@ namespace retroforge
                                           at_point,
                                           die_bar.displacement,
                                           die_bar.vertices.empty() ? nullptr : &die_bar.vertices);
-      pair.point.add(at_point, X_bar);
+      pair.point.add_to_position(at_point, X_bar);
     }
   }
 
@@ -278,7 +309,17 @@ namespace retroforge
     template <typename Number>
     double part_of_face(const ContactSet<Number> &contact, const unsigned int p)
     {
-      return (contact.pairs[p].point.is_node() ? 1. : contact.edge_stiffness) / 3.;
+      const ContactPoint &point = contact.pairs[p].point;
+      if (contact.quadratic)
+        return point.is_node() ? 1. / 12. : 1. / 4.;
+      return (point.is_node() ? 1. : contact.edge_stiffness) / 3.;
+    }
+
+    /// And what of it each corner of a friction face has.
+    template <typename Number>
+    double corner_part(const ContactSet<Number> &contact)
+    {
+      return contact.quadratic ? 1. / 12. : 1. / 3.;
     }
   } // namespace
 
@@ -297,9 +338,9 @@ namespace retroforge
       });
     for (const auto &face : contact.friction_faces)
     {
-      const Number third = face.weight * face_area(mesh.faces[face.face], X) / 3.;
+      const Number part = corner_part(contact) * face.weight * face_area(mesh.faces[face.face], X);
       for (const unsigned int p : face.points)
-        areas.Sf[p] += third;
+        areas.Sf[p] += part;
     }
     return areas;
   }
@@ -319,10 +360,11 @@ namespace retroforge
         });
     for (const auto &face : contact.friction_faces)
     {
-      const double third_bar =
-        (areas_bar.Sf[face.points[0]] + areas_bar.Sf[face.points[1]] + areas_bar.Sf[face.points[2]]) / 3.;
-      reverse_face_area(mesh.faces[face.face], X, third_bar * face.weight, X_bar);
-      const double weight_bar = third_bar * face_area(mesh.faces[face.face], X);
+      const double part_bar =
+        (areas_bar.Sf[face.points[0]] + areas_bar.Sf[face.points[1]] + areas_bar.Sf[face.points[2]]) *
+        corner_part(contact);
+      reverse_face_area(mesh.faces[face.face], X, part_bar * face.weight, X_bar);
+      const double weight_bar = part_bar * face_area(mesh.faces[face.face], X);
       for (unsigned int c = 0; c < 3; ++c)
         bar.ramp[face.points[c]] +=
           weight_bar * contact.ramps[face.points[(c + 1) % 3]] * contact.ramps[face.points[(c + 2) % 3]];

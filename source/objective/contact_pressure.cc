@@ -14,7 +14,8 @@ namespace retroforge
     bool is_mine(const StageView<Number> &view, const unsigned int p, const unsigned int die)
     {
       const ContactPair &pair = view.stage.contact.pairs[p];
-      return pair.die == die && pair.point.is_node() && view.stage.scene.partition.owns(pair.point.nodes[0]);
+      return pair.die == die && pair.point.has_own_velocity() &&
+             view.stage.scene.partition.owns(pair.point.nodes[0]);
     }
 
     /// Pushing force of a point along the die's normal, zero where the die does not press.
@@ -31,10 +32,11 @@ namespace retroforge
     template <typename Number>
     std::vector<unsigned int> pairs_of_nodes(const StageView<Number> &view, const unsigned int die)
     {
-      std::vector<unsigned int> pairs(view.stage.scene.mesh.n_nodes(), none);
+      std::vector<unsigned int> pairs(view.stage.scene.spaces.n_velocity_nodes(), none);
       for (unsigned int p = 0; p < view.stage.contact.pairs.size(); ++p)
-        if (const ContactPair &pair = view.stage.contact.pairs[p]; pair.die == die && pair.point.is_node())
-          pairs[pair.point.nodes[0]] = p;
+        if (const ContactPair &pair = view.stage.contact.pairs[p];
+            pair.die == die && pair.point.has_own_velocity())
+          pairs[pair.point.velocity_node] = p;
       return pairs;
     }
 
@@ -50,9 +52,9 @@ namespace retroforge
         {
           const Number force =
             pushing_force(stage.contact_node(p, view.W, view.active), stage.physics.contact.rho);
-          for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)
-            if (const unsigned int q = of[pair.point.nodes[i]]; q != none)
-              pressure[q] += pair.point.weight() * force / stage.areas.S[q];
+          for (unsigned int i = 0; i < pair.point.n_velocity_nodes(); ++i)
+            if (const unsigned int q = of[pair.point.velocity_node_at(i)]; q != none)
+              pressure[q] += pair.point.velocity_weight() * force / stage.areas.S[q];
         }
       return pressure;
     }
@@ -123,9 +125,9 @@ namespace retroforge
       if (const ContactPair &pair = stage.contact.pairs[p]; pair.die == die_)
       {
         double of_point = 0.;
-        for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)
-          if (const unsigned int q = of[pair.point.nodes[i]]; q != none)
-            of_point += pair.point.weight() * force_bar[q];
+        for (unsigned int i = 0; i < pair.point.n_velocity_nodes(); ++i)
+          if (const unsigned int q = of[pair.point.velocity_node_at(i)]; q != none)
+            of_point += pair.point.velocity_weight() * force_bar[q];
         const ContactNode<double> node = stage.contact_node(p, view.W, view.active);
         const double              rho = stage.physics.contact.rho, force = pushing_force(node, rho);
         if (of_point == 0. || force == 0.)

@@ -80,7 +80,8 @@ namespace retroforge
     const CellFields cells =
       cell_fields(workpiece.mesh, workpiece.spaces, workpiece.position, workpiece.W, process_.law);
     std::vector<ScalarField> scalars = {{"pressure [MPa]", workpiece.W.P}};
-    std::vector<VectorField> vectors = {{"velocity [mm/s]", workpiece.W.V}};
+    std::vector<VectorField> vectors = {
+      {"velocity [mm/s]", {workpiece.W.V.begin(), workpiece.W.V.begin() + workpiece.mesh.n_nodes()}}};
     if (workpiece.displacement)
       vectors.push_back({"displacement [mm]", *workpiece.displacement});
     if (workpiece.contact)
@@ -129,12 +130,13 @@ namespace retroforge
   {
     if (!pvd_.steps().empty())
       return;
-    const std::string         file = "fields_" + six_digits(0) + ".vtu";
-    const Spaces              spaces(billet_, Topology(billet_), model_.element);
-    const Field<double>       at_rest(spaces);
-    const std::vector<double> zero(billet_.n_nodes(), 0.), strain(billet_.n_cells(), 0.);
-    const ContactFields       contact{zero, zero, at_rest.V};
-    write(file, {billet_, spaces, X_0_, X_0_, at_rest, strain, &at_rest.V, &contact});
+    const std::string          file = "fields_" + six_digits(0) + ".vtu";
+    const Spaces               spaces(billet_, Topology(billet_), model_.element);
+    const Field<double>        at_rest(spaces);
+    const std::vector<double>  zero(billet_.n_nodes(), 0.), strain(billet_.n_cells(), 0.);
+    const NodalVectors<double> still(billet_.n_nodes());
+    const ContactFields        contact{zero, zero, still};
+    write(file, {billet_, spaces, X_0_, X_0_, at_rest, strain, &still, &contact});
     add_step(0., file, six_digits(0), X_0_);
   }
 

@@ -16,7 +16,7 @@ namespace retroforge
 {
   namespace
   {
-    constexpr unsigned int format = 7;
+    constexpr unsigned int format = 8;
 
     static_assert(sizeof(Vec3) == 3 * sizeof(double),
                   "nodal vectors are read and written as arrays of numbers");
@@ -131,35 +131,53 @@ namespace retroforge
       return mesh;
     }
 
-    bool is_there(const ContactPoint &point, const unsigned int n_nodes)
+    /// Nodes of the mesh and of the velocity, of which there are more where it is quadratic.
+    struct NodeCounts
     {
-      return point.nodes[0] < n_nodes &&
-             (point.is_node() || (point.nodes[0] < point.nodes[1] && point.nodes[1] < n_nodes));
+      unsigned int mesh = 0, velocity = 0;
+
+      bool quadratic() const { return velocity > mesh; }
+    };
+
+    bool is_there(const ContactPoint &point, const NodeCounts &n)
+    {
+      if (!(point.nodes[0] < n.mesh))
+        return false;
+      if (point.is_node())
+        return point.velocity_node == point.nodes[0];
+      return point.nodes[0] < point.nodes[1] && point.nodes[1] < n.mesh &&
+             (n.quadratic() ? point.velocity_node >= n.mesh && point.velocity_node < n.velocity
+                            : !point.has_own_velocity());
     }
 
-    bool is_there(const ContactPair &pair, const unsigned int n_nodes, const RecordShape &shape)
+    bool is_there(const ContactPair &pair, const NodeCounts &n, const RecordShape &shape)
     {
-      return is_there(pair.point, n_nodes) && pair.die < shape.die_facets.size() &&
+      return is_there(pair.point, n) && pair.die < shape.die_facets.size() &&
              pair.feature.facet < shape.die_facets[pair.die] && pair.feature.kind < DieFeature::n_kinds;
     }
 
     /// A record with sizes that disagree is a mistake of the program, found before it reaches the disk.
-    unsigned int check_increment(const IncrementRecord &increment, const RecordShape &shape)
+    NodeCounts check_increment(const IncrementRecord &increment, const RecordShape &shape)
     {
-      const unsigned int n_nodes = increment.solves.empty() ? 0 : increment.solves[0].V.size();
-      AssertThrow(!increment.remesh || increment.remesh->mesh.n_nodes() == n_nodes,
+      NodeCounts n;
+      if (!increment.solves.empty())
+        n = {static_cast<unsigned int>(increment.solves[0].P.size()),
+             static_cast<unsigned int>(increment.solves[0].V.size())};
+      AssertThrow(!increment.remesh || increment.remesh->mesh.n_nodes() == n.mesh,
                   dealii::ExcMessage("a new mesh has not as many nodes as the solution on it"));
       for (const ContactPair &pair : increment.pairs)
-        AssertThrow(is_there(pair, n_nodes, shape),
+        AssertThrow(is_there(pair, n, shape),
                     dealii::ExcMessage("a contact pair refers to a node, die or feature that is not there"));
       for (const SolveRecord &solve : increment.solves)
       {
-        AssertThrow(solve.V.size() == n_nodes, dealii::ExcDimensionMismatch(solve.V.size(), n_nodes));
-        AssertThrow(solve.P.size() == n_nodes, dealii::ExcDimensionMismatch(solve.P.size(), n_nodes));
+        AssertThrow(solve.V.size() == n.velocity, dealii::ExcDimensionMismatch(solve.V.size(), n.velocity));
+        AssertThrow(solve.P.size() == n.mesh, dealii::ExcDimensionMismatch(solve.P.size(), n.mesh));
+        AssertThrow(solve.motion().size() == n.mesh,
+                    dealii::ExcDimensionMismatch(solve.motion().size(), n.mesh));
         AssertThrow(solve.active.size() == increment.pairs.size(),
                     dealii::ExcDimensionMismatch(solve.active.size(), increment.pairs.size()));
       }
-      return n_nodes;
+      return n;
     }
 
     void write_remesh(const hid_t parent, const RemeshRecord &remesh)
@@ -218,20 +236,25 @@ namespace retroforge
 
     void write_solves(const hid_t                     group,
                       const std::vector<SolveRecord> &solves,
-                      const hsize_t                   n_nodes,
+                      const NodeCounts               &n,
                       const hsize_t                   n_pairs)
     {
-      std::vector<double>        V, P;
+      std::vector<double>        V, P, vertices;
       std::vector<unsigned char> active;
       for (const SolveRecord &solve : solves)
       {
-        if (n_nodes > 0)
-          V.insert(V.end(), solve.V[0].begin_raw(), solve.V[0].begin_raw() + 3 * n_nodes);
+        if (n.velocity > 0)
+          V.insert(V.end(), solve.V[0].begin_raw(), solve.V[0].begin_raw() + 3 * n.velocity);
+        if (n.quadratic())
+          vertices.insert(
+            vertices.end(), solve.vertices[0].begin_raw(), solve.vertices[0].begin_raw() + 3 * n.mesh);
         P.insert(P.end(), solve.P.begin(), solve.P.end());
         active.insert(active.end(), solve.active.begin(), solve.active.end());
       }
-      hdf5::write_array(group, "V", {solves.size(), n_nodes, 3}, V.data());
-      hdf5::write_array(group, "P", {solves.size(), n_nodes}, P.data());
+      hdf5::write_array(group, "V", {solves.size(), n.velocity, 3}, V.data());
+      if (n.quadratic())
+        hdf5::write_array(group, "vertices", {solves.size(), n.mesh, 3}, vertices.data());
+      hdf5::write_array(group, "P", {solves.size(), n.mesh}, P.data());
       hdf5::write_array(group, "active", {solves.size(), n_pairs}, active.data());
     }
 
@@ -241,12 +264,13 @@ namespace retroforge
       std::vector<unsigned char> touching, kind;
       for (const ContactPair &pair : pairs)
       {
-        indices.insert(indices.end(), {pair.point.nodes[0], pair.point.nodes[1], pair.die});
+        indices.insert(indices.end(),
+                       {pair.point.nodes[0], pair.point.nodes[1], pair.point.velocity_node, pair.die});
         touching.push_back(pair.touching);
         facet.push_back(pair.feature.facet);
         kind.push_back(pair.feature.kind);
       }
-      hdf5::write_array(group, "pairs", {pairs.size(), 3}, indices.data());
+      hdf5::write_array(group, "pairs", {pairs.size(), 4}, indices.data());
       hdf5::write_array(group, "touching", {pairs.size()}, touching.data());
       hdf5::write_array(group, "facet", {pairs.size()}, facet.data());
       hdf5::write_array(group, "kind", {pairs.size()}, kind.data());
@@ -263,18 +287,18 @@ namespace retroforge
     }
 
     std::vector<ContactPair>
-    read_pairs(const hid_t group, const RecordShape &shape, const unsigned int n_nodes)
+    read_pairs(const hid_t group, const RecordShape &shape, const NodeCounts &n_nodes)
     {
-      const auto               indices  = hdf5::read_array<unsigned int>(group, "pairs", {hdf5::any, 3});
-      const auto               touching = read_flags(group, "touching", {indices.size() / 3});
+      const auto               indices  = hdf5::read_array<unsigned int>(group, "pairs", {hdf5::any, 4});
+      const auto               touching = read_flags(group, "touching", {indices.size() / 4});
       const hsize_t            n        = touching.size();
       const auto               facet    = hdf5::read_array<unsigned int>(group, "facet", {n});
       const auto               kind     = hdf5::read_array<unsigned char>(group, "kind", {n});
       std::vector<ContactPair> pairs;
       for (std::size_t i = 0; i < n; ++i)
       {
-        pairs.push_back({{{{indices[3 * i], indices[3 * i + 1]}}},
-                         indices[3 * i + 2],
+        pairs.push_back({{{{indices[4 * i], indices[4 * i + 1]}}, indices[4 * i + 2]},
+                         indices[4 * i + 3],
                          touching[i] != 0,
                          {facet[i], kind[i]}});
         if (is_there(pairs[i], n_nodes, shape))
@@ -292,23 +316,28 @@ namespace retroforge
           (pairs[i].point.is_node()
              ? "node " + std::to_string(first)
              : "the edge of nodes " + std::to_string(first) + " and " + std::to_string(second)) +
-          " and die " + std::to_string(pairs[i].die) + " where there are " + std::to_string(n_nodes) +
-          " nodes and " + std::to_string(shape.die_facets.size()) + " dies, counted from 0");
+          " and die " + std::to_string(pairs[i].die) + " where there are " + std::to_string(n_nodes.mesh) +
+          " nodes, " + std::to_string(n_nodes.velocity) + " of the velocity, and " +
+          std::to_string(shape.die_facets.size()) + " dies, counted from 0");
       }
       return pairs;
     }
 
-    std::vector<SolveRecord> read_solves(const hid_t group, const hsize_t n_nodes, const hsize_t n_pairs)
+    std::vector<SolveRecord> read_solves(const hid_t group, const NodeCounts &counts, const hsize_t n_pairs)
     {
-      const auto V      = read_numbers(group, "V", {hdf5::any, n_nodes, 3});
-      const auto n      = n_nodes == 0 ? 0 : V.size() / (3 * n_nodes);
-      const auto P      = read_numbers(group, "P", {n, n_nodes});
-      const auto active = read_flags(group, "active", {n, n_pairs});
+      const hsize_t n_velocity = counts.velocity, n_nodes = counts.mesh;
+      const auto    V        = read_numbers(group, "V", {hdf5::any, n_velocity, 3});
+      const auto    n        = n_velocity == 0 ? 0 : V.size() / (3 * n_velocity);
+      const auto    P        = read_numbers(group, "P", {n, n_nodes});
+      const auto    vertices = counts.quadratic() ? read_numbers(group, "vertices", {n, n_nodes, 3}) : P;
+      const auto    active   = read_flags(group, "active", {n, n_pairs});
 
       std::vector<SolveRecord> solves(n);
       for (std::size_t s = 0; s < n; ++s)
       {
-        solves[s].V = to_vectors(V.data() + s * 3 * n_nodes, n_nodes);
+        solves[s].V = to_vectors(V.data() + s * 3 * n_velocity, n_velocity);
+        if (counts.quadratic())
+          solves[s].vertices = to_vectors(vertices.data() + s * 3 * n_nodes, n_nodes);
         solves[s].P.assign(P.begin() + s * n_nodes, P.begin() + (s + 1) * n_nodes);
         solves[s].active.assign(active.begin() + s * n_pairs, active.begin() + (s + 1) * n_pairs);
       }
@@ -377,15 +406,16 @@ namespace retroforge
                        const IncrementRecord &increment,
                        const RecordShape     &shape)
   {
-    const unsigned int n_nodes = check_increment(increment, shape);
-    const hdf5::Handle group   = hdf5::create_group(file, increment_name(i));
+    const NodeCounts   n     = check_increment(increment, shape);
+    const hdf5::Handle group = hdf5::create_group(file, increment_name(i));
     hdf5::write_attribute(group, "run", &shape.run);
     hdf5::write_attribute(group, "stroke", &increment.stroke);
     hdf5::write_attribute(group, "step", &increment.step);
     hdf5::write_attribute(group, "cuts", &increment.cuts);
     hdf5::write_attribute(group, "deformation_energy", &increment.deformation_energy);
     hdf5::write_attribute(group, "friction_energy", &increment.friction_energy);
-    hdf5::write_attribute(group, "n_nodes", &n_nodes);
+    hdf5::write_attribute(group, "n_nodes", &n.mesh);
+    hdf5::write_attribute(group, "n_velocity_nodes", &n.velocity);
     hdf5::write_attribute(group, "newton", &increment.newton);
     hdf5::write_attribute(group, "krylov", &increment.krylov);
     hdf5::write_attribute(group, "linear_solves", &increment.linear_solves);
@@ -395,7 +425,7 @@ namespace retroforge
       hdf5::write_string(group, "parameters", increment.parameters);
     write_vectors(group, "forces", increment.forces);
     write_pairs(group, increment.pairs);
-    write_solves(group, increment.solves, n_nodes, increment.pairs.size());
+    write_solves(group, increment.solves, n, increment.pairs.size());
     if (increment.remesh)
       write_remesh(group, *increment.remesh);
   }
@@ -443,14 +473,17 @@ namespace retroforge
     increment.krylov             = hdf5::read_attribute<unsigned int>(group, "krylov");
     increment.linear_solves      = hdf5::read_attribute<unsigned int>(group, "linear_solves");
     increment.forces             = read_vectors(group, "forces", shape.die_facets.size());
-    const auto n_nodes           = hdf5::read_attribute<unsigned int>(group, "n_nodes");
-    increment.pairs              = read_pairs(group, shape, n_nodes);
-    increment.solves             = read_solves(group, n_nodes, increment.pairs.size());
+    const NodeCounts n{hdf5::read_attribute<unsigned int>(group, "n_nodes"),
+                       hdf5::read_attribute<unsigned int>(group, "n_velocity_nodes")};
+    if (n.velocity < n.mesh)
+      throw hdf5::Failure("there are fewer nodes of the velocity than of the mesh");
+    increment.pairs  = read_pairs(group, shape, n);
+    increment.solves = read_solves(group, n, increment.pairs.size());
     if (hdf5::has_link(group, "remesh"))
       increment.remesh = read_remesh(group, file_name + ", " + increment_name(i));
-    if (increment.remesh && increment.remesh->mesh.n_nodes() != n_nodes)
+    if (increment.remesh && increment.remesh->mesh.n_nodes() != n.mesh)
       throw hdf5::Failure("the new mesh has " + std::to_string(increment.remesh->mesh.n_nodes()) +
-                          " nodes, the solution on it " + std::to_string(n_nodes));
+                          " nodes, the solution on it " + std::to_string(n.mesh));
     return increment;
   }
 } // namespace retroforge

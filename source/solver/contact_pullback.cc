@@ -26,7 +26,7 @@ namespace retroforge
 
   void ContactPullback::add(const unsigned int p, const ContactNodeBar &node_bar)
   {
-    view_.stage.contact.pairs[p].point.add(node_bar.u, bar_.W.V);
+    view_.stage.contact.pairs[p].point.add_to_velocity(node_bar.u, bar_.W.V);
     add_at_fixed_velocity(p, node_bar);
   }
 

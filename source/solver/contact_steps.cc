@@ -24,10 +24,10 @@ namespace retroforge
     /// By a correction along the die's normal, as far as the symmetry planes let the node go that way.
     void put_onto_die(const Stage<double> &stage, const unsigned int p, Field<double> &W)
     {
-      const NodeIndex           k    = stage.contact.pairs[p].point.nodes[0];
+      const NodeIndex           k    = stage.contact.pairs[p].point.velocity_node;
       const ContactNode<double> node = stage.contact_node(p, W, {});
       Vec3                      free = node.n;
-      for (const Vec3 &fixed : stage.scene.topology.fixed_directions[k])
+      for (const Vec3 &fixed : stage.scene.spaces.fixed_directions(k))
         free -= (fixed * free) * fixed;
       constexpr double held = 1e-3; // of the normal: symmetry holds the node, not the die
       if (const double part = free * node.n; part > held)
@@ -51,7 +51,7 @@ namespace retroforge
       // Edges hold nodes, too: these are not the die's to hold.
       ActiveSet edges = stage.decide_active(W);
       for (unsigned int p = 0; p < pairs.size(); ++p)
-        if (pairs[p].point.is_node())
+        if (pairs[p].point.has_own_velocity())
           edges[p] = 0;
       Field<double> r = stage.residual(W, edges);
       stage.scene.velocities.gather(r.V);
@@ -59,9 +59,10 @@ namespace retroforge
       double              sum = 0.;
       unsigned int        n   = 0;
       for (unsigned int p = 0; p < pairs.size(); ++p)
-        if (const auto node = stage.contact_node(p, W, {}); pairs[p].point.is_node() && touches(node))
+        if (const auto node = stage.contact_node(p, W, {});
+            pairs[p].point.has_own_velocity() && touches(node))
         {
-          force[p] = -(r.V[pairs[p].point.nodes[0]] * node.n);
+          force[p] = -(r.V[pairs[p].point.velocity_node] * node.n);
           sum += std::max(0., force[p]);
           n += force[p] > 0.;
         }
@@ -78,7 +79,7 @@ namespace retroforge
     std::vector<char> held  = pressed_by_metal(stage, W);
     for (unsigned int sweep = 0; sweep < sweeps; ++sweep)
       for (unsigned int p = 0; p < pairs.size(); ++p)
-        if (pairs[p].point.is_node())
+        if (pairs[p].point.has_own_velocity())
         {
           held[p] = held[p] || stage.contact_node(p, W, {}).active;
           if (held[p])
@@ -91,7 +92,7 @@ namespace retroforge
     const auto &pairs = stage.contact.pairs;
     for (unsigned int sweep = 0; sweep < sweeps; ++sweep)
       for (unsigned int p = 0; p < pairs.size(); ++p)
-        if (pairs[p].point.is_node() && !active[p])
+        if (pairs[p].point.has_own_velocity() && !active[p])
           if (stage.contact_node(p, W, {}).active)
             put_onto_die(stage, p, W);
   }

@@ -36,9 +36,9 @@ namespace retroforge
     // Nodes come before edges, so that a node that touches has its own normal for an axis.
     for (const bool of_nodes : {true, false})
       for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-        if (const ContactPoint &point = contact.pairs[p].point; point.is_node() == of_nodes)
-          for (unsigned int i = 0; i < point.n_nodes(); ++i)
-            append(point.nodes[i], contact.projections[p].n);
+        if (const ContactPoint &point = contact.pairs[p].point; point.has_own_velocity() == of_nodes)
+          for (unsigned int i = 0; i < point.n_velocity_nodes(); ++i)
+            append(point.velocity_node_at(i), contact.projections[p].n);
     for (NodeIndex k = 0; k < frames.size(); ++k)
       if (n_axes[k] > 0)
       {

@@ -350,21 +350,23 @@ namespace retroforge
       const ContactPoint &point = stage.contact.pairs[p].point;
       if (!partition.sees(point.nodes))
         continue;
-      system_.penalties_couple |= !point.is_node();
+      system_.penalties_couple |= !point.has_own_velocity();
       const Tensor<2, 3> of_point =
-        point.weight() * point.weight() *
+        point.velocity_weight() * point.velocity_weight() *
         contact_tangent(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact);
-      for (unsigned int a = 0; a < point.n_nodes(); ++a)
+      for (unsigned int a = 0; a < point.n_velocity_nodes(); ++a)
       {
-        const NodeIndex k = point.nodes[a];
+        const NodeIndex k = point.velocity_node_at(a);
         if (!velocities_.owns(k))
           continue;
         const unsigned int local = velocities_.local(k);
-        for (unsigned int b = 0; b < point.n_nodes(); ++b)
+        for (unsigned int b = 0; b < point.n_velocity_nodes(); ++b)
         {
-          const Tensor<2, 3> tangent = frames_[k].axes * of_point * transpose(frames_[point.nodes[b]].axes);
+          const Tensor<2, 3> tangent =
+            frames_[k].axes * of_point * transpose(frames_[point.velocity_node_at(b)].axes);
           const unsigned int position =
-            a == b ? diagonal_[local] : pattern.position(local, velocities_.number(point.nodes[b]));
+            a == b ? diagonal_[local]
+                   : pattern.position(local, velocities_.number(point.velocity_node_at(b)));
           for (unsigned int i = 0; i < 3; ++i)
           {
             if (a == b)

@@ -21,7 +21,7 @@ namespace retroforge
     const ContactPair      &pair = contact.pairs[p];
     const DieState<Number> &die  = physics.dies[pair.die];
     ContactNode<Number>     node;
-    node.u        = pair.point.mean(W.V) - die.velocity;
+    node.u        = pair.point.velocity(W.V) - die.velocity;
     node.n        = contact.projections[p].n;
     node.delta    = contact.projections[p].delta;
     node.tau      = contact.tau;
@@ -57,8 +57,8 @@ namespace retroforge
     });
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (partition.sees(contact.pairs[p].point.nodes))
-        contact.pairs[p].point.add(contact_force(contact_node(p, W, active), physics.law, physics.contact),
-                                   r.V);
+        contact.pairs[p].point.add_to_velocity(
+          contact_force(contact_node(p, W, active), physics.law, physics.contact), r.V);
     return r;
   }
 
@@ -157,7 +157,7 @@ namespace retroforge
                                        reverse_contact_force(stage.contact_node(p, view.W, view.active),
                                                              stage.physics.law,
                                                              stage.physics.contact,
-                                                             point.mean(lambda.V)));
+                                                             point.velocity(lambda.V)));
     pullback.finish();
   }
 

@@ -3,6 +3,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <retroforge/discretization/strain_history.h>
+#include <retroforge/solver/stage_motion.h>
 #include <retroforge/time/increment.h>
 
 namespace retroforge
@@ -124,25 +125,33 @@ namespace retroforge
 
   bool Increment::escaped(const Stage<double> &stage, const Field<double> &W) const
   {
-    // A node that was not watched must not have run into a die.
+    // A point that was not watched must not have run into a die.
     std::vector<std::vector<bool>> watched(scene_.dies.size(), std::vector<bool>(W.V.size(), false));
     for (const ContactPair &pair : stage.contact.pairs)
-      if (pair.point.is_node())
-        watched[pair.die][pair.point.nodes[0]] = true;
+      if (pair.point.has_own_velocity())
+        watched[pair.die][pair.point.velocity_node] = true;
+    const auto runs_into = [&](const unsigned int d, const ContactPoint &point) {
+      if (watched[d][point.velocity_node])
+        return false;
+      const auto  &die = stage.physics.dies[d];
+      const Vec3   u = point.velocity(W.V) - die.velocity, x = point.position(stage.X);
+      const double reach   = approach_distance(u.norm(), stage.contact.tau, stage.contact.approach);
+      const auto   feature = scene_.dies[d].closest(x, die.displacement, reach);
+      if (!feature.found())
+        return false;
+      const auto projection = scene_.dies[d].project(x, die, feature);
+      return u * projection.n > approach_speed(projection.delta, stage.contact.tau, stage.contact.approach);
+    };
     for (unsigned int d = 0; d < scene_.dies.size(); ++d)
-      for (NodeIndex k = 0; k < W.V.size(); ++k)
-        if (!watched[d][k] && scene_.topology.is_on_surface(k))
-        {
-          const auto  &die     = stage.physics.dies[d];
-          const Vec3   u       = W.V[k] - die.velocity;
-          const double reach   = approach_distance(u.norm(), stage.contact.tau, stage.contact.approach);
-          const auto   feature = scene_.dies[d].closest(stage.X[k], die.displacement, reach);
-          if (!feature.found())
-            continue;
-          const auto projection = scene_.dies[d].project(stage.X[k], die, feature);
-          if (u * projection.n > approach_speed(projection.delta, stage.contact.tau, stage.contact.approach))
+    {
+      for (NodeIndex k = 0; k < stage.X.size(); ++k)
+        if (scene_.topology.is_on_surface(k) && runs_into(d, ContactPoint::node(k)))
+          return true;
+      if (const MeshEdges *edges = scene_.spaces.edges())
+        for (const auto &[a, b] : scene_.topology.surface_edges)
+          if (runs_into(d, ContactPoint::middle(a, b, stage.X.size() + edges->find(a, b))))
             return true;
-        }
+    }
     return false;
   }
 
@@ -181,6 +190,8 @@ namespace retroforge
       record.newton += statistics.iterations;
       record.krylov += statistics.krylov;
       solves.push_back({W.V, W.P, replay ? frozen : stage.decide_active(W)});
+      if (scene_.spaces.edges())
+        solves.back().vertices = motion(stage, W);
       lost = !replay && !all_found && escaped(stage, W);
     }
     record.linear_solves += system_.n_solves - solves_before;
@@ -346,7 +357,7 @@ namespace retroforge
             led_to.emplace_back(scheme.a[r][s], &bar.Y[r]);
         if (first)
           for (const auto &[weight, there] : led_to)
-            bar.physics.dt += weight * dot(*there, at->W.V);
+            bar.physics.dt += weight * dot(*there, record.solves[s].motion());
         if (scheme.b[s] != 0.)
         {
           source(j, view, stage_bar);
@@ -362,9 +373,11 @@ namespace retroforge
                                                       position_bar);
           sum_over_ranks(rhs, comm);
         }
+        NodalVectors<double> motion_bar(X.size());
         for (const auto &[weight, there] : led_to)
           for (std::size_t k = 0; k < X.size(); ++k)
-            rhs.V[k] += weight * start.dt * (*there)[k];
+            motion_bar[k] += weight * start.dt * (*there)[k];
+        reverse_motion(at->stage, at->W, motion_bar, stage_bar);
         Field<double> minus_rhs(scene_.spaces), lambda;
         minus_rhs.add(-1., rhs);
         auto &guesses = earlier_lambdas_[s][j];
@@ -409,6 +422,17 @@ namespace retroforge
     return make_dual(at.W, W_dot);
   }
 
+  namespace
+  {
+    /// What `advanced` asks of a stage.
+    struct Moved
+    {
+      NodalVectors<Dual> nodes;
+
+      const NodalVectors<Dual> &motion() const { return nodes; }
+    };
+  } // namespace
+
   NodalVectors<Dual> Increment::tangent(const Process<Dual>      &process,
                                         const NodalVectors<Dual> &X,
                                         const IncrementRecord    &record,
@@ -418,15 +442,16 @@ namespace retroforge
     const auto                 start_value = start_of(values_of(process), X_value, record);
     const IncrementStart<Dual> start(scene_, process, X, record);
     const Scheme              &scheme = scheme_of(record);
-    std::vector<Field<Dual>>   W;
+    std::vector<Moved>         stages;
     for (unsigned int s = 0; s < scheme.n_stages(); ++s)
     {
-      const NodalVectors<Dual> position = advanced(X, start.dt, scheme.a[s], W);
+      const NodalVectors<Dual> position = advanced(X, start.dt, scheme.a[s], stages);
       const Stage<Dual>        stage(scene_, start.physics, start.contact, position);
-      W.push_back(tangent_field(stage, *recorded_stage(*start_value, X_value, record, s)));
+      const Field<Dual>        W = tangent_field(stage, *recorded_stage(*start_value, X_value, record, s));
+      stages.push_back({retroforge::motion(stage, W)});
       if (scheme.b[s] != 0.)
-        watch({stage, W.back(), record.solves[s].active, scheme.b[s]}, start.dt);
+        watch({stage, W, record.solves[s].active, scheme.b[s]}, start.dt);
     }
-    return advanced(X, start.dt, scheme.b, W);
+    return advanced(X, start.dt, scheme.b, stages);
   }
 } // namespace retroforge

@@ -20,13 +20,16 @@
 ///   (40)-(49)
 /// S is a third of the areas of the surface faces at the point; S^f, of nodes only, a third of those whose
 /// three nodes touch the die, each face weighted by the product of its nodes' ramps w(delta). A node held off
-/// the die by an edge that touches counts as touching.
+/// the die by an edge that touches counts as touching. Where velocities are quadratic, nodes are those of the
+/// velocity, middles of edges among them, and faces the four equal triangles that the middles cut each into:
+/// of a face, a corner has a twelfth of the area, a middle a quarter.
 ///
-/// Nodes alone do not keep an edge out of a die whose convex part it spans: its ends touch, and its middle is
-/// in the die. So the middles of such edges are points, too. Their penalty is soft: nodes and edges together
-/// are more constraints than the surface has motions, and stiff ones would fight. Since gaps are found anew
-/// in each increment, what an edge gives way does not add up: a penalty at which it sinks with 1 % of the
-/// press speed leaves it 1 % of an increment's stroke in the die, times the pressure there over the mean one.
+/// Nodes of linear velocities alone do not keep an edge out of a die whose convex part it spans: its ends
+/// touch, and its middle is in the die. So the middles of such edges are points, too. Their penalty is soft:
+/// nodes and edges together are more constraints than the surface has motions, and stiff ones would fight.
+/// Since gaps are found anew in each increment, what an edge gives way does not add up: a penalty at which it
+/// sinks with 1 % of the press speed leaves it 1 % of an increment's stroke in the die, times the pressure
+/// there over the mean one.
 ///
 /// What belongs to the increment (delta, n, w, tau) is found once at X_i and kept for all its stages:
 /// ContactSet. What belongs to a stage (S, S^f) is computed from the stage's positions: ContactAreas.
@@ -88,7 +91,7 @@ namespace retroforge
     struct Face
     {
       unsigned int                face;   ///< index into TetMesh::faces
-      std::array<unsigned int, 3> points; ///< its nodes' entries in `pairs`
+      std::array<unsigned int, 3> points; ///< its corners' entries in `pairs`
       Number                      weight; ///< product of the three ramps
     };
 
@@ -99,10 +102,13 @@ namespace retroforge
     std::vector<Number> ramps;
     /// (pair of a node, pair of an edge at it) of this product's factors.
     std::vector<std::array<unsigned int, 2>> touched_by_edges;
-    std::vector<Face>                        friction_faces;
-    Number                                   tau = 1.; ///< approach time [s]
-    ApproachLaw                              approach;
-    double                                   edge_stiffness = 1.; ///< of edges' penalty over the nodes'
+    /// Faces or, where velocities are quadratic, the four equal triangles that the middles of its edges cut
+    /// each into.
+    std::vector<Face> friction_faces;
+    bool              quadratic = false;
+    Number            tau       = 1.; ///< approach time [s]
+    ApproachLaw       approach;
+    double            edge_stiffness = 1.; ///< of edges' penalty over the nodes'
   };
 
   /// S, of edges times their stiffness, and S^f [mm^2] of each pair.
@@ -131,6 +137,7 @@ namespace retroforge
     const std::vector<Die>              &dies;
     const std::vector<DieState<Number>> &states; ///< of each die
     const NodalVectors<Number>          &X;
+    const MeshEdges                     *edges = nullptr; ///< null where velocities are linear
   };
 
   /// How points approach the dies in an increment, and where friction sets in.
@@ -143,10 +150,10 @@ namespace retroforge
     double       edge_stiffness = 1.; ///< of edges' penalty over the nodes'
   };
 
-  /// The nodes within `reach` of a die, at positions X; then, where the die bulges into edges of the surface,
-  /// their middles, and their ends if farther away. Deterministic order: by die, then nodes, edges, ends,
-  /// each ascending.
-  /// @param with_edges  whether middles of edges count
+  /// The nodes within `reach` of a die, at positions X. Where velocities are quadratic, the middles of the
+  /// surface's edges within reach, too. Where they are linear and the die bulges into edges, their middles,
+  /// and their ends if farther away. Deterministic order: by die, then nodes, edges, ends, each ascending.
+  /// @param with_edges  whether middles count that have no velocity of their own
   std::vector<ContactPair> find_contact_pairs(const ContactView<double> &view,
                                               const FrictionRamp        &ramp,
                                               double                     reach,

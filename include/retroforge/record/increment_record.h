@@ -13,9 +13,13 @@ namespace retroforge
   /// A solved stage: bubbles follow from V and P, cell by cell.
   struct SolveRecord
   {
-    NodalVectors<double> V;
+    NodalVectors<double> V; ///< of velocity nodes
     std::vector<double>  P;
-    std::vector<char>    active; ///< h > 0 of each pair
+    std::vector<char>    active;        ///< h > 0 of each pair
+    NodalVectors<double> vertices = {}; ///< where they do not move with V: the velocities of the nodes
+
+    /// Of the nodes of the mesh.
+    const NodalVectors<double> &motion() const { return vertices.empty() ? V : vertices; }
   };
 
   /// A change of mesh between two increments.

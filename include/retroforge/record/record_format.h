@@ -19,15 +19,18 @@
 ///       cells                 [n_cells][4]      uint32
 ///       faces                 [n_faces][4]      uint32        three nodes, patch
 ///       patch_0 ...           name; of a symmetry plane also the attributes point, normal  [3] double
-///     /increment_000000 ...   attributes: run, n_nodes, stroke, step, cuts, deformation_energy,
+///     /increment_000000 ...   attributes: run, n_nodes, n_velocity_nodes, stroke, step, cuts,
+///     deformation_energy,
 ///                             friction_energy, newton, krylov, linear_solves, sharp (the ramp is), and
 ///                             contact [5] double: approach, layer, step, width of the ramp, edge_stiffness
 ///       scheme                                  text          name of the time scheme
 ///       parameters                              text          only where other settings hold from here on
 ///       forces                [n_dies][3]             double [N]
-///       V                     [n_solves][n_nodes][3]  double [mm/s]
+///       V                     [n_solves][n_velocity_nodes][3]  double [mm/s]
+///       vertices              [n_solves][n_nodes][3]  double [mm/s]  motion of the nodes, where it is not V
 ///       P                     [n_solves][n_nodes]     double [MPa]
-///       pairs                 [n_pairs][3]            uint32  node, second node of an edge or 2^32 - 1, die
+///       pairs                 [n_pairs][4]            uint32  node, second node of an edge or 2^32 - 1,
+///                                                             velocity node or 2^32 - 1, die
 ///       touching              [n_pairs]               uint8
 ///       facet                 [n_pairs]               uint32  of the die
 ///       kind                  [n_pairs]               uint8   0 face, 1-3 edge, 4-6 corner of the facet, 7

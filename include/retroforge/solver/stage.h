@@ -35,7 +35,7 @@ namespace retroforge
     template <typename Number>
     ContactView<Number> view(const std::vector<DieState<Number>> &states, const NodalVectors<Number> &X) const
     {
-      return {mesh, topology, dies, states, X};
+      return {mesh, topology, dies, states, X, spaces.edges()};
     }
   };
 

@@ -9,7 +9,8 @@
 namespace retroforge
 {
   /// An explicit Runge-Kutta scheme by its Butcher table. An increment of time dt goes from X to
-  ///   X' = X + dt sum_s b_s V_s,   V_s the velocity in equilibrium at  Y_s = X + dt sum_(r<s) a_sr V_r,
+  ///   X' = X + dt sum_s b_s w_s,   w_s the motion of the nodes in equilibrium at  Y_s = X + dt sum_(r<s)
+  ///   a_sr w_r,
   /// and what is integrated over it (energy, strain, objectives) has its integrand at the Y_s, weighted by
   /// b_s. Dies and contact are those at X.
   struct Scheme
@@ -27,7 +28,8 @@ namespace retroforge
     static const Scheme &by_name(const std::string &name);
   };
 
-  /// X + dt sum_s weights[s] V_s, the sum over as many stages as there are weights.
+  /// X + dt sum_s weights[s] w_s, w_s the motion of the nodes, the sum over as many stages as there are
+  /// weights.
   template <typename Number, typename Stage>
   NodalVectors<Number> advanced(const NodalVectors<Number> &X,
                                 const Number               &dt,
@@ -40,7 +42,7 @@ namespace retroforge
       {
         const Number time = weights[s] * dt;
         for (std::size_t k = 0; k < X.size(); ++k)
-          moved[k] += stages[s].V[k] * time;
+          moved[k] += stages[s].motion()[k] * time;
       }
     return moved;
   }

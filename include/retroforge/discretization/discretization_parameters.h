@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/discretization/spaces.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+namespace retroforge
+{
+  struct DiscretizationParameters
+  {
+    std::string element = "mini";
+
+    void        add_parameters(dealii::ParameterHandler &prm);
+    ElementPair pair() const;
+  };
+} // namespace retroforge

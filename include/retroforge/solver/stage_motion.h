@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/solver/stage.h>
+
+namespace retroforge
+{
+  /// The velocities with which the nodes of the mesh move: their own where velocities are linear; where they
+  /// are quadratic, those that carry the volume along (discretization/vertex_motion.h). A node is as free as
+  /// it does not touch a die: c_k = product over the dies of 1 - w(delta).
+  template <typename Number>
+  NodalVectors<Number> motion(const Stage<Number> &stage, const Field<Number> &W);
+
+  /// Pull-back: adds to bar.W, and of one rank to bar.X and bar.contact.
+  /// @param motion_bar  the same on every rank
+  void reverse_motion(const Stage<double>        &stage,
+                      const Field<double>        &W,
+                      const NodalVectors<double> &motion_bar,
+                      StageBar                   &bar);
+} // namespace retroforge

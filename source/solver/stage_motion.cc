@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <deal.II/base/mpi.h>
+
+#include <retroforge/discretization/vertex_motion.h>
+#include <retroforge/solver/stage_motion.h>
+
+namespace retroforge
+{
+  namespace
+  {
+    template <typename Number>
+    std::vector<Number> freedom(const Stage<Number> &stage)
+    {
+      std::vector<Number> c(stage.scene.mesh.n_nodes(), Number(1.));
+      for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
+        if (const ContactPoint &point = stage.contact.pairs[p].point; point.is_node())
+          c[point.nodes[0]] *= 1. - stage.contact.ramps[p];
+      return c;
+    }
+
+    /// Adds to the ramps' derivatives. A node may be held by several dies.
+    void reverse_freedom(const Stage<double> &stage, const std::vector<double> &c_bar, ContactSetBar &bar)
+    {
+      const ContactSet<double>              &contact = stage.contact;
+      std::vector<std::vector<unsigned int>> pairs(c_bar.size());
+      for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+        if (const ContactPoint &point = contact.pairs[p].point; point.is_node())
+          pairs[point.nodes[0]].push_back(p);
+      for (NodeIndex k = 0; k < c_bar.size(); ++k)
+        for (const unsigned int p : pairs[k])
+        {
+          double others = 1.;
+          for (const unsigned int q : pairs[k])
+            others *= q == p ? 1. : 1. - contact.ramps[q];
+          bar.ramp[p] -= c_bar[k] * others;
+        }
+    }
+  } // namespace
+
+  template <typename Number>
+  NodalVectors<Number> motion(const Stage<Number> &stage, const Field<Number> &W)
+  {
+    const Scene &scene = stage.scene;
+    if (!scene.spaces.edges())
+      return W.V;
+    const std::vector<Number> c = freedom(stage);
+    return vertex_velocities<Number>({scene.mesh, scene.topology, *scene.spaces.edges(), stage.X, W.V, c});
+  }
+
+  void reverse_motion(const Stage<double>        &stage,
+                      const Field<double>        &W,
+                      const NodalVectors<double> &motion_bar,
+                      StageBar                   &bar)
+  {
+    const Scene &scene = stage.scene;
+    if (!scene.spaces.edges())
+    {
+      for (std::size_t k = 0; k < motion_bar.size(); ++k)
+        bar.W.V[k] += motion_bar[k];
+      return;
+    }
+    const std::vector<double> c = freedom(stage);
+    VertexMotionBar           motion_input_bar{NodalVectors<double>(stage.X.size()),
+                                     NodalVectors<double>(W.V.size()),
+                                     std::vector<double>(c.size(), 0.)};
+    reverse_vertex_velocities(
+      {scene.mesh, scene.topology, *scene.spaces.edges(), stage.X, W.V, c}, motion_bar, motion_input_bar);
+    for (std::size_t k = 0; k < W.V.size(); ++k)
+      bar.W.V[k] += motion_input_bar.V[k];
+    if (dealii::Utilities::MPI::this_mpi_process(scene.partition.comm) > 0)
+      return;
+    for (std::size_t k = 0; k < stage.X.size(); ++k)
+      bar.X[k] += motion_input_bar.X[k];
+    reverse_freedom(stage, motion_input_bar.freedom, bar.contact);
+  }
+
+  template NodalVectors<double> motion(const Stage<double> &, const Field<double> &);
+  template NodalVectors<Dual>   motion(const Stage<Dual> &, const Field<Dual> &);
+} // namespace retroforge
