@@ -93,8 +93,7 @@ void check_tangent(const TaylorHoodCase &c, Errors &errors)
   errors.compare("viscosity and volume", {t.viscosity, t.volume}, {mean, c.geometry().volume});
 }
 
-/// Sum over the points of Newtonian tangents at their viscosities, by the derivative of the stress at fixed
-/// factors: the one of lambda·R in lambda, its strain rates replaced by those of the unit vectors.
+/// Column by column: the pull-back of the strain rates of unit velocities, times the viscosities at w.
 void check_picard(const TaylorHoodCase &c, Errors &errors)
 {
   const TaylorHoodTangent       t        = tangent(c, Linearisation::picard);
