@@ -26,9 +26,11 @@ namespace retroforge
       Vector3<Number> t;              ///< N without fixed directions [mm^2]
       Number          A = Number(0.); ///< [mm^2]
       Number          e = Number(0.), b = Number(0.);
-      Number          u = Number(0.); ///< what of a flux it may take
-      Number          z = Number(0.); ///< flux over freedom that it takes [mm^3/s]
+      Number          u    = Number(0.); ///< what of a flux it may take
+      Number          free = Number(0.); ///< flux over freedom that it takes as a free vertex [mm^3/s]
+      Number          held = Number(0.); ///< flux that it takes as one of three held ones [mm^3/s]
 
+      Number          z(const Number &freedom) const { return freedom * free + held; }
       Vector3<Number> r() const { return t * Number(b / (A * A)); }
     };
 
@@ -54,6 +56,13 @@ namespace retroforge
     Number left_by_others(const Number &u, const Number &v)
     {
       return 1. - 0.5 * (u + v) + u * v / 3.;
+    }
+
+    /// A third of the chance that none of the three is at large.
+    template <typename Number>
+    Number third_if_held(const Number &u, const Number &v, const Number &w)
+    {
+      return (1. - u) * (1. - v) * (1. - w) / 3.;
     }
 
     template <typename Number>
@@ -112,16 +121,22 @@ namespace retroforge
       {
         const Number D = face.D();
         for (unsigned int i = 0; i < 3; ++i)
-          vertices[face.nodes[i]].z +=
-            D * left_by_others(vertices[face.nodes[(i + 1) % 3]].u, vertices[face.nodes[(i + 2) % 3]].u);
+        {
+          auto       &vertex = vertices[face.nodes[i]];
+          const auto &u = vertices[face.nodes[(i + 1) % 3]].u, &v = vertices[face.nodes[(i + 2) % 3]].u;
+          vertex.free += D * left_by_others(u, v);
+          vertex.held += D * third_if_held(vertex.u, u, v);
+        }
       }
       return vertices;
     }
 
     /// What the flux of one face and the shares of its vertices depend on.
+    /// @param free_bar, held_bar  of the vertices' parts
     double reverse_sharing(const SurfaceFace<double>                &face,
                            const std::vector<SurfaceVertex<double>> &vertices,
-                           const std::vector<double>                &z_bar,
+                           const std::vector<double>                &free_bar,
+                           const std::vector<double>                &held_bar,
                            std::vector<double>                      &u_bar)
     {
       const double D     = face.D();
@@ -129,10 +144,12 @@ namespace retroforge
       for (unsigned int i = 0; i < 3; ++i)
       {
         const NodeIndex j = face.nodes[(i + 1) % 3], k = face.nodes[(i + 2) % 3];
-        const double    z = z_bar[face.nodes[i]], u = vertices[j].u, v = vertices[k].u;
-        D_bar += z * left_by_others(u, v);
-        u_bar[j] += z * D * (v / 3. - 0.5);
-        u_bar[k] += z * D * (u / 3. - 0.5);
+        const double    z = free_bar[face.nodes[i]], h = held_bar[face.nodes[i]];
+        const double    own = vertices[face.nodes[i]].u, u = vertices[j].u, v = vertices[k].u;
+        D_bar += z * left_by_others(u, v) + h * third_if_held(own, u, v);
+        u_bar[face.nodes[i]] -= h * D * (1. - u) * (1. - v) / 3.;
+        u_bar[j] += z * D * (v / 3. - 0.5) - h * D * (1. - own) * (1. - v) / 3.;
+        u_bar[k] += z * D * (u / 3. - 0.5) - h * D * (1. - own) * (1. - u) / 3.;
       }
       return D_bar;
     }
@@ -177,7 +194,7 @@ namespace retroforge
     NodalVectors<Number> w(in.V.begin(), in.V.begin() + in.mesh.n_nodes());
     for (NodeIndex k = 0; k < w.size(); ++k)
       if (in.topology.is_on_surface(k))
-        w[k] += vertices[k].r() * Number(in.freedom[k] * vertices[k].z);
+        w[k] += vertices[k].r() * vertices[k].z(in.freedom[k]);
     return w;
   }
 
@@ -192,18 +209,19 @@ namespace retroforge
     const auto         vertices = vertices_of_surface(in, faces);
     const unsigned int n        = in.mesh.n_nodes();
 
-    std::vector<double> z_bar(n, 0.), u_bar(n, 0.), D_bar;
+    std::vector<double> free_bar(n, 0.), held_bar(n, 0.), u_bar(n, 0.), D_bar;
     for (NodeIndex k = 0; k < n; ++k)
     {
       bar.V[k] += w_bar[k];
       if (!in.topology.is_on_surface(k))
         continue;
       const double along = vertices[k].r() * w_bar[k];
-      z_bar[k]           = in.freedom[k] * along;
-      bar.freedom[k] += vertices[k].z * along;
+      free_bar[k]        = in.freedom[k] * along;
+      held_bar[k]        = along;
+      bar.freedom[k] += vertices[k].free * along;
     }
     for (const auto &face : faces)
-      D_bar.push_back(reverse_sharing(face, vertices, z_bar, u_bar));
+      D_bar.push_back(reverse_sharing(face, vertices, free_bar, held_bar, u_bar));
 
     std::vector<NormalBar> normal_bar(n);
     for (NodeIndex k = 0; k < n; ++k)
@@ -212,7 +230,7 @@ namespace retroforge
         bar.freedom[k] += vertices[k].e * vertices[k].b * u_bar[k];
         normal_bar[k] = reverse_normal(vertices[k],
                                        in.topology.fixed_directions[k],
-                                       in.freedom[k] * vertices[k].z * w_bar[k],
+                                       vertices[k].z(in.freedom[k]) * w_bar[k],
                                        in.freedom[k] * u_bar[k]);
       }
     for (std::size_t f = 0; f < faces.size(); ++f)

@@ -14,16 +14,17 @@
 /// *vertices*. The difference,
 ///   D_f = s_f·(mean of the three middles - mean of the three vertices)   [mm^3/s],
 /// is given to the vertices of each face of the surface (faces on planes of symmetry move within them):
-///   w_k = v_k + c_k r_k z_k,     z_k = sum over the faces f at k of D_f g(u_i, u_j),   i, j the other two,
-///   g = 1 - (u_i + u_j)/2 + u_i u_j/3,     u_k = c_k a_k.
+///   w_k = v_k + r_k sum over the faces f at k of D_f [ c_k g(u_i, u_j) + h/3 ],   i, j the other two,
+///   g = 1 - (u_i + u_j)/2 + u_i u_j/3,     h = (1 - u_i) (1 - u_j) (1 - u_k),     u_k = c_k a_k.
 ///
 /// *How much of D_f a vertex takes.* c_k is 1 where the vertex is free and 0 where a die holds it: given the
 /// flux, the rim of a die would creep outwards. The part u_k g is what vertex k gets on average when D_f is
 /// shared equally by those of the three vertices that are at large, each of them being so with probability
-/// u_k and independently. Hence all three together take
-///   1 - (1 - u_1)(1 - u_2)(1 - u_3)
-/// of D_f: all of it as soon as one vertex is entirely free, none where all are held. It is a polynomial, so
-/// the motion is smooth in c where vertices, or all three of a face, come to be held.
+/// u_k and independently; together they take 1 - h. With probability h none is, and each takes a third: where
+/// a die holds all three, the middles sink into it under their penalty and the vertices, which quadratic
+/// velocities hardly load, do not, and the metal between would be lost. So all of D_f is taken whoever is
+/// held, and by a polynomial: the motion is smooth in c where vertices, or all three of a face, come to be
+/// held.
 ///
 /// *How a vertex takes it.* Along t_k, which is the vector of volume swept per motion, N_k = 1/3 sum s_f,
 /// without the directions that planes of symmetry hold. Moved by t_k/|t_k|^2 it sweeps one unit of volume.
