@@ -174,7 +174,7 @@ namespace retroforge
       }
     }
 
-    RETROFORGE_ALSO_FOR("arch=haswell")
+    RETROFORGE_ALSO_FOR("fma")
     void tangent_pack(const TangentInput<Pack> &input, const bool linear, TangentPack &tangent)
     {
       tangent_blocks(input, linear, tangent);

@@ -14,8 +14,7 @@ namespace retroforge
     bool is_mine(const StageView<Number> &view, const unsigned int p, const unsigned int die)
     {
       const ContactPair &pair = view.stage.contact.pairs[p];
-      return pair.die == die && pair.point.has_own_velocity() &&
-             view.stage.scene.partition.owns(pair.point.nodes[0]);
+      return pair.die == die && pair.point.is_node() && view.stage.scene.partition.owns(pair.point.nodes[0]);
     }
 
     /// Pushing force of a point along the die's normal, zero where the die does not press.
@@ -32,12 +31,18 @@ namespace retroforge
     template <typename Number>
     std::vector<unsigned int> pairs_of_nodes(const StageView<Number> &view, const unsigned int die)
     {
-      std::vector<unsigned int> pairs(view.stage.scene.spaces.n_velocity_nodes(), none);
+      std::vector<unsigned int> pairs(view.stage.scene.mesh.n_nodes(), none);
       for (unsigned int p = 0; p < view.stage.contact.pairs.size(); ++p)
-        if (const ContactPair &pair = view.stage.contact.pairs[p];
-            pair.die == die && pair.point.has_own_velocity())
-          pairs[pair.point.velocity_node] = p;
+        if (const ContactPair &pair = view.stage.contact.pairs[p]; pair.die == die && pair.point.is_node())
+          pairs[pair.point.nodes[0]] = p;
       return pairs;
+    }
+
+    /// A node's pair stands for a third of the faces at it, whatever its part of the contact is.
+    template <typename Number>
+    double thirds(const Stage<Number> &stage)
+    {
+      return stage.contact.quadratic ? 4. : 1.;
     }
 
     /// Of each pair of a node: its force and its part of those of the edges at it, over its area.
@@ -52,9 +57,9 @@ namespace retroforge
         {
           const Number force =
             pushing_force(stage.contact_node(p, view.W, view.active), stage.physics.contact.rho);
-          for (unsigned int i = 0; i < pair.point.n_velocity_nodes(); ++i)
-            if (const unsigned int q = of[pair.point.velocity_node_at(i)]; q != none)
-              pressure[q] += pair.point.velocity_weight() * force / stage.areas.S[q];
+          for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)
+            if (const unsigned int q = of[pair.point.nodes[i]]; q != none)
+              pressure[q] += pair.point.weight() * force / (thirds(stage) * stage.areas.S[q]);
         }
       return pressure;
     }
@@ -94,8 +99,9 @@ namespace retroforge
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_mine(view, p, die_))
       {
-        sums[0] += stage.areas.S[p] * power(Number(pressure[p] / reference_), Number(exponent_));
-        sums[1] += stage.areas.S[p] * stage.contact.ramps[p];
+        const Number area = thirds(stage) * stage.areas.S[p];
+        sums[0] += area * power(Number(pressure[p] / reference_), Number(exponent_));
+        sums[1] += area * stage.contact.ramps[p];
       }
     return sums;
   }
@@ -112,11 +118,12 @@ namespace retroforge
     for (unsigned int p = 0; p < pressure.size(); ++p)
       if (is_mine(view, p, die_))
       {
-        // S (F/S)^e
+        // A (F/A)^e, A = thirds S
         const double   relative = pressure[p] / reference_, whole = std::pow(relative, exponent_);
         ContactNodeBar node_bar;
-        node_bar.S = weights[0] * (1. - exponent_) * whole + weights[1] * stage.contact.ramps[p];
-        bar.contact.ramp[p] += weights[1] * stage.areas.S[p];
+        const double   n = thirds(stage);
+        node_bar.S       = n * (weights[0] * (1. - exponent_) * whole + weights[1] * stage.contact.ramps[p]);
+        bar.contact.ramp[p] += weights[1] * n * stage.areas.S[p];
         pullback.add(p, node_bar);
         if (relative > 0.)
           force_bar[p] = weights[0] * exponent_ * whole / pressure[p];
@@ -125,9 +132,9 @@ namespace retroforge
       if (const ContactPair &pair = stage.contact.pairs[p]; pair.die == die_)
       {
         double of_point = 0.;
-        for (unsigned int i = 0; i < pair.point.n_velocity_nodes(); ++i)
-          if (const unsigned int q = of[pair.point.velocity_node_at(i)]; q != none)
-            of_point += pair.point.velocity_weight() * force_bar[q];
+        for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)
+          if (const unsigned int q = of[pair.point.nodes[i]]; q != none)
+            of_point += pair.point.weight() * force_bar[q];
         const ContactNode<double> node = stage.contact_node(p, view.W, view.active);
         const double              rho = stage.physics.contact.rho, force = pushing_force(node, rho);
         if (of_point == 0. || force == 0.)

@@ -165,7 +165,7 @@ namespace
           pressed.changed += found != last.end() && found->second != pair.feature;
           last[key] = pair.feature;
           const Vec3 n =
-            problem.scene.dies[pair.die].project(pair.point.mean(X), states[pair.die], pair.feature).n;
+            problem.scene.dies[pair.die].project(pair.point.position(X), states[pair.die], pair.feature).n;
           pressed.tilt = std::max(pressed.tilt, std::acos(std::min(1., std::abs(n[2]))) * 180. / M_PI);
         }
       X = problem.leg->increment.recorded(problem.process, X, record).X;

@@ -59,9 +59,10 @@ namespace
     const auto             by   = random_vectors(n);
     for (const ContactPair &pair : run.records[0].pairs)
       if (pair.touching)
-        pair.point.add(
-          Vec3((1.5 + by[pair.point.nodes[0]][0]) *
-               -run.scene.dies[pair.die].project(pair.point.mean(run.scene.mesh.X), Vec3(), pair.feature).n),
+        pair.point.add_to_position(
+          Vec3(
+            (1.5 + by[pair.point.nodes[0]][0]) *
+            -run.scene.dies[pair.die].project(pair.point.position(run.scene.mesh.X), Vec3(), pair.feature).n),
           list[1].X_dot);
     return list;
   }

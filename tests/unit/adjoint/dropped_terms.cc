@@ -47,7 +47,7 @@ namespace
       if (pair.touching)
         list[1].X_dot[pair.point.nodes[0]] -=
           (1.5 + uniform(generator)) *
-          run.scene.dies[pair.die].project(pair.point.mean(run.scene.mesh.X), Vec3(), pair.feature).n;
+          run.scene.dies[pair.die].project(pair.point.position(run.scene.mesh.X), Vec3(), pair.feature).n;
     return list;
   }
 } // namespace

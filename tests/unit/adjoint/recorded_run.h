@@ -45,7 +45,8 @@ namespace retroforge
                 const std::optional<Scheme> &scheme = {})
         : parameters(settled(all))
         , process(parameters.process({all.billet.size[2], all.billet.size[2]}))
-        , model{std::move(dies),
+        , model{parameters.discretization.pair(),
+                std::move(dies),
                 step_model(parameters, scheme),
                 all.newton,
                 all.linear_solver,

@@ -5,6 +5,7 @@
 #include "recorded_run.h"
 
 #include <retroforge/core/dual.h>
+#include <retroforge/discretization/element_pairs.h>
 
 #include <map>
 
@@ -222,7 +223,7 @@ namespace retroforge
         reverse_smooth(die,
                        normals.at(pair.die),
                        pair.feature,
-                       pair.point.mean(X) - states[pair.die].displacement,
+                       pair.point.position(X) - states[pair.die].displacement,
                        delta_bar,
                        bar.n[p],
                        omitted,
@@ -231,7 +232,7 @@ namespace retroforge
         displacement -= at_point;
       }
       else
-        die.reverse_project(pair.point.mean(X),
+        die.reverse_project(pair.point.position(X),
                             states[pair.die].displacement,
                             pair.feature,
                             delta_bar,
@@ -239,7 +240,7 @@ namespace retroforge
                             at_point,
                             displacement,
                             die.surface() ? &dies_bar[pair.die].vertices : nullptr);
-      pair.point.add(at_point, X_bar);
+      pair.point.add_to_position(at_point, X_bar);
     }
   }
 
@@ -281,12 +282,12 @@ namespace retroforge
                                       PhysicsBar           &bar)
   {
     const TetMesh &mesh = stage.scene.mesh;
-    Field<double>  W_bar(mesh);
+    Field<double>  W_bar(stage.scene.spaces);
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
       CellValues<double> w_bar = {};
       const auto         s     = reverse_cell_dissipation(cell_geometry(positions_of_cell(mesh, stage.X, c)),
-                                              W.on_cell(mesh, c),
+                                              MiniPair::on_cell(stage.scene.spaces, W, c),
                                               stage.physics.law,
                                               weight * dt,
                                               w_bar);
@@ -301,7 +302,7 @@ namespace retroforge
     const auto reverse_node = [&](const unsigned int p) {
       const auto node = reverse_friction_power(
         stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, weight * dt);
-      stage.contact.pairs[p].point.add(node.u, W_bar.V);
+      stage.contact.pairs[p].point.add_to_velocity(node.u, W_bar.V);
       return node;
     };
     reverse_contact(stage, omitted, reverse_node, X_bar, contact_bar, bar);
@@ -326,8 +327,8 @@ namespace retroforge
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
       const auto s = reverse_cell_residual(cell_geometry(positions_of_cell(mesh, stage.X, c)),
-                                           W.on_cell(mesh, c),
-                                           lambda.on_cell(mesh, c),
+                                           MiniPair::on_cell(stage.scene.spaces, W, c),
+                                           MiniPair::on_cell(stage.scene.spaces, lambda, c),
                                            stage.physics.law);
       for (unsigned int a = 0; a < 4; ++a)
         X_bar[mesh.cells[c][a]] += s.X[a];
@@ -336,7 +337,7 @@ namespace retroforge
       return reverse_contact_force(stage.contact_node(p, W, active),
                                    stage.physics.law,
                                    stage.physics.contact,
-                                   stage.contact.pairs[p].point.mean(lambda.V));
+                                   stage.contact.pairs[p].point.velocity(lambda.V));
     };
     reverse_contact(stage, omitted, reverse_node, X_bar, contact_bar, bar);
   }
@@ -369,7 +370,7 @@ namespace retroforge
       const SolveRecord         &solve    = record.solves[s];
       const NodalVectors<double> position = advanced(X, dt, scheme.a[s], record.solves);
       const Stage<double>        stage(scene, physics, contact, position);
-      Field<double>              W(scene.mesh), rhs(scene.mesh), minus_rhs(scene.mesh), lambda;
+      Field<double>              W(scene.spaces), rhs(scene.spaces), minus_rhs(scene.spaces), lambda;
       W.V = solve.V;
       W.P = solve.P;
       recover_bubbles(stage, W);
@@ -390,7 +391,7 @@ namespace retroforge
       problem.leg->system.assemble(stage, W, solve.active);
       problem.leg->system.solve(minus_rhs, problem.model.step.adjoint_tolerance, lambda);
       if (s == 0 && omitted == Term::first_stage)
-        lambda = Field<double>(scene.mesh);
+        lambda = Field<double>(scene.spaces);
       reverse_equilibrium(stage, W, solve.active, lambda, omitted, X_bar, contact_bar, bar);
       for (std::size_t k = 0; k < X.size(); ++k)
         G[k] += X_bar[k];

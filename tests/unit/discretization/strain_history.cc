@@ -9,9 +9,10 @@
 // - At rest, and where the bubble brings one sub-tetrahedron of a cell to rest, derivatives are finite; in
 //   the first case they are zero.
 
-#include "element_test_tools.h"
+#include "../element/element_test_tools.h"
+#include "mini_spaces.h"
 #include <retroforge/core/dual.h>
-#include <retroforge/element/strain_history.h>
+#include <retroforge/discretization/strain_history.h>
 
 using namespace retroforge;
 
@@ -62,7 +63,7 @@ template <typename Number>
 Inputs<Number> empty_inputs(const TetMesh &mesh)
 {
   return {NodalVectors<Number>(mesh.n_nodes()),
-          Field<Number>(mesh),
+          Field<Number>(mini_spaces(mesh)),
           Number(0.),
           std::vector<Number>(mesh.n_cells(), Number(0.))};
 }
@@ -81,10 +82,10 @@ double dot_product_defect(const TetMesh             &mesh,
     *in_dual[i]                 = Dual(1, 0, *in[i]);
     in_dual[i]->fastAccessDx(0) = *in_dot[i];
   }
-  const auto tangent = accumulate_strain(mesh, dual.X, dual.W, dual.dt, dual.q);
+  const auto tangent = accumulate_strain(mesh, mini_spaces(mesh), dual.X, dual.W, dual.dt, dual.q);
   auto       bar     = empty_inputs<double>(mesh);
   bar.q              = y;
-  bar.dt             = reverse_accumulate_strain(mesh, at.X, at.W, at.dt, y, bar.W, bar.X);
+  bar.dt             = reverse_accumulate_strain(mesh, mini_spaces(mesh), at.X, at.W, at.dt, y, bar.W, bar.X);
   double forward = 0., reverse = 0., size = 0.;
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
   {
@@ -116,20 +117,21 @@ void check_by_hand(const TetMesh &mesh, Random &random)
     shear.W.V[k]  = 0.8 * Vec3({x[2], 0, 0});
   }
   Errors     errors;
-  const auto q = accumulate_strain(mesh, mesh.X, flow.W, 0.25, flow.q);
+  const auto q = accumulate_strain(mesh, mini_spaces(mesh), mesh.X, flow.W, 0.25, flow.q);
   errors.compare("upsetting", q, std::vector<double>(mesh.n_cells(), 0.2));
-  const auto sheared = accumulate_strain(mesh, mesh.X, shear.W, 0.25, q);
+  const auto sheared = accumulate_strain(mesh, mini_spaces(mesh), mesh.X, shear.W, 0.25, q);
   errors.compare("shear after it", sheared, std::vector<double>(mesh.n_cells(), 0.2 + 0.2 / std::sqrt(3.)));
 
   const auto          any = random_inputs(mesh, random);
   std::vector<double> expected;
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
   {
-    const auto e =
-      cell_strain_rates(cell_geometry(positions_of_cell(mesh, mesh.X, c)), any.W.on_cell(mesh, c));
+    const auto e = cell_strain_rates(cell_geometry(positions_of_cell(mesh, mesh.X, c)),
+                                     MiniPair::on_cell(mini_spaces(mesh), any.W, c));
     expected.push_back(any.q[c] + any.dt * (e[0] + e[1] + e[2] + e[3]) / 4.);
   }
-  errors.compare("with bubbles", accumulate_strain(mesh, mesh.X, any.W, any.dt, any.q), expected);
+  errors.compare(
+    "with bubbles", accumulate_strain(mesh, mini_spaces(mesh), mesh.X, any.W, any.dt, any.q), expected);
   errors.print(1e-14);
 }
 
@@ -162,7 +164,8 @@ void check_reverse(const TetMesh &mesh, Random &random)
 double largest_derivative(const TetMesh &mesh, const Field<double> &W)
 {
   auto bar = empty_inputs<double>(mesh);
-  reverse_accumulate_strain(mesh, mesh.X, W, 0.25, std::vector<double>(mesh.n_cells(), 1.), bar.W, bar.X);
+  reverse_accumulate_strain(
+    mesh, mini_spaces(mesh), mesh.X, W, 0.25, std::vector<double>(mesh.n_cells(), 1.), bar.W, bar.X);
   double largest = 0.;
   for (const double *entry : bar.entries())
     largest = std::isfinite(*entry) ? std::max(largest, std::abs(*entry)) : 1e300;
@@ -185,7 +188,7 @@ void check_at_rest(const TetMesh &mesh, Random &random)
   const auto &first    = mesh.cells[0];
   at.W.beta[0]         = Vec3({0.5, 0.25, -1});
   at.W.V[first[0]]     = -4. * at.W.beta[0];
-  const auto e         = cell_strain_rates(geometry, at.W.on_cell(mesh, 0));
+  const auto e         = cell_strain_rates(geometry, MiniPair::on_cell(mini_spaces(mesh), at.W, 0));
   errors.compare("one part of a cell at rest", e[0], 0.);
   errors.print(1e-13);
   std::cout << "  the others move, derivatives finite: "

@@ -266,8 +266,9 @@ Differences solution_differences(const double element_size)
 {
   const std::string      free_patch = "side +x";
   const ManufacturedFlow flow{{1., 1., 0.}};
-  const TetMesh          mesh     = unit_cube(element_size);
-  const auto             start    = flow.interpolant(mesh);
+  const TetMesh          mesh = unit_cube(element_size);
+  const Spaces           spaces(mesh, Topology(mesh), ElementPair::mini);
+  const auto             start    = flow.interpolant(mesh, spaces);
   const auto             traction = flow.traction_load(mesh, free_patch);
   const auto             points   = sub_cell_points();
   QuadratureElement      quadrature(mesh);
@@ -292,12 +293,12 @@ Differences solution_differences(const double element_size)
     const auto X        = positions_of_cell(mesh, mesh.X, c);
     const auto geometry = cell_geometry(X);
     return condense([&](const auto &w) { return flatten(cell_residual(geometry, unflatten(w), flow.law)); },
-                    flatten(start.on_cell(mesh, c)),
+                    flatten(MiniPair::on_cell(spaces, start, c)),
                     flatten(flow.body_load(points, X)));
   });
   const std::vector<double> polynomial = solve([&](const CellIndex c) {
     return condense([&](const auto &w) { return quadrature.residual(c, w, flow.law); },
-                    flatten(start.on_cell(mesh, c)),
+                    flatten(MiniPair::on_cell(spaces, start, c)),
                     quadrature.body_load(c, flow));
   });
 

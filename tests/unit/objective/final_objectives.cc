@@ -57,7 +57,7 @@ struct FinalProblem
   FinalInputs<double> at;
 
   FinalProblem(TetMesh mesh, NodalVectors<double> target, MPI_Comm comm = MPI_COMM_WORLD)
-      : scene(std::move(mesh), {Die("lower", Vec3(), Vec3({0., 0., 1.}))}, comm)
+      : scene(std::move(mesh), ElementPair::mini, {Die("lower", Vec3(), Vec3({0., 0., 1.}))}, comm)
       , at{scene.mesh.X,
            std::vector<double>(scene.mesh.n_cells(), 0.3),
            {{Vec3(), Vec3(), 0., {}}},

@@ -82,7 +82,7 @@ PathInputs<Number> empty_inputs(const Scene &scene)
   {
     state.X.resize(scene.mesh.n_nodes());
     state.Y.resize(scene.mesh.n_nodes());
-    state.W = Field<Number>(scene.mesh);
+    state.W = Field<Number>(scene.spaces);
   }
   inputs.physics.law.K   = Number(0.);
   inputs.physics.law.m   = Number(0.);
@@ -122,7 +122,8 @@ struct PathProblem
   }
 
   PathProblem(Random &random, const bool curved)
-      : scene(make_mesh(), make_dies(curved), MPI_COMM_WORLD), at(empty_inputs<double>(scene))
+      : scene(make_mesh(), ElementPair::mini, make_dies(curved), MPI_COMM_WORLD)
+      , at(empty_inputs<double>(scene))
   {
     at.physics.law     = {1.3, 0.4, 0.2};
     at.physics.contact = {2., 0.3};

@@ -45,6 +45,7 @@ public:
   Upsetting()
       : scene_(
           make_cube(),
+          ElementPair::mini,
           {Die("lower", Vec3(), Vec3({0., 0., 1.})), Die("upper", Vec3({0., 0., edge}), Vec3({0., 0., -1.}))},
           MPI_COMM_WORLD)
   {
@@ -57,7 +58,7 @@ public:
     for (int i = 0; i < n_increments; ++i)
     {
       const double  step = stroke / n_increments, dt = step / v, h = edge - i * step;
-      Field<double> W(scene_.mesh);
+      Field<double> W(scene_.spaces);
       for (NodeIndex k = 0; k < X.size(); ++k)
         W.V[k] = speed / h * Vec3({X[k][0] / 2., X[k][1] / 2., -X[k][2]});
       const Vec3            lower({0., 0., 0.}), upper({0., 0., -v - faster});
@@ -95,7 +96,7 @@ public:
     const auto contact =
       make_contact_set<double>(scene_.view(physics.dies, X), pairs, {ramp, 0.1, 0., edge_stiffness});
     const Stage<double>    stage(scene_, physics, contact, X);
-    const Field<double>    W(scene_.mesh); // at rest
+    const Field<double>    W(scene_.spaces); // at rest
     const PathRows<double> rows = {
       {sum_over_ranks(objective.integrals({stage, W, stage.decide_active(W)}), MPI_COMM_WORLD),
        0.1,

@@ -83,7 +83,7 @@ int main(int argc, char **argv)
   BilletParameters                         block;
   block.size         = Vec3({2., 3., 4.});
   block.element_size = 1.;
-  const Scene        scene(make_billet(block, MPI_COMM_SELF), {}, MPI_COMM_SELF);
+  const Scene        scene(make_billet(block, MPI_COMM_SELF), ElementPair::mini, {}, MPI_COMM_SELF);
   const CentreHeight objective;
   const double       start = value(scene, objective, scene.mesh.X);
   std::cout << "value on a block of height 4: " << (std::abs(start - 2.) < 1e-14 ? "2" : "wrong")

@@ -125,7 +125,7 @@ int main(int argc, char **argv)
   std::printf("active in the step: moved: %s\n", change == 0. ? "none" : "some");
 
   // A billet at rest under pressure: its boundary pushes outwards.
-  Field<double> pressed(corner.scene.mesh);
+  Field<double> pressed(corner.scene.spaces);
   for (NodeIndex k = 0; k < pressed.P.size(); ++k)
     pressed.P[k] = 50.;
   const auto velocity_of = [&](const unsigned int p) -> Vec3 & { return pressed.V[pairs[p].point.nodes[0]]; };

@@ -29,14 +29,14 @@ namespace retroforge
   /// A corner of a billet with a plane of symmetry between a wavy die and a tilted plane, at any velocity.
   struct CornerStage
   {
-    Scene                scene{make_mesh(), make_dies(), MPI_COMM_WORLD};
+    Scene                scene{make_mesh(), ElementPair::mini, make_dies(), MPI_COMM_WORLD};
     NodalVectors<double> X;
     Physics<double>      physics;
     ContactSet<double>   contact;
     Field<double>        W;
     ActiveSet            active;
 
-    CornerStage(Random &random, const double rho) : X(scene.mesh.X), W(scene.mesh)
+    CornerStage(Random &random, const double rho) : X(scene.mesh.X), W(scene.spaces)
     {
       for (Vec3 &x : X)
         x += 0.05 * random.vector();
@@ -56,7 +56,7 @@ namespace retroforge
     /// Without what the plane of symmetry fixes.
     Field<double> random_field(Random &random) const
     {
-      Field<double> x(scene.mesh);
+      Field<double> x(scene.spaces);
       for (NodeIndex k = 0; k < scene.mesh.n_nodes(); ++k)
       {
         x.V[k] = random.vector();

@@ -39,7 +39,7 @@ namespace
         positions.push_back(number(position));
       const auto contact_dual = make_contact_set<Dual>(
         scene.view(dual.dies, positions), contact.pairs, {FrictionRamp{0.5, false}, Dual(0.4), 0.3, 0.3});
-      Field<Dual> field(scene.mesh);
+      Field<Dual> field(scene.spaces);
       for (NodeIndex k = 0; k < scene.mesh.n_nodes(); ++k)
       {
         field.V[k]                 = number(W.V[k], x.V[k]);
@@ -49,7 +49,7 @@ namespace
       for (CellIndex c = 0; c < scene.mesh.n_cells(); ++c)
         field.beta[c] = number(W.beta[c], x.beta[c]);
       const Field<Dual> r = Stage<Dual>(scene, dual, contact_dual, positions).residual(field, active);
-      Field<double>     r_dot(scene.mesh);
+      Field<double>     r_dot(scene.spaces);
       for (NodeIndex k = 0; k < scene.mesh.n_nodes(); ++k)
       {
         for (unsigned int i = 0; i < 3; ++i)

@@ -8,7 +8,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <retroforge/billet/billet.h>
-#include <retroforge/element/field.h>
+#include <retroforge/discretization/element_pairs.h>
 #include <retroforge/element/mini_element.templates.h>
 
 #include <functional>

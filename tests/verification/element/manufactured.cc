@@ -27,6 +27,7 @@ const std::vector<SubCellPoint> points     = sub_cell_points();
 /// One Newton step; returns its length relative to the velocity.
 double newton_step(const ManufacturedFlow                &flow,
                    const TetMesh                         &mesh,
+                   const Spaces                          &spaces,
                    const std::vector<CellValues<double>> &loads,
                    const NodalVectors<double>            &traction,
                    NodalSystem                           &system,
@@ -37,7 +38,7 @@ double newton_step(const ManufacturedFlow                &flow,
   NodalVectors<double>     boundary = traction;
   system.assemble([&](const CellIndex c) {
     const auto         geometry = cell_geometry(positions_of_cell(mesh, mesh.X, c));
-    const auto         w        = W.on_cell(mesh, c);
+    const auto         w        = MiniPair::on_cell(spaces, W, c);
     CellValues<double> rhs      = loads[c];
     const auto         residual = cell_residual(geometry, w, flow.law);
     for (unsigned int a = 0; a < 4; ++a)
@@ -54,7 +55,7 @@ double newton_step(const ManufacturedFlow                &flow,
   });
   const std::vector<double> x = system.solve();
 
-  Field<double> step(mesh);
+  Field<double> step(spaces);
   double        step2 = 0., size2 = 0.;
   for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
   {
@@ -65,21 +66,21 @@ double newton_step(const ManufacturedFlow                &flow,
   }
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
   {
-    const auto w = step.on_cell(mesh, c);
+    const auto w = MiniPair::on_cell(spaces, step, c);
     step.beta[c] = tangents[c].recover_bubble(bubble_rhs[c], w.V, w.P);
   }
   W.add(1., step);
   return std::sqrt(step2 / size2);
 }
 
-FlowErrors errors_of(const TetMesh &mesh, const Field<double> &W)
+FlowErrors errors_of(const TetMesh &mesh, const Spaces &spaces, const Field<double> &W)
 {
   FlowErrors e{mean_edge(mesh), 0., 0., 0.};
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
   {
     const auto X        = positions_of_cell(mesh, mesh.X, c);
     const auto geometry = cell_geometry(X);
-    const auto w        = W.on_cell(mesh, c);
+    const auto w        = MiniPair::on_cell(spaces, W, c);
     for (const SubCellPoint &point : points)
     {
       const Vec3 x  = point.position(X);
@@ -111,18 +112,19 @@ FlowErrors errors_of(const TetMesh &mesh, const Field<double> &W)
 FlowErrors solve_on(const ManufacturedFlow &flow, const double element_size, std::ostream &output)
 {
   const TetMesh                   mesh = unit_cube(element_size);
+  const Spaces                    spaces(mesh, Topology(mesh), ElementPair::mini);
   std::vector<CellValues<double>> loads;
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     loads.push_back(flow.body_load(points, positions_of_cell(mesh, mesh.X, c)));
   const auto    traction = flow.traction_load(mesh, free_patch);
   NodalSystem   system(mesh, held_velocities(mesh, free_patch));
-  Field<double> W    = flow.interpolant(mesh);
+  Field<double> W    = flow.interpolant(mesh, spaces);
   double        step = 1.;
   for (unsigned int iteration = 0; iteration < (flow.law.m == 1. ? 1 : 8) && step > 1e-9; ++iteration)
-    step = newton_step(flow, mesh, loads, traction, system, W);
+    step = newton_step(flow, mesh, spaces, loads, traction, system, W);
   if (flow.law.m != 1.)
     output << "  Newton converged: " << (step < 1e-9 ? "yes" : "NO") << std::endl;
-  const FlowErrors e = errors_of(mesh, W);
+  const FlowErrors e = errors_of(mesh, spaces, W);
   std::cout << mesh.n_nodes() << " nodes: v_l2 " << e.v_l2 << ", v_h1 " << e.v_h1 << ", p_l2 " << e.p_l2
             << std::endl;
   return e;

@@ -108,9 +108,9 @@ namespace retroforge
 
     static double pressure_at(const Vec3 &x) { return pressure(Point<double>{{x[0], x[1], x[2]}}); }
 
-    Field<double> interpolant(const TetMesh &mesh) const
+    Field<double> interpolant(const TetMesh &mesh, const Spaces &spaces) const
     {
-      Field<double> W(mesh);
+      Field<double> W(spaces);
       for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
       {
         W.V[k] = velocity_at(mesh.X[k]);

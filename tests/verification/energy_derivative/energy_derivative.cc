@@ -14,6 +14,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <retroforge/discretization/element_pairs.h>
 #include <retroforge/element/mini_element.templates.h>
 #include <retroforge/parameters.h>
 
@@ -49,6 +50,7 @@ namespace
     explicit Equilibrium(const double element_size)
         : parameters(cube(element_size))
         , scene(make_billet(parameters.billet, MPI_COMM_WORLD),
+                ElementPair::mini,
                 {parameters.dies[0].die(), parameters.dies[1].die()},
                 MPI_COMM_WORLD)
         , model(parameters.step_model())
@@ -62,7 +64,7 @@ namespace
                                model.edges_touch),
             {model.contact.ramp, parameters.press.stroke / parameters.press.increments / process.speed()}))
         , stage(scene, physics, contact, scene.mesh.X)
-        , W(scene.mesh)
+        , W(scene.spaces)
     {
       LinearSystem system(scene, parameters.linear_solver, timings);
       Newton(scene, parameters.newton, system).solve(stage, W, {});
@@ -78,7 +80,7 @@ namespace
     /// As the backward sweep has it.
     NodalVectors<double> derivative() const
     {
-      Field<double>        W_bar(scene.mesh);
+      Field<double>        W_bar(scene.spaces);
       NodalVectors<double> X_bar(scene.mesh.n_nodes());
       ContactSetBar        contact_bar(contact.pairs.size());
       PhysicsBar           physics_bar(scene.dies);
@@ -129,8 +131,10 @@ namespace
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
       for (unsigned int a = 0; a < 4; ++a)
         for (unsigned int i = 0; i < 3; ++i)
-          slope[mesh.cells[c][a]][i] +=
-            cell(cell_geometry(positions_of_cell(mesh, mesh.X, c)), e.W.on_cell(mesh, c), a, i);
+          slope[mesh.cells[c][a]][i] += cell(cell_geometry(positions_of_cell(mesh, mesh.X, c)),
+                                             MiniPair::on_cell(e.scene.spaces, e.W, c),
+                                             a,
+                                             i);
     for (unsigned int p = 0; p < e.contact.pairs.size(); ++p)
       for (unsigned int i = 0; i < 3; ++i)
         slope[e.contact.pairs[p].point.nodes[0]][i] += node(e.stage.contact_node(p, e.W, e.active), i);
