@@ -38,13 +38,6 @@ namespace retroforge
       return pairs;
     }
 
-    /// A node's pair stands for a third of the faces at it, whatever its part of the contact is.
-    template <typename Number>
-    double thirds(const Stage<Number> &stage)
-    {
-      return stage.contact.quadratic ? 4. : 1.;
-    }
-
     /// Of each pair of a node: its force and its part of those of the edges at it, over its area.
     template <typename Number>
     std::vector<Number> nodal_pressures(const StageView<Number> &view, const unsigned int die)
@@ -59,7 +52,7 @@ namespace retroforge
             pushing_force(stage.contact_node(p, view.W, view.active), stage.physics.contact.rho);
           for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)
             if (const unsigned int q = of[pair.point.nodes[i]]; q != none)
-              pressure[q] += pair.point.weight() * force / (thirds(stage) * stage.areas.S[q]);
+              pressure[q] += pair.point.weight() * force / stage.areas.S[q];
         }
       return pressure;
     }
@@ -99,9 +92,8 @@ namespace retroforge
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_mine(view, p, die_))
       {
-        const Number area = thirds(stage) * stage.areas.S[p];
-        sums[0] += area * power(Number(pressure[p] / reference_), Number(exponent_));
-        sums[1] += area * stage.contact.ramps[p];
+        sums[0] += stage.areas.S[p] * power(Number(pressure[p] / reference_), Number(exponent_));
+        sums[1] += stage.areas.S[p] * stage.contact.ramps[p];
       }
     return sums;
   }
@@ -118,12 +110,11 @@ namespace retroforge
     for (unsigned int p = 0; p < pressure.size(); ++p)
       if (is_mine(view, p, die_))
       {
-        // A (F/A)^e, A = thirds S
+        // S (F/S)^e
         const double   relative = pressure[p] / reference_, whole = std::pow(relative, exponent_);
         ContactNodeBar node_bar;
-        const double   n = thirds(stage);
-        node_bar.S       = n * (weights[0] * (1. - exponent_) * whole + weights[1] * stage.contact.ramps[p]);
-        bar.contact.ramp[p] += weights[1] * n * stage.areas.S[p];
+        node_bar.S = weights[0] * (1. - exponent_) * whole + weights[1] * stage.contact.ramps[p];
+        bar.contact.ramp[p] += weights[1] * stage.areas.S[p];
         pullback.add(p, node_bar);
         if (relative > 0.)
           force_bar[p] = weights[0] * exponent_ * whole / pressure[p];
