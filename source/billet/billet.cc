@@ -6,6 +6,7 @@
 #include <retroforge/billet/billet.h>
 #include <retroforge/billet/fineness.h>
 #include <retroforge/billet/gmsh_mesher.h>
+#include <retroforge/billet/surface_slivers.h>
 #include <retroforge/core/error.h>
 #include <retroforge/geometry/triangle_surface.h>
 #include <retroforge/mesh/broadcast.h>
@@ -259,12 +260,18 @@ namespace retroforge
 
     TetMesh mesh_solid(const BilletParameters &p)
     {
-      const CutSolid solid = solid_of(p);
-      TetMesh        mesh  = mesh_with_gmsh(solid, p.element_size, "Billet");
+      const CutSolid solid  = solid_of(p);
+      const auto     assign = [shapes = shapes_of(solid)](TetMesh &mesh) {
+        return assign_patches(mesh, shapes, 1e-6 * mesh_size(mesh), "Billet");
+      };
+      const auto improve = [&](TetMesh &mesh, const double angle) {
+        assign(mesh);
+        take_away_surface_slivers(mesh, angle);
+      };
+      TetMesh mesh = mesh_with_gmsh(solid, p.element_size, improve, "Billet");
       if (mesh.cells.empty())
         return mesh;
-      const auto shapes = assign_patches(mesh, shapes_of(solid), 1e-6 * mesh_size(mesh), "Billet");
-      snap_nodes(mesh, shapes);
+      snap_nodes(mesh, assign(mesh));
       check_all_planes_cut(mesh, solid);
       put_symmetry_last(mesh);
       return mesh;

@@ -438,7 +438,10 @@ namespace retroforge
     }
   } // namespace
 
-  TetMesh mesh_with_gmsh(const CutSolid &solid, const double element_size, const std::string &where)
+  TetMesh mesh_with_gmsh(const CutSolid                               &solid,
+                         const double                                  element_size,
+                         const std::function<void(TetMesh &, double)> &improve,
+                         const std::string                            &where)
   {
     return within_gmsh(
       where, "check the sizes and planes of the billet, or choose another element size", [&]() {
@@ -448,8 +451,13 @@ namespace retroforge
         double  best_angle = -1;
         for (const Attempt &attempt : attempts)
         {
-          TetMesh      mesh  = attempt_mesh(attempt, element_size, where);
-          const double angle = minimum_dihedral_angle(mesh.cells, mesh.X);
+          TetMesh mesh  = attempt_mesh(attempt, element_size, where);
+          double  angle = minimum_dihedral_angle(mesh.cells, mesh.X);
+          if (angle < good_angle)
+          {
+            improve(mesh, good_angle);
+            angle = minimum_dihedral_angle(mesh.cells, mesh.X);
+          }
           if (angle > best_angle)
           {
             best       = std::move(mesh);

@@ -27,12 +27,16 @@ namespace retroforge
     unsigned int n_cuts_of_section = 0;
   };
 
-  /// Cells and nodes (no faces, no patches) of an unstructured tetrahedral mesh of the solid, edges of about
-  /// `element_size`. Cells are positively oriented. When the first mesh has a dihedral angle below 15
-  /// degrees, others are tried, with edges up to 6 % shorter or 4 % longer, and the best is returned (a sharp
-  /// edge of the solid limits it). The same input gives the same mesh, bit for bit. Throws Error at `where`
-  /// when the cuts leave nothing or Gmsh fails. To be called on one rank only.
-  TetMesh mesh_with_gmsh(const CutSolid &solid, double element_size, const std::string &where);
+  /// Cells and nodes of an unstructured tetrahedral mesh of the solid, edges of about `element_size`. Cells
+  /// are positively oriented. When the first mesh has a dihedral angle below 15 degrees, even once `improve`
+  /// has changed it, others are tried, with edges up to 6 % shorter or 4 % longer, and the best is returned
+  /// (a sharp edge of the solid limits it). The same input gives the same mesh, bit for bit. Throws Error at
+  /// `where` when the cuts leave nothing or Gmsh fails. To be called on one rank only.
+  /// @param improve  gets the mesh, without faces and patches, and the angle; its faces and patches are kept
+  TetMesh mesh_with_gmsh(const CutSolid                               &solid,
+                         double                                        element_size,
+                         const std::function<void(TetMesh &, double)> &improve,
+                         const std::string                            &where);
 
   /// Cells and nodes of an unstructured tetrahedral mesh of what the triangles enclose. The triangles, turned
   /// outwards, are kept as they are; the nodes of the result are first `X`, then those made inside. The same
