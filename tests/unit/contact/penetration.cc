@@ -2,27 +2,27 @@
 // Copyright (C) 2026 The Retroforge authors
 
 // The deepest point of a surface in a die. Proved, with a block of edges 10 and elements of 5: a plane 0.3
-// above its base is reported 0.3 deep; a roof whose ridge passes between the nodes, 0.2 above the base, is
-// found at the middle of an edge, deeper than any node, 0.2 / sqrt(1.01); a die away from the block is not
+// above its base is reported 0.3 deep; a roof that falls by 1 over 10, whose ridge passes midway between
+// nodes at x = 0 and x = 5, 0.3 above the base, is found at the middle of an edge, 0.3 / sqrt(1.01) = 0.2985
+// deep, and no node deeper than (0.3 - 0.25) / sqrt(1.01) = 0.0498; a die away from the block is not
 // reported.
 
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/billet/billet.h>
 #include <retroforge/contact/penetration.h>
 
 #include <cstdio>
+
+#include "../mesh/block_mesh.h"
 
 using namespace retroforge;
 
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  BilletParameters                         parameters;
-  parameters.base_centre  = Vec3();
-  parameters.size         = Vec3({10., 10., 10.});
-  parameters.element_size = 5.;
-  const TetMesh  mesh     = make_billet(parameters, MPI_COMM_SELF);
+  TetMesh mesh = block_mesh({{2, 2, 2}}, [](unsigned int, unsigned int, unsigned int) { return true; });
+  for (Vec3 &x : mesh.X)
+    x = 5. * x - Vec3({5., 5., 0.});
   const Topology topology(mesh);
   const auto     report = [&](const char *name, const Die &die, const double lift) {
     const std::vector<DieState<double>> states  = {{Vec3(), Vec3({0., 0., lift}), 0., {}}};
@@ -42,9 +42,9 @@ int main(int argc, char **argv)
                                    Vec3({12.5, 20., -1.})};
   const std::vector<Triangle> t = {{{0, 1, 4}}, {{0, 4, 3}}, {{1, 2, 5}}, {{1, 5, 4}}};
   const Die                   roof("roof", TriangleSurface("roof", x, t), 3., {false, 40.});
-  const Penetration           deepest = report("roof", roof, 0.2);
+  const Penetration           deepest = report("roof", roof, 0.3);
   double                      nodes   = 0.;
   for (const Vec3 &node : mesh.X)
-    nodes = std::max(nodes, roof.depth_of(node, Vec3({0., 0., 0.2}), 5.));
+    nodes = std::max(nodes, roof.depth_of(node, Vec3({0., 0., 0.3}), 5.));
   std::printf("  at x = %.1f, deepest node %.4f\n", deepest.place[0], nodes);
 }

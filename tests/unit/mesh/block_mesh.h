@@ -3,8 +3,10 @@
 #pragma once
 
 #include <retroforge/mesh/cell_faces.h>
+#include <retroforge/mesh/renumber.h>
 #include <retroforge/mesh/tet_mesh.h>
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <set>
@@ -52,6 +54,22 @@ namespace retroforge
         top = top && mesh.X[a][2] == n[2];
       mesh.faces.push_back({face.nodes, top ? 0u : 1u});
     }
+    return mesh;
+  }
+
+  /// Half of a box, 0 <= x <= size[0] / 2, |y| <= size[1] / 2, 0 <= z <= size[2], of n[0] x n[1] x n[2] such
+  /// blocks, with a plane of symmetry at x = 0: a billet whose mesh no generator decides.
+  inline TetMesh half_box_mesh(const Vec3 &size, const std::array<unsigned int, 3> &n)
+  {
+    TetMesh mesh = block_mesh(n, [](unsigned int, unsigned int, unsigned int) { return true; });
+    for (Vec3 &x : mesh.X)
+      x = Vec3({x[0] / n[0] * size[0] / 2., (x[1] / n[1] - 0.5) * size[1], x[2] / n[2] * size[2]});
+    mesh.patches.push_back({"symmetry 1", Plane{Vec3(), Vec3({-1., 0., 0.})}});
+    for (BoundaryFace &face : mesh.faces)
+      if (std::all_of(
+            face.nodes.begin(), face.nodes.end(), [&](const NodeIndex k) { return mesh.X[k][0] == 0.; }))
+        face.patch = 2;
+    renumber(mesh);
     return mesh;
   }
 } // namespace retroforge

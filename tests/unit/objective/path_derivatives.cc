@@ -10,13 +10,13 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/billet/billet.h>
 #include <retroforge/objective/contact_pressure.h>
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>
 #include <retroforge/objective/fold.h>
 
 #include "../contact/wavy_sheet.h"
+#include "../mesh/block_mesh.h"
 #include "objective_test_tools.h"
 
 using namespace retroforge;
@@ -104,15 +104,6 @@ struct PathProblem
   std::array<ActiveSet, n_increments>                active;
   double                                             layer = 0.43, edge_stiffness = 0.3;
 
-  static TetMesh make_mesh()
-  {
-    BilletParameters parameters;
-    parameters.size            = Vec3({10., 8., 6.});
-    parameters.element_size    = 2.5;
-    parameters.symmetry_planes = {Vec3({-1., 0., 0.})};
-    return make_billet(parameters, MPI_COMM_WORLD);
-  }
-
   static std::vector<Die> make_dies(const bool curved)
   {
     const Vec3 up = Vec3({0.1, -0.15, 1.}), side = Vec3({-1., 0.1, 0.2});
@@ -122,7 +113,10 @@ struct PathProblem
   }
 
   PathProblem(Random &random, const bool curved)
-      : scene(make_mesh(), ElementPair::mini, make_dies(curved), MPI_COMM_WORLD)
+      : scene(half_box_mesh(Vec3({10., 8., 6.}), {{3, 6, 4}}),
+              ElementPair::mini,
+              make_dies(curved),
+              MPI_COMM_WORLD)
       , at(empty_inputs<double>(scene))
   {
     at.physics.law     = {1.3, 0.4, 0.2};

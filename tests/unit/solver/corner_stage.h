@@ -2,23 +2,14 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/billet/billet.h>
 #include <retroforge/solver/stage.h>
 
 #include "../contact/wavy_sheet.h"
 #include "../element/element_test_tools.h"
+#include "../mesh/block_mesh.h"
 
 namespace retroforge
 {
-  inline TetMesh make_mesh()
-  {
-    BilletParameters parameters;
-    parameters.size            = Vec3({10., 8., 6.});
-    parameters.element_size    = 2.;
-    parameters.symmetry_planes = {Vec3({-1., 0., 0.})};
-    return make_billet(parameters, MPI_COMM_WORLD);
-  }
-
   inline std::vector<Die> make_dies()
   {
     const Vec3 side = Vec3({-1., 0.1, 0.2});
@@ -29,7 +20,10 @@ namespace retroforge
   /// A corner of a billet with a plane of symmetry between a wavy die and a tilted plane, at any velocity.
   struct CornerStage
   {
-    Scene                scene{make_mesh(), ElementPair::mini, make_dies(), MPI_COMM_WORLD};
+    Scene                scene{half_box_mesh(Vec3({10., 8., 6.}), {{4, 6, 4}}),
+                ElementPair::mini,
+                make_dies(),
+                MPI_COMM_WORLD};
     NodalVectors<double> X;
     Physics<double>      physics;
     ContactSet<double>   contact;
