@@ -8,6 +8,7 @@
 #include <retroforge/mesh/mesh_quality.h>
 
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <string>
 
@@ -68,8 +69,14 @@ namespace retroforge
   }
 
   /// What an action throws, on one line.
+  /// @param shown  makes of the message what is printed of it
   template <typename Action>
-  void print_error(const std::string &title, const Action &action)
+  void print_error(
+    const std::string                                     &title,
+    const Action                                          &action,
+    const std::function<std::string(const std::string &)> &shown = [](const std::string &text) {
+      return text;
+    })
   {
     std::cout << title << " -> ";
     try
@@ -79,7 +86,7 @@ namespace retroforge
     }
     catch (const Error &error)
     {
-      std::cout << error.what() << std::endl;
+      std::cout << shown(error.what()) << std::endl;
     }
   }
 } // namespace retroforge
