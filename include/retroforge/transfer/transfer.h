@@ -53,7 +53,9 @@ namespace retroforge
   /// 10 and 60 transfers: between two unrelated meshes 0.39 and 0.73 (0.46 and 0.87) linear, 0.12 and 0.30
   /// (0.15 and 0.42) with half gradients; with 3 % of the nodes moved each time 0.022 and 0.104 (0.029 and
   /// 0.108) against 0.0065 and 0.031 (0.011 and 0.034). Undershoot with half gradients: 0.2 to 1.9 % of the
-  /// peak. Cost per new node: 4 against 60 microseconds. Hence half gradients are the default.
+  /// peak. Cost per new node: 4 against 60 microseconds. Hence half gradients are the default. Noise falls,
+  /// too, to 0.4 of its norm in 60 transfers; but it is not stable for ever: back and forth 500 times between
+  /// one pair of meshes, noise grows again, by 0.2 % each time. The whole gradient makes it grow by 20 %.
   enum class Interpolation
   {
     linear, ///< of the old cell's four corners: weights >= 0, so no value leaves the range of the old ones
