@@ -144,7 +144,7 @@ int main(int argc, char **argv)
     const double bulge = 1.3 + 0.3 * x[2] * (50 - x[2]) / 625;
     x                  = Vec3({bulge * x[0], bulge * x[1], 0.45 * x[2]});
   }
-  test_rebuild("barrel", barrel, 10, 6);
+  test_rebuild("barrel", barrel, 15, 6);
 
   // A node of the top goes through the bottom, to z = -5.
   auto X = box.X;
