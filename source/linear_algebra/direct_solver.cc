@@ -193,8 +193,8 @@ namespace retroforge
     const double      *from  = x_merged.begin();
     for (unsigned int block = 0; block < x.n_blocks(); ++block)
     {
-      std::copy(from, from + x.block(block).local_size(), x.block(block).begin());
-      from += x.block(block).local_size();
+      std::copy(from, from + x.block(block).locally_owned_size(), x.block(block).begin());
+      from += x.block(block).locally_owned_size();
     }
     return calls;
   }
