@@ -95,7 +95,7 @@ void show_bad_files()
 
 void show_bad_headers()
 {
-  show_changed("other format", start, "header", [](const hid_t g) { replace_attribute(g, "format", 8u); });
+  show_changed("other format", start, "header", [](const hid_t g) { replace_attribute(g, "format", 9u); });
   show_changed(
     "format is no integer", start, "header", [](const hid_t g) { replace_attribute(g, "format", 1.); });
   show_changed("cells of five nodes", start, "header", [](const hid_t g) {
@@ -134,17 +134,37 @@ void show_bad_increments()
   });
   constexpr unsigned int none = invalid_index;
   show("pair of a node that is not there", [](const hid_t g) {
-    replace(g, "pairs", {4, 3}, std::vector<unsigned int>{0, none, 1, 1, none, 1, 12, none, 1, 3, none, 1});
+    replace(g,
+            "pairs",
+            {4, 4},
+            std::vector<unsigned int>{0, none, 0, 1, 1, none, 1, 1, 12, none, 12, 1, 3, none, 3, 1});
   });
   show("pair of an edge whose second node is not there", [](const hid_t g) {
-    replace(g, "pairs", {4, 3}, std::vector<unsigned int>{0, none, 1, 1, none, 1, 2, 12, 1, 3, none, 1});
+    replace(g,
+            "pairs",
+            {4, 4},
+            std::vector<unsigned int>{0, none, 0, 1, 1, none, 1, 1, 2, 12, none, 1, 3, none, 3, 1});
   });
   show("pair of an edge from a node to itself", [](const hid_t g) {
-    replace(g, "pairs", {4, 3}, std::vector<unsigned int>{0, none, 1, 1, none, 1, 2, 2, 1, 3, none, 1});
+    replace(g,
+            "pairs",
+            {4, 4},
+            std::vector<unsigned int>{0, none, 0, 1, 1, none, 1, 1, 2, 2, none, 1, 3, none, 3, 1});
   });
   show("pair of a die that is not there", [](const hid_t g) {
-    replace(g, "pairs", {4, 3}, std::vector<unsigned int>{0, none, 1, 1, none, 1, 2, none, 2, 3, none, 1});
+    replace(g,
+            "pairs",
+            {4, 4},
+            std::vector<unsigned int>{0, none, 0, 1, 1, none, 1, 1, 2, none, 2, 2, 3, none, 3, 1});
   });
+  show("a velocity that is another node's", [](const hid_t g) {
+    replace(g,
+            "pairs",
+            {4, 4},
+            std::vector<unsigned int>{0, none, 0, 1, 1, none, 1, 1, 2, none, 3, 1, 3, none, 3, 1});
+  });
+  show("fewer nodes of the velocity than of the mesh",
+       [](const hid_t g) { replace_attribute(g, "n_velocity_nodes", 11u); });
   show("facet that is not there", [](const hid_t g) {
     replace(g, "facet", {4}, std::vector<unsigned int>{0, 0, 96, 0});
   });
@@ -154,7 +174,7 @@ void show_bad_increments()
   show("fewer kinds than pairs",
        [](const hid_t g) { replace(g, "kind", {3}, std::vector<unsigned char>(3)); });
   show("more pairs than flags", [](const hid_t g) {
-    replace(g, "pairs", {5, 3}, std::vector<unsigned int>(15));
+    replace(g, "pairs", {5, 4}, std::vector<unsigned int>(20));
   });
   show("flag of 2", [](const hid_t g) {
     replace(g, "touching", {4}, std::vector<unsigned char>{0, 1, 2, 0});

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 // Proves: what is written is read to the bit (largest numbers, signed zero, denormals, empty lists included),
 // while a run goes on, after resume and after finish, a change of mesh too; and a solve of n nodes costs less
-// than 56 n bytes: velocity and pressure are 32 n, the 500 pairs 18 bytes and 1 per solve, so 0.63 plus
+// than 56 n bytes: velocity and pressure are 32 n, the 500 pairs 22 bytes and 1 per solve, so 0.64 plus
 // HDF5's own.
 #include "record_test_tools.h"
 

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""Quadratic velocities: derivatives by four ways against each other, and the volume kept over a 50 % upsetting."""
+import os
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "..", ".."))
+from case_tools import figure, run  # noqa: E402
+
+CASE = os.path.join(HERE, "case.prm")
+ROWS = run(sys.argv[1], "check", CASE)[0]["check"]
+figure("adjoint_tangent", max(abs(row["adjoint"] / row["tangent"] - 1.) for row in ROWS))
+figure("replayed", max(min(abs(step["replayed_central"] / row["adjoint"] - 1.) for step in row["steps"]) for row in ROWS))
+figure("taylor_order", min(order for row in ROWS for order in row["taylor_orders"][:2]))
+
+CRUSHED = run(sys.argv[1], "simulate", CASE, {
+    "Die upper/facing": "0, 0, -1", "Press/stroke": 20, "Press/increments": 50, "Remeshing/when": "never", "Billet/element size": 7})[0]
+figure("cuts", CRUSHED["cuts"])
+figure("volume_lost", abs(1. - CRUSHED["volume_final"] / CRUSHED["volume_initial"]))
