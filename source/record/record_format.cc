@@ -316,6 +316,9 @@ namespace retroforge
           (pairs[i].point.is_node()
              ? "node " + std::to_string(first)
              : "the edge of nodes " + std::to_string(first) + " and " + std::to_string(second)) +
+          (pairs[i].point.has_own_velocity()
+             ? ", velocity node " + std::to_string(pairs[i].point.velocity_node)
+             : "") +
           " and die " + std::to_string(pairs[i].die) + " where there are " + std::to_string(n_nodes.mesh) +
           " nodes, " + std::to_string(n_nodes.velocity) + " of the velocity, and " +
           std::to_string(shape.die_facets.size()) + " dies, counted from 0");
