@@ -406,11 +406,6 @@ end
     for (unsigned int d = 0; d < dies.size(); ++d)
     {
       dies[d].check();
-      if (discretization.pair() == ElementPair::taylor_hood && dies[d].shape.name != "plane")
-        throw Error("Discretization/element",
-                    "is P2-P1, and die '" + dies[d].name + "' is no plane",
-                    "straight-sided elements with quadratic velocities are tried between planes only",
-                    "leave it at mini");
       if (dies[d].friction > 0. && !material.law.is_linear() && contact.slip_fraction < least_slip)
         throw Error("Contact/slip regularisation",
                     "is " + as_text(contact.slip_fraction) +

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/contact/contact.h>
+#include <retroforge/contact/level_gaps.h>
 #include <retroforge/element/mini_element.templates.h>
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace retroforge
 {
@@ -229,6 +230,43 @@ namespace retroforge
     }
   } // namespace
 
+  namespace
+  {
+    using PairOfVelocityNode = std::map<std::pair<unsigned int, NodeIndex>, unsigned int>; // by die and node
+
+    /// ContactSet::middles_around
+    std::vector<std::vector<unsigned int>> middles_around(const Topology                 &topology,
+                                                          const unsigned int              n_vertices,
+                                                          const MeshEdges                &edges,
+                                                          const PairOfVelocityNode       &index,
+                                                          const std::vector<ContactPair> &pairs)
+    {
+      std::vector<std::vector<unsigned int>> around(pairs.size());
+      std::vector<char>                      all(pairs.size(), 1);
+      std::set<unsigned int>                 dies;
+      for (const ContactPair &pair : pairs)
+        dies.insert(pair.die);
+      for (std::size_t e = 0; e < topology.surface_edges.size(); ++e)
+        for (const unsigned int d : dies)
+        {
+          const auto &ends   = topology.surface_edges[e];
+          const auto  middle = index.find({d, n_vertices + edges.find(ends[0], ends[1])});
+          for (unsigned int i = 0; i < 2; ++i)
+            if (const auto vertex = index.find({d, ends[i]}); vertex != index.end())
+            {
+              if (middle == index.end())
+                all[vertex->second] = 0;
+              else
+                around[vertex->second].push_back(middle->second);
+            }
+        }
+      for (unsigned int p = 0; p < pairs.size(); ++p)
+        if (!all[p])
+          around[p].clear();
+      return around;
+    }
+  } // namespace
+
   template <typename Number>
   ContactSet<Number> make_contact_set(const ContactView<Number>      &view,
                                       const std::vector<ContactPair> &pairs,
@@ -241,7 +279,7 @@ namespace retroforge
     contact.tau                                          = approach.tau;
     contact.approach                                     = approach.law;
     contact.quadratic                                    = edges != nullptr;
-    std::map<std::pair<unsigned int, NodeIndex>, unsigned int> index; // (die, velocity node) -> pair
+    PairOfVelocityNode index;
     for (const ContactPair &pair : pairs)
     {
       if (pair.point.has_own_velocity())
@@ -249,6 +287,12 @@ namespace retroforge
       contact.projections.push_back(
         dies[pair.die].project(pair.point.position(X), states[pair.die], pair.feature));
       contact.ramps.push_back(approach.ramp(contact.projections.back().delta, pair.touching));
+    }
+    if (edges)
+    {
+      contact.middles_around = middles_around(topology, mesh.n_nodes(), *edges, index, pairs);
+      contact.chords         = find_chords(view, pairs, index);
+      level_gaps(X, approach.ramp, contact);
     }
     contact.touched_by_edges = touched_by_edges(topology, pairs);
     for (const auto &[node, edge] : contact.touched_by_edges)
@@ -284,17 +328,24 @@ namespace retroforge
                            NodalVectors<double>          &X_bar,
                            std::vector<DieState<double>> &dies_bar)
   {
-    const std::vector<double> ramps_bar = reverse_touched_by_edges(contact, ramp, bar.ramp);
+    std::vector<double> gaps_bar = bar.delta;
+    if (contact.quadratic)
+      reverse_level_gaps(view.X, ramp, contact, bar.ramp, gaps_bar, X_bar);
+    else
+    {
+      const std::vector<double> ramps_bar = reverse_touched_by_edges(contact, ramp, bar.ramp);
+      for (unsigned int p = 0; p < gaps_bar.size(); ++p)
+        gaps_bar[p] += ramps_bar[p] * ramp.derivative(contact.projections[p].delta);
+    }
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
     {
-      const ContactPair &pair   = contact.pairs[p];
-      const double delta_bar    = bar.delta[p] + ramps_bar[p] * ramp.derivative(contact.projections[p].delta);
-      DieState<double> &die_bar = dies_bar[pair.die];
-      Vec3              at_point;
+      const ContactPair &pair    = contact.pairs[p];
+      DieState<double>  &die_bar = dies_bar[pair.die];
+      Vec3               at_point;
       view.dies[pair.die].reverse_project(pair.point.position(view.X),
                                           view.states[pair.die].displacement,
                                           pair.feature,
-                                          delta_bar,
+                                          gaps_bar[p],
                                           bar.n[p],
                                           at_point,
                                           die_bar.displacement,

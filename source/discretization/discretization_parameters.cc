@@ -12,7 +12,8 @@ namespace retroforge
       element,
       "Velocity and pressure in each tetrahedron: mini, linear with a bubble, and linear; or "
       "P2-P1, quadratic and linear (Taylor-Hood), which needs far larger elements for the same "
-      "accuracy, between dies that are planes. Units: none.",
+      "accuracy where dies and billet are flat; where they are curved, flat faces limit both alike, "
+      "and P2-P1 has the smoother gradients. Units: none.",
       dealii::Patterns::Selection("mini|P2-P1"));
     prm.leave_subsection();
   }

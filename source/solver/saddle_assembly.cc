@@ -345,6 +345,7 @@ namespace retroforge
     const NodePattern  &pattern   = system_.A->pattern();
     std::vector<double> added(3 * velocities_.n_owned(), 0.);
     system_.penalties_couple = false;
+    const ActiveSet chosen   = active.empty() ? stage.decide_active(W) : active;
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
     {
       const ContactPoint &point = stage.contact.pairs[p].point;
@@ -353,7 +354,7 @@ namespace retroforge
       system_.penalties_couple |= !point.has_own_velocity();
       const Tensor<2, 3> of_point =
         point.velocity_weight() * point.velocity_weight() *
-        contact_tangent(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact);
+        contact_tangent(stage.contact_node(p, W, chosen), stage.physics.law, stage.physics.contact);
       for (unsigned int a = 0; a < point.n_velocity_nodes(); ++a)
       {
         const NodeIndex k = point.velocity_node_at(a);

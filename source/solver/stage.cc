@@ -39,6 +39,10 @@ namespace retroforge
     ActiveSet active(contact.pairs.size());
     for (unsigned int p = 0; p < active.size(); ++p)
       active[p] = contact_node(p, W, {}).active;
+    for (unsigned int p = 0; p < contact.middles_around.size(); ++p)
+      if (const auto &middles = contact.middles_around[p]; !active[p] && !middles.empty())
+        active[p] =
+          std::all_of(middles.begin(), middles.end(), [&](const unsigned int m) { return active[m] != 0; });
     return active;
   }
 
@@ -46,6 +50,7 @@ namespace retroforge
   Field<Number> Stage<Number>::residual(const Field<Number> &W, const ActiveSet &active) const
   {
     const Partition &partition = scene.partition;
+    const ActiveSet  chosen    = active.empty() ? decide_active(W) : active;
     Field<Number>    r(scene.spaces);
     with_pair(scene.spaces, [&](const auto pair) {
       for (const CellIndex c : partition.visited_cells)
@@ -58,7 +63,7 @@ namespace retroforge
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (partition.sees(contact.pairs[p].point.nodes))
         contact.pairs[p].point.add_to_velocity(
-          contact_force(contact_node(p, W, active), physics.law, physics.contact), r.V);
+          contact_force(contact_node(p, W, chosen), physics.law, physics.contact), r.V);
     return r;
   }
 

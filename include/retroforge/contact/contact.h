@@ -31,6 +31,10 @@
 /// sinks with 1 % of the press speed leaves it 1 % of an increment's stroke in the die, times the pressure
 /// there over the mean one.
 ///
+/// Uniform pressure does not load the vertices of a quadratic velocity: whether one is pressed would be
+/// decided by the last digits. So one is pressed, too, where the middles of all its surface edges are. On
+/// curved dies the gaps are those that flat faces can close (level_gaps.h).
+///
 /// What belongs to the increment (delta, n, w, tau) is found once at X_i and kept for all its stages:
 /// ContactSet. What belongs to a stage (S, S^f) is computed from the stage's positions: ContactAreas.
 namespace retroforge
@@ -84,6 +88,14 @@ namespace retroforge
     DieFeature   feature;  ///< of the die, closest to the point
   };
 
+  /// An edge of the surface, whose ends and middle are in reach of one curved die.
+  struct Chord
+  {
+    unsigned int                middle;
+    std::array<unsigned int, 2> ends;   ///< entries in ContactSet::pairs, as the middle's
+    std::array<unsigned int, 2> images; ///< how often it stands at each end in the whole
+  };
+
   /// Contact as found at the start of an increment.
   template <typename Number>
   struct ContactSet
@@ -105,10 +117,16 @@ namespace retroforge
     /// Faces or, where velocities are quadratic, the four equal triangles that the middles of its edges cut
     /// each into.
     std::vector<Face> friction_faces;
-    bool              quadratic = false;
-    Number            tau       = 1.; ///< approach time [s]
-    ApproachLaw       approach;
-    double            edge_stiffness = 1.; ///< of edges' penalty over the nodes'
+    /// Where velocities are quadratic: of each pair of a vertex, the pairs of its surface edges' middles, if
+    /// all of them are in reach of its die; else, and of middles, none.
+    std::vector<std::vector<unsigned int>> middles_around;
+    /// Where velocities are quadratic: edges at a curved die, and all gaps before they were levelled [mm].
+    std::vector<Chord>  chords;
+    std::vector<Number> own_gaps;
+    bool                quadratic = false;
+    Number              tau       = 1.; ///< approach time [s]
+    ApproachLaw         approach;
+    double              edge_stiffness = 1.; ///< of edges' penalty over the nodes'
   };
 
   /// S, of edges times their stiffness, and S^f [mm^2] of each pair.

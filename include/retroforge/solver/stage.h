@@ -66,7 +66,7 @@ namespace retroforge
     explicit PhysicsBar(const std::vector<Die> &dies) { this->dies = no_derivatives(dies); }
   };
 
-  /// Which pairs count as h > 0; empty: decide from the velocity. A replay passes what was recorded.
+  /// Which pairs are pressed; empty: decide from the velocity. A replay passes what was recorded.
   using ActiveSet = std::vector<char>;
 
   /// Equilibrium at given positions: the sums over cells and contact nodes of value, residual, tangent data,
@@ -80,7 +80,7 @@ namespace retroforge
           const ContactSet<Number>   &contact,
           const NodalVectors<Number> &X);
 
-    /// Pair p as its force sees it. @param active  empty, or the frozen choice
+    /// Pair p as its force sees it. @param active  empty: its own h > 0; or the choice
     ContactNode<Number> contact_node(unsigned int p, const Field<Number> &W, const ActiveSet &active) const;
 
     Field<Number> residual(const Field<Number> &W, const ActiveSet &active) const;
@@ -88,7 +88,7 @@ namespace retroforge
     /// Deformation and friction power [mJ/s], this rank's part of the sums.
     std::pair<Number, Number> power(const Field<Number> &W, const ActiveSet &active) const;
 
-    /// h > 0 of every pair.
+    /// Which pairs are pressed: those with h > 0, and what they hold (ContactSet::middles_around).
     ActiveSet decide_active(const Field<Number> &W) const;
 
     const Scene                &scene;

@@ -9,10 +9,17 @@ sys.path.insert(0, os.path.join(HERE, "..", ".."))
 from case_tools import figure, run  # noqa: E402
 
 CASE = os.path.join(HERE, "case.prm")
-ROWS = run(sys.argv[1], "check", CASE)[0]["check"]
-figure("adjoint_tangent", max(abs(row["adjoint"] / row["tangent"] - 1.) for row in ROWS))
-figure("replayed", max(min(abs(step["replayed_central"] / row["adjoint"] - 1.) for step in row["steps"]) for row in ROWS))
-figure("taylor_order", min(order for row in ROWS for order in row["taylor_orders"][:2]))
+
+
+def derivatives(name, case):
+    rows = run(sys.argv[1], "check", case)[0]["check"]
+    figure(f"{name}adjoint_tangent", max(abs(row["adjoint"] / row["tangent"] - 1.) for row in rows))
+    figure(f"{name}replayed", max(min(abs(step["replayed_central"] / row["adjoint"] - 1.) for step in row["steps"]) for row in rows))
+    figure(f"{name}taylor_order", min(order for row in rows for order in row["taylor_orders"][:2]))
+
+
+derivatives("", CASE)
+derivatives("curved_", os.path.join(HERE, "curved.prm"))
 
 CRUSHED = run(sys.argv[1], "simulate", CASE, {
     "Die upper/facing": "0, 0, -1", "Press/stroke": 20, "Press/increments": 50, "Remeshing/when": "never", "Billet/element size": 7})[0]

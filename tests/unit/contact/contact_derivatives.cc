@@ -15,6 +15,9 @@
 //   surface and as facets: there normals change, the die's vertices count, and middles of edges are contact
 //   points, with a penalty of their own, that let nodes touch in their place: by the formula a node's ramp is
 //   1 - (1 - w) product (1 - w_edge), an edge's area the stiffness times a third of its faces;
+// - the same for quadratic velocities, whose middles have velocities of their own: gaps to the curved die are
+// levelled
+//   by the formulas of level_gaps.h, a vertex has a twelfth of its faces' area, a middle a quarter;
 // - the smooth ramp joins 1 and 0 with zero slope and curvature.
 
 #include <deal.II/base/mpi.h>
@@ -205,6 +208,8 @@ struct CornerScene
 {
   TetMesh                       mesh;
   Topology                      topology;
+  MeshEdges                     mesh_edges;
+  bool                          quadratic;
   NodalVectors<double>          X;
   std::vector<Die>              dies;
   std::vector<DieState<double>> states;
@@ -212,8 +217,13 @@ struct CornerScene
   FrictionRamp                  ramp;
   double                        edge_stiffness = 0.3;
 
-  CornerScene(const FrictionRamp &ramp, Random &random, const Lower lower)
-      : mesh(half_box_mesh(Vec3({10., 8., 6.}), {{3, 6, 4}})), topology(mesh), X(mesh.X), ramp(ramp)
+  CornerScene(const FrictionRamp &ramp, Random &random, const Lower lower, const bool quadratic)
+      : mesh(half_box_mesh(Vec3({10., 8., 6.}), {{3, 6, 4}}))
+      , topology(mesh)
+      , mesh_edges(mesh)
+      , quadratic(quadratic)
+      , X(mesh.X)
+      , ramp(ramp)
   {
     for (Vec3 &x : X)
       x += 0.1 * random.vector();
@@ -223,14 +233,19 @@ struct CornerScene
     if (lower != Lower::plane)
       dies[0] = Die("lower", wavy_sheet(), 2., {lower == Lower::smooth, 60., 1.});
     states = {{Vec3(), 0.1 * random.vector(), 0.3, {}}, {Vec3(), 0.1 * random.vector(), 0.2, {}}};
-    pairs  = find_contact_pairs({mesh, topology, dies, states, X}, ramp, 1.5 * ramp.width, true);
+    pairs  = find_contact_pairs(view(states, X), ramp, 1.5 * ramp.width, true);
+  }
+
+  template <typename Number>
+  ContactView<Number> view(const std::vector<DieState<Number>> &states, const NodalVectors<Number> &X) const
+  {
+    return {mesh, topology, dies, states, X, quadratic ? &mesh_edges : nullptr};
   }
 
   template <typename Number>
   ContactSet<Number> contact(const std::vector<DieState<Number>> &states, const NodalVectors<Number> &X) const
   {
-    return make_contact_set<Number>(
-      {mesh, topology, dies, states, X}, pairs, {ramp, Number(0.3), 0., edge_stiffness});
+    return make_contact_set<Number>(view(states, X), pairs, {ramp, Number(0.3), 0., edge_stiffness});
   }
 };
 
@@ -335,12 +350,7 @@ void check_mesh(const CornerScene &scene, Random &random, const Moved &moved, Er
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
     dies_bar[d].vertices.resize(scene.dies[d].surface() ? scene.dies[d].surface()->vertices().size() : 0);
   reverse_contact_areas(scene.mesh, scene.topology, contact, scene.X, areas_bar, X_bar, bar);
-  reverse_contact_set({scene.mesh, scene.topology, scene.dies, scene.states, scene.X},
-                      contact,
-                      scene.ramp,
-                      bar,
-                      X_bar,
-                      dies_bar);
+  reverse_contact_set(scene.view(scene.states, scene.X), contact, scene.ramp, bar, X_bar, dies_bar);
   double backward = dot(X_dot, X_bar);
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
     backward +=
@@ -422,12 +432,97 @@ void check_edges(const CornerScene &scene, const ContactSet<double> &contact, Er
               << std::endl;
 }
 
-double check_meshes(const FrictionRamp &ramp, const Lower lower)
+/// Gaps of all points as they are found, before any is levelled.
+std::vector<double> own_gaps(const CornerScene &scene, const ContactSet<double> &contact)
+{
+  std::vector<double> gaps;
+  for (const auto &[point, die, touching, feature] : contact.pairs)
+    gaps.push_back(scene.dies[die].project(point.position(scene.X), scene.states[die], feature).delta);
+  return gaps;
+}
+
+/// Counts edges of quadratic velocities that are bulges of a die; compares gaps, ramps and areas with the
+/// formulas.
+void check_middles(const CornerScene &scene, const ContactSet<double> &contact, Errors &errors)
+{
+  const std::vector<double>  own   = own_gaps(scene, contact);
+  const ContactAreas<double> areas = contact_areas(scene.mesh, scene.topology, contact, scene.X);
+  const auto                 pair  = [&](const unsigned int die, const NodeIndex a, const NodeIndex b) {
+    for (unsigned int q = 0; q < contact.pairs.size(); ++q)
+      if (contact.pairs[q].die == die && contact.pairs[q].point.nodes == std::array<NodeIndex, 2>{{a, b}})
+        return q;
+    return invalid_index;
+  };
+  const auto ramp = [&](const unsigned int p, const double gap) {
+    return scene.ramp(gap, contact.pairs[p].touching);
+  };
+  unsigned int n_kind[3] = {0, 0, 0}; // smooth, between, sharp
+  for (unsigned int d = 0; d < scene.dies.size(); ++d)
+  {
+    std::vector<double> sum(scene.X.size(), 0.), weight(scene.X.size(), 0.25);
+    struct Edge
+    {
+      unsigned int m, a, b;
+      double       c;
+    };
+    std::vector<Edge> edges;
+    if (scene.dies[d].surface())
+      for (const auto &[i, j] : scene.topology.surface_edges)
+        if (const unsigned int m = pair(d, i, j),
+            a                    = pair(d, i, invalid_index),
+            b                    = pair(d, j, invalid_index);
+            m != invalid_index && a != invalid_index && b != invalid_index)
+        {
+          const double bulge = 0.5 * (own[a] + own[b]) - own[m];
+          const double t =
+            std::max(0., std::min(1., (std::abs(bulge) / (scene.X[i] - scene.X[j]).norm() - 0.02) / 0.03));
+          const double c = 1. - std::pow(t, 3) * (10. - 15. * t + 6. * t * t);
+          ++n_kind[t == 0. ? 0 : t < 1. ? 1 : 2];
+          edges.push_back({m, a, b, c});
+          for (const NodeIndex k : {i, j})
+          {
+            const double w =
+              ramp(m, own[m]) * (in_plane(scene, i) != in_plane(scene, j) && in_plane(scene, k) ? 2. : 1.);
+            sum[k] += w * c * bulge;
+            weight[k] += w;
+          }
+        }
+    std::vector<double> gap = own;
+    for (unsigned int p = 0; p < gap.size(); ++p)
+      if (const ContactPair &of_die = contact.pairs[p]; of_die.die == d && of_die.point.is_node())
+        gap[p] -= sum[of_die.point.nodes[0]] / weight[of_die.point.nodes[0]];
+    for (const auto &[m, a, b, c] : edges)
+      gap[m] += ramp(a, gap[a]) * ramp(b, gap[b]) * c * (0.5 * (gap[a] + gap[b]) - gap[m]);
+    for (unsigned int p = 0; p < gap.size(); ++p)
+      if (contact.pairs[p].die == d)
+      {
+        errors.compare("levelled gaps", contact.projections[p].delta, gap[p]);
+        errors.compare("ramps of levelled gaps", contact.ramps[p], ramp(p, gap[p]));
+      }
+  }
+  for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+  {
+    const ContactPoint &point = contact.pairs[p].point;
+    double              third = 0.;
+    for (const BoundaryFace &face : scene.mesh.faces)
+      if (const auto &c = face.nodes; scene.mesh.is_surface(face) &&
+                                      std::count(c.begin(), c.end(), point.nodes[0]) > 0 &&
+                                      (point.is_node() || std::count(c.begin(), c.end(), point.nodes[1]) > 0))
+        third += cross(scene.X[c[1]] - scene.X[c[0]], scene.X[c[2]] - scene.X[c[0]]).norm() / 6.;
+    errors.compare("areas of vertices and middles", areas.S[p], third * (point.is_node() ? 0.25 : 0.75));
+  }
+  std::cout << "  edges at smooth and at sharp places of the die, and between:";
+  for (const unsigned int n : {n_kind[0], n_kind[2], n_kind[1]})
+    std::cout << " " << n;
+  std::cout << std::endl;
+}
+
+double check_meshes(const FrictionRamp &ramp, const Lower lower, const bool quadratic)
 {
   const bool        curved = lower != Lower::plane;
   Random            random;
   Errors            errors;
-  const CornerScene scene(ramp, random, lower);
+  const CornerScene scene(ramp, random, lower, quadratic);
   const auto        contact   = scene.contact(scene.states, scene.X);
   unsigned int      n_partial = 0, n_faces[2] = {0, 0};
   for (const double w : contact.ramps)
@@ -441,13 +536,16 @@ double check_meshes(const FrictionRamp &ramp, const Lower lower)
             << (lower == Lower::plane    ? "two tilted dies"
                 : lower == Lower::smooth ? "a curved and a tilted die"
                                          : "a die of facets and a tilted one")
-            << std::endl
+            << (quadratic ? ", quadratic" : "") << std::endl
             << "  friction faces on both dies: " << (n_faces[0] > 3 && n_faces[1] > 3 ? "yes" : "NO")
             << std::endl
             << "  points on edges or vertices of a die: "
             << (n_kind[0] < scene.pairs.size() ? "some" : "none") << std::endl
             << "  nodes within the ramp: " << (n_partial > 3 ? "some" : "none") << std::endl;
-  check_edges(scene, contact, errors);
+  if (quadratic)
+    check_middles(scene, contact, errors);
+  else
+    check_edges(scene, contact, errors);
   for (unsigned int k = 0; k < 5; ++k)
   {
     check_mesh(scene, random, {true, true, false}, errors);
@@ -548,9 +646,11 @@ int main(int argc, char **argv)
   std::cout << "potential" << std::endl;
   potential.print(1e-9);
 
-  for (const Lower lower : {Lower::plane, Lower::smooth, Lower::facets})
-    for (const bool sharp : {false, true})
-      largest = std::max(largest, check_meshes({lower == Lower::plane ? 0.9 : 0.4, sharp}, lower));
+  for (const bool quadratic : {false, true})
+    for (const Lower lower : {Lower::plane, Lower::smooth, Lower::facets})
+      for (const bool sharp : {false, true})
+        largest =
+          std::max(largest, check_meshes({lower == Lower::plane ? 0.9 : 0.4, sharp}, lower, quadratic));
   check_ramp();
   check_layer();
   std::cout << "FIGURE contact_derivative_error " << largest << std::endl;

@@ -20,17 +20,17 @@ namespace retroforge
   /// A corner of a billet with a plane of symmetry between a wavy die and a tilted plane, at any velocity.
   struct CornerStage
   {
-    Scene                scene{half_box_mesh(Vec3({10., 8., 6.}), {{4, 6, 4}}),
-                ElementPair::mini,
-                make_dies(),
-                MPI_COMM_WORLD};
+    Scene                scene;
     NodalVectors<double> X;
     Physics<double>      physics;
     ContactSet<double>   contact;
     Field<double>        W;
     ActiveSet            active;
 
-    CornerStage(Random &random, const double rho) : X(scene.mesh.X), W(scene.spaces)
+    CornerStage(Random &random, const double rho, const ElementPair pair = ElementPair::mini)
+        : scene(half_box_mesh(Vec3({10., 8., 6.}), {{4, 6, 4}}), pair, make_dies(), MPI_COMM_WORLD)
+        , X(scene.mesh.X)
+        , W(scene.spaces)
     {
       for (Vec3 &x : X)
         x += 0.05 * random.vector();
@@ -51,11 +51,12 @@ namespace retroforge
     Field<double> random_field(Random &random) const
     {
       Field<double> x(scene.spaces);
-      for (NodeIndex k = 0; k < scene.mesh.n_nodes(); ++k)
+      for (NodeIndex k = 0; k < scene.spaces.n_velocity_nodes(); ++k)
       {
         x.V[k] = random.vector();
-        x.P[k] = random.scalar();
-        for (const Vec3 &n : scene.topology.fixed_directions[k])
+        if (k < scene.mesh.n_nodes())
+          x.P[k] = random.scalar();
+        for (const Vec3 &n : scene.spaces.fixed_directions(k))
           x.V[k] -= (x.V[k] * n) * n;
       }
       for (Vec3 &beta : x.beta)

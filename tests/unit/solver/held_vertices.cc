@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// Which points of a quadratic velocity are pressed, at random velocities between a wavy die and a tilted
+// plane. Proved:
+// - a point with h > 0 is; a vertex with h <= 0 is where the middles of all its surface edges are in reach of
+// its die
+//   and have h > 0, and only there; a middle with h <= 0 is not;
+// - residual and matrix without a choice are those of that choice: on a vertex held by its middles acts a
+// force that pulls.
+
+#include <deal.II/base/mpi.h>
+
+#include "corner_stage.h"
+
+using namespace retroforge;
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+
+  Random       random;
+  CornerStage  corner(random, 50., ElementPair::taylor_hood);
+  const auto  &pairs  = corner.contact.pairs;
+  const auto   stage  = corner.stage();
+  unsigned int n_held = 0, n_free = 0, n_wrong = 0, n_pulls = 0;
+  for (unsigned int trial = 0; trial < 20; ++trial)
+  {
+    Field<double> W = corner.random_field(random);
+    // Middles move towards a die that is near them, so that vertices are surrounded.
+    for (const ContactPair &pair : pairs)
+      if (!pair.point.is_node() && random.scalar() < 0.9)
+        W.V[pair.point.velocity_node] += 1.5 * Vec3(pair.die == 0 ? Vec3({0., 0., -1.}) : Vec3({1., 0., 0.}));
+    const ActiveSet   active = stage.decide_active(W);
+    std::vector<char> own;
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+      own.push_back(approach_excess(stage.contact_node(p, W, active)) > 0.);
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+    {
+      bool held = pairs[p].point.is_node();
+      if (held)
+        for (const auto &[a, b] : corner.scene.topology.surface_edges)
+          if (a == pairs[p].point.nodes[0] || b == pairs[p].point.nodes[0])
+          {
+            bool pressed = false;
+            for (unsigned int q = 0; q < pairs.size(); ++q)
+              pressed |= pairs[q].die == pairs[p].die && own[q] &&
+                         pairs[q].point ==
+                           ContactPoint::middle(
+                             a, b, corner.scene.mesh.n_nodes() + corner.scene.spaces.edges()->find(a, b));
+            held = held && pressed;
+          }
+      n_wrong += bool(active[p]) != (own[p] || held);
+      n_held += held && !own[p];
+      n_free += pairs[p].point.is_node() && !held && !own[p];
+      if (held && !own[p])
+      {
+        const auto          node    = stage.contact_node(p, W, active);
+        ContactNode<double> sliding = node;
+        sliding.Sf                  = 0.;
+        n_pulls += contact_force(sliding, corner.physics.law, corner.physics.contact) * node.n < 0.;
+      }
+    }
+    const Field<double> r = stage.residual(W, active), decided = stage.residual(W, {});
+    for (std::size_t k = 0; k < r.V.size(); ++k)
+      n_wrong += r.V[k] != decided.V[k];
+  }
+  std::cout << "vertices that only their middles hold: " << (n_held > 5 ? "yes" : "NO")
+            << "\nvertices that nothing holds: " << (n_free > 5 ? "yes" : "NO")
+            << "\npulled where held: " << (n_pulls == n_held ? "yes" : "NO")
+            << "\nas the rule says, and so the residual: " << (n_wrong == 0 ? "yes" : "NO") << std::endl;
+}
