@@ -10,14 +10,17 @@
 namespace retroforge
 {
   RunOutput::RunOutput(const Case &at, const WholePart &whole, const ObjectiveTrace &trace, Timings &timings)
-      : case_(at), whole_(whole), trace_(trace), timings_(timings)
+      : case_(at)
+      , whole_(whole)
+      , trace_(trace)
+      , timings_(timings)
+      , fields_(at.comm, at.command.output_directory, at.model, at.process, at.billet, at.X_0)
   {
+    const std::string &folder = at.command.output_directory;
     if (dealii::Utilities::MPI::this_mpi_process(at.comm) != 0)
       return;
-    const std::string &folder = at.command.output_directory;
-    history_                  = std::make_unique<History>(folder + "/history.csv");
-    objectives_               = std::make_unique<ObjectiveHistory>(folder + "/objectives.csv");
-    fields_ = std::make_unique<FieldWriter>(folder, at.model, at.process, at.billet, at.X_0);
+    history_    = std::make_unique<History>(folder + "/history.csv");
+    objectives_ = std::make_unique<ObjectiveHistory>(folder + "/objectives.csv");
     print_head(whole);
   }
 
@@ -41,14 +44,15 @@ namespace retroforge
     if (is_due(event.state, case_.parameters.objectives.every))
       add_objectives(event.state);
     const auto timing = timings_.scope("output");
-    if (!history_)
-      return;
-    const HistoryRow row = row_of(event);
-    history_->add(row);
-    fields_->follow(event);
-    print(event, row);
+    if (history_)
+    {
+      const HistoryRow row = row_of(event);
+      history_->add(row);
+      print(event, row);
+    }
+    fields_.follow(event);
     if (is_due(event.state, case_.parameters.output.every))
-      fields_->add(event);
+      fields_.add(event);
   }
 
   void RunOutput::add_objectives(const ForgingState &state)
@@ -115,8 +119,7 @@ namespace retroforge
 
   void RunOutput::add_failed(const ForgingState &state)
   {
-    if (fields_)
-      fields_->add_failed(state);
+    fields_.add_failed(state);
   }
 
   std::vector<std::string> RunOutput::untouched_dies() const

@@ -128,14 +128,13 @@ class Run:
             return None, None
         steps = {}
         for entry in xml.parse(path).iter("DataSet"):
-            steps.setdefault(float(entry.get("timestep", 0)), []).append(
-                (int(entry.get("part", 0)), entry.get("name"), self.directory / entry.get("file")))
+            steps.setdefault(float(entry.get("timestep", 0)), []).append(self.directory / entry.get("file"))
         if not steps:
             return None, None
-        return tuple(self._read_step(sorted(steps[time])) for time in (min(steps), max(steps)))
+        return tuple(self._read_step(steps[time]) for time in (min(steps), max(steps)))
 
     @staticmethod
-    def _read_step(parts):
-        """Part 0 is the workpiece, the others are dies."""
-        (_, _, workpiece), *dies = parts
-        return Step(vtu.read(workpiece), [vtu.read(file) for _, _, file in dies])
+    def _read_step(files):
+        """The first is the workpiece, the others are dies."""
+        workpiece, *dies = files
+        return Step(vtu.read(workpiece), [vtu.read(file) for file in dies])

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""Read VTU files (ASCII, or inline base64 with or without zlib): tetrahedra, whose boundary is drawn, or triangles."""
+"""Read VTU files (ASCII, or inline base64 with or without zlib): tetrahedra, whose boundary is drawn, or triangles.
+
+The program's files give each cell points of its own and have all fields at points, also those of cells. Here equal points
+are one node; of quadratic cells the corners count."""
 import base64
 import dataclasses
 import xml.etree.ElementTree as xml
@@ -10,8 +13,9 @@ import numpy as np
 
 TYPES = {"Float64": "f8", "Float32": "f4", "Int64": "i8", "UInt64": "u8", "Int32": "i4", "UInt32": "u4",
          "Int16": "i2", "UInt16": "u2", "Int8": "i1", "UInt8": "u1"}
-TRIANGLE, TETRAHEDRON = 5, 10
-N_CORNERS = {TRIANGLE: 3, TETRAHEDRON: 4}
+TRIANGLE, TETRAHEDRON, QUADRATIC_TETRAHEDRON = 5, 10, 24
+N_POINTS = {TRIANGLE: 3, TETRAHEDRON: 4, QUADRATIC_TETRAHEDRON: 10}
+N_CORNERS = {TRIANGLE: 3, TETRAHEDRON: 4, QUADRATIC_TETRAHEDRON: 4}
 FACES = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))  # outward for a positive tetrahedron
 
 
@@ -48,7 +52,8 @@ class Surface:
 
 @dataclasses.dataclass
 class Mesh:
-    """Cells (n, 4) are tetrahedra, cells (n, 3) triangles. Symmetry planes: point and outward normal of each."""
+    """Cells (n, 4) are tetrahedra, cells (n, 3) triangles. Point data are fields with one value at each node, cell data those
+    with one value in each cell, a constant is both. Symmetry planes: point and outward normal of each."""
     points: np.ndarray
     cells: np.ndarray
     point_data: dict
@@ -74,40 +79,63 @@ class Mesh:
 
 
 def read(path):
-    """The tetrahedra of a file or, where it has none, its triangles.
+    """The tetrahedra of a file or, where it has none, its triangles, of all its pieces.
 
-    @throws ValueError  for several pieces, a compressor or a data format that is not known, cells of other types
+    @throws ValueError  for no piece, a compressor or a data format that is not known, cells of other types
     """
     root = xml.parse(path).getroot()
     grid = root.find("UnstructuredGrid")
-    pieces = [] if grid is None else grid.findall("Piece")
-    if len(pieces) != 1:
-        raise ValueError(f"{path}: has {len(pieces)} pieces of an unstructured grid, expected one")
+    if grid is None or grid.find("Piece") is None:
+        raise ValueError(f"{path}: has no piece of an unstructured grid")
     decode = _Decoder(path, root)
-    points = decode(pieces[0].find("Points/DataArray")).reshape(-1, 3)
-    cells = {array.get("Name"): decode(array) for array in pieces[0].find("Cells")}
-    kind = next((kind for kind in (TETRAHEDRON, TRIANGLE) if (cells["types"] == kind).any()), None)
+    pieces = [_Piece(piece, decode) for piece in grid.findall("Piece")]
+    kind = next((kind for kind in (QUADRATIC_TETRAHEDRON, TETRAHEDRON, TRIANGLE)
+                 if any((piece.types == kind).any() for piece in pieces)), None)
     if kind is None:
         raise ValueError(f"{path}: has neither tetrahedra nor triangles; the report draws nothing else")
-    chosen = cells["types"] == kind
-    ends = cells["offsets"][chosen].astype(int)
-    connectivity = cells["connectivity"].astype(int)[ends[:, None] - np.arange(N_CORNERS[kind], 0, -1)]
-    point_data = {array.get("Name"): decode(array) for array in pieces[0].findall("PointData/DataArray")}
-    cell_data = {array.get("Name"): decode(array)[chosen] for array in pieces[0].findall("CellData/DataArray")}
-    if kind == TRIANGLE:
-        return Mesh(points.astype(float), connectivity, point_data, cell_data)
-    mesh = _merge(points, connectivity, point_data, cell_data)
+    mesh = _merge(*(_joined(parts) for parts in zip(*(piece.corners(kind) for piece in pieces))))
     planes = grid.find("FieldData/DataArray[@Name='symmetry_planes']")
     if planes is not None:
         mesh.symmetry_planes = decode(planes).reshape(-1, 6)
     return mesh
 
 
-def _merge(points, cells, point_data, cell_data):
-    """Make one node of equal points: some writers give each tetrahedron its own."""
-    _, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
-    return Mesh(points[first].astype(float), inverse.reshape(-1)[cells],
-                {name: values[first] for name, values in point_data.items()}, cell_data)
+class _Piece:
+    def __init__(self, piece, decode):
+        self.points = decode(piece.find("Points/DataArray")).reshape(-1, 3)
+        cells = {array.get("Name"): decode(array) for array in piece.find("Cells")}
+        self.types, self.connectivity, self.ends = cells["types"], cells["connectivity"].astype(int), cells["offsets"].astype(int)
+        self.point_data, self.cell_data = ({array.get("Name"): decode(array) for array in piece.findall(f"{kind}/DataArray")}
+                                           for kind in ("PointData", "CellData"))
+
+    def corners(self, kind):
+        """Of cells of a kind: places (cell, corner, 3), fields at points {name: (cell, corner, ...)} and in cells {name: (cell, ...)}"""
+        chosen = self.types == kind
+        first = self.ends[chosen] - N_POINTS[kind]
+        corners = self.connectivity[first[:, None] + np.arange(N_CORNERS[kind])]
+        return (self.points[corners], {name: values[corners] for name, values in self.point_data.items()},
+                {name: values[chosen] for name, values in self.cell_data.items()})
+
+
+def _joined(parts):
+    """Arrays, or dictionaries of arrays, of all pieces as one."""
+    if isinstance(parts[0], dict):
+        return {name: _joined([part[name] for part in parts]) for name in parts[0]}
+    return np.concatenate(parts)
+
+
+def _merge(places, fields, cell_data):
+    """A mesh of cells by their corners; equal places are one node."""
+    points, first, node = np.unique(places.reshape(-1, 3), axis=0, return_index=True, return_inverse=True)
+    node, point_data = node.reshape(-1), {}
+    for name, values in fields.items():
+        at_corners = values.reshape(-1, *values.shape[2:])
+        at_nodes = at_corners[first]
+        if np.array_equal(at_nodes[node], at_corners, equal_nan=True):
+            point_data[name] = at_nodes
+        if np.array_equal(np.broadcast_to(values[:, :1], values.shape), values, equal_nan=True):
+            cell_data[name] = values[:, 0]
+    return Mesh(points.astype(float), node.reshape(places.shape[:2]), point_data, cell_data)
 
 
 class _Decoder:

@@ -14,7 +14,8 @@
 namespace retroforge
 {
   /// Follows a forging and tells of it: a line per increment on the console and in history.csv, the
-  /// objectives in objectives.csv, the shapes in fields.pvd. All ranks follow; the first writes.
+  /// objectives in objectives.csv, the shapes in fields.pvd. All ranks follow; the first writes, and of
+  /// the fields each its own.
   class RunOutput
   {
   public:
@@ -56,6 +57,6 @@ namespace retroforge
 
     std::unique_ptr<History>          history_;
     std::unique_ptr<ObjectiveHistory> objectives_;
-    std::unique_ptr<FieldWriter>      fields_;
+    FieldWriter                       fields_;
   };
 } // namespace retroforge

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/discretization/element_pairs.h>
+#include <retroforge/discretization/triangulation.h>
+#include <retroforge/mesh/whole_part.h>
 #include <retroforge/output/contact_fields.h>
 #include <retroforge/output/die_pictures.h>
+#include <retroforge/output/field_file.h>
 #include <retroforge/output/field_writer.h>
-#include <retroforge/output/vtu_writer.h>
+#include <retroforge/output/safe_file.h>
 
 #include <cstdio>
+#include <sstream>
 
 namespace retroforge
 {
@@ -60,59 +64,63 @@ namespace retroforge
     }
   } // namespace
 
-  FieldWriter::FieldWriter(const std::string          &directory,
+  FieldWriter::FieldWriter(const MPI_Comm              comm,
+                           const std::string          &directory,
                            const ForgingModel         &model,
                            const Process<double>      &process,
                            const TetMesh              &billet,
                            const NodalVectors<double> &X_0)
-      : directory_(directory)
+      : comm_(comm)
+      , directory_(directory)
       , model_(model)
       , process_(process)
       , billet_(billet)
       , X_0_(X_0)
       , displacement_(X_0.size())
-      , pvd_(directory + "/fields.pvd")
   {
   }
 
-  void FieldWriter::write(const std::string &file, const Workpiece &workpiece) const
+  void FieldWriter::write(const MPI_Comm comm, const std::string &file, const Workpiece &workpiece) const
   {
+    const TetMesh   &mesh = workpiece.mesh;
     const CellFields cells =
-      cell_fields(workpiece.mesh, workpiece.spaces, workpiece.position, workpiece.W, process_.law);
-    std::vector<ScalarField> scalars = {{"pressure [MPa]", workpiece.W.P}};
-    std::vector<VectorField> vectors = {
-      {"velocity [mm/s]", {workpiece.W.V.begin(), workpiece.W.V.begin() + workpiece.mesh.n_nodes()}}};
+      cell_fields(mesh, workpiece.spaces, workpiece.position, workpiece.W, process_.law);
+    SharedTriangulation triangulation(comm);
+    make_triangulation(mesh, workpiece.X, triangulation);
+    FieldFile<3> picture(triangulation);
+    picture.add_linear("pressure", "MPa", workpiece.W.P);
+    picture.add_velocity("velocity", "mm/s", workpiece.W.V, workpiece.spaces);
     if (workpiece.displacement)
-      vectors.push_back({"displacement [mm]", *workpiece.displacement});
+      picture.add_linear("displacement", "mm", *workpiece.displacement);
     if (workpiece.contact)
     {
-      scalars.push_back({"touching_die", workpiece.contact->die});
-      scalars.push_back({"contact_pressure [MPa]", workpiece.contact->pressure});
-      vectors.push_back({"slip_velocity [mm/s]", workpiece.contact->slip});
+      picture.add_linear("touching_die", "", workpiece.contact->die);
+      picture.add_linear("contact_pressure", "MPa", workpiece.contact->pressure);
+      picture.add_linear("slip_velocity", "mm/s", workpiece.contact->slip);
     }
-    write_vtu(directory_ + "/" + file,
-              workpiece.mesh,
-              workpiece.X,
-              scalars,
-              vectors,
-              {{"equivalent_strain", workpiece.strain},
-               {"strain_rate [1/s]", cells.strain_rate},
-               {"von_mises_stress [MPa]", cells.von_mises}},
-              {{"deviatoric_stress [MPa]", cells.stress}});
+    picture.add_constant("equivalent_strain", "", workpiece.strain);
+    picture.add_constant("strain_rate", "1/s", cells.strain_rate);
+    picture.add_constant("von_mises_stress", "MPa", cells.von_mises);
+    picture.add_constant("deviatoric_stress", "MPa", cells.stress);
+    picture.add_symmetry_planes(symmetry_planes(mesh));
+    picture.write(directory_ + "/" + file);
   }
 
-  PvdWriter::Part FieldWriter::write_die(const unsigned int          d,
-                                         const double                stroke,
-                                         const std::string          &suffix,
-                                         const NodalVectors<double> &X) const
+  std::string FieldWriter::write_die(const unsigned int          d,
+                                     const double                stroke,
+                                     const std::string          &suffix,
+                                     const NodalVectors<double> &X) const
   {
     const Die        &die   = model_.dies[d];
     const bool        still = die.surface() && process_.dies[d].velocity.norm() == 0.;
     const std::string file  = "die_" + die.name + "_" + (still ? six_digits(0) : suffix) + ".vtu";
     if (!still || stroke == 0.)
-      write_vtu(directory_ + "/" + file,
-                die_picture(die, process_.at_stroke(stroke).dies[d].displacement, X));
-    return {"die " + die.name, file};
+    {
+      dealii::Triangulation<2, 3> facets;
+      make_triangulation(die_picture(die, process_.at_stroke(stroke).dies[d].displacement, X), facets);
+      FieldFile<2>(facets).write(directory_ + "/" + file);
+    }
+    return file;
   }
 
   void FieldWriter::add_step(const double                stroke,
@@ -120,15 +128,22 @@ namespace retroforge
                              const std::string          &suffix,
                              const NodalVectors<double> &X)
   {
-    std::vector<PvdWriter::Part> parts = {{"workpiece", file}};
+    const double time = process_.time(stroke);
+    while (!series_.empty() && series_.back().first == time)
+      series_.pop_back();
+    series_.emplace_back(time, file);
+    if (dealii::Utilities::MPI::this_mpi_process(comm_) != 0)
+      return;
     for (unsigned int d = 0; d < model_.dies.size(); ++d)
-      parts.push_back(write_die(d, stroke, suffix, X));
-    pvd_.add(process_.time(stroke), parts);
+      series_.emplace_back(time, write_die(d, stroke, suffix, X));
+    std::ostringstream out;
+    dealii::DataOutBase::write_pvd_record(out, series_);
+    write_file(directory_ + "/fields.pvd", out.str());
   }
 
-  void FieldWriter::add_billet()
+  void FieldWriter::add_billet(const MPI_Comm comm)
   {
-    if (!pvd_.steps().empty())
+    if (!series_.empty())
       return;
     const std::string          file = "fields_" + six_digits(0) + ".vtu";
     const Spaces               spaces(billet_, Topology(billet_), model_.element);
@@ -136,7 +151,7 @@ namespace retroforge
     const std::vector<double>  zero(billet_.n_nodes(), 0.), strain(billet_.n_cells(), 0.);
     const NodalVectors<double> still(billet_.n_nodes());
     const ContactFields        contact{zero, zero, still};
-    write(file, {billet_, spaces, X_0_, X_0_, at_rest, strain, &still, &contact});
+    write(comm, file, {billet_, spaces, X_0_, X_0_, at_rest, strain, &still, &contact});
     add_step(0., file, six_digits(0), X_0_);
   }
 
@@ -156,8 +171,9 @@ namespace retroforge
     const SolvedStage  &last    = event.solved.last();
     const ContactFields contact = contact_fields(last.stage, run.W, last.active);
     const std::string   number = six_digits(run.increments), file = "fields_" + number + ".vtu";
-    add_billet();
-    write(file, {scene.mesh, scene.spaces, run.X, last.X, run.W, run.strain, &displacement_, &contact});
+    add_billet(comm_);
+    write(
+      comm_, file, {scene.mesh, scene.spaces, run.X, last.X, run.W, run.strain, &displacement_, &contact});
     add_step(run.stroke, file, number, run.X);
   }
 
@@ -165,8 +181,9 @@ namespace retroforge
   {
     // The increment that failed may have begun with a remeshing, which nobody was told of.
     const auto *displacement = state.remeshed.size() == n_remeshings_ ? &displacement_ : nullptr;
-    add_billet();
-    write("failed.vtu",
+    add_billet(MPI_COMM_SELF);
+    write(MPI_COMM_SELF,
+          "failed.vtu",
           {state.leg->scene.mesh,
            state.leg->scene.spaces,
            state.X,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/discretization/triangulation.h>
+#include <retroforge/mesh/whole_part.h>
+#include <retroforge/output/field_file.h>
 #include <retroforge/output/sensitivity.h>
-#include <retroforge/output/vtu_writer.h>
 
 #include <cctype>
 
@@ -25,17 +27,22 @@ namespace retroforge
                          const std::vector<Die>     &dies,
                          const std::vector<Judged>  &judged)
   {
-    std::vector<VectorField> fields;
+    dealii::Triangulation<3> initial;
+    make_triangulation(billet, X_0, initial);
+    FieldFile<3> of_billet(initial);
     for (const Judged &objective : judged)
-      fields.push_back({"d" + as_identifier(objective.name) + "_dX0", objective.shape.X_0});
-    write_vtu(directory + "/sensitivity.vtu", billet, X_0, {}, fields, {});
+      of_billet.add_linear("d" + as_identifier(objective.name) + "_dX0", "", objective.shape.X_0);
+    of_billet.add_symmetry_planes(symmetry_planes(billet));
+    of_billet.write(directory + "/sensitivity.vtu");
     for (std::size_t d = 0; d < dies.size(); ++d)
       if (const TriangleSurface *surface = dies[d].surface())
       {
-        fields.clear();
+        dealii::Triangulation<2, 3> facets;
+        make_triangulation(*surface, facets);
+        FieldFile<2> of_die(facets);
         for (const Judged &objective : judged)
-          fields.push_back({"d" + as_identifier(objective.name) + "_dXdie", objective.shape.dies[d]});
-        write_vtu(directory + "/sensitivity_die_" + dies[d].name + ".vtu", *surface, fields);
+          of_die.add_linear("d" + as_identifier(objective.name) + "_dXdie", "", objective.shape.dies[d]);
+        of_die.write(directory + "/sensitivity_die_" + dies[d].name + ".vtu");
       }
   }
 } // namespace retroforge

@@ -115,12 +115,12 @@ class Report(ScratchTest):
             self.assertAlmostEqual(np.linalg.norm(part.area_vectors(), axis=1).sum(), area, 8)
 
     def test_steps(self):
-        """Parts of the first and the last time; a file of one part has no numbers."""
+        """Parts of the first and the last time; the first of a time is the workpiece."""
         synthetic_run.write(self.root, n=2, increments=4)
         points, triangles = synthetic_run.dome(2)
         synthetic_run.write_vtu(self.root / "die.vtu", points, triangles, {}, {}, "ascii")
         self.write("fields.pvd", '<VTKFile><Collection><DataSet timestep="0" file="fields_000000.vtu"/>'
-                   '<DataSet timestep="1" part="1" file="die.vtu"/><DataSet timestep="1" part="0" file="fields_000001.vtu"/>'
+                   '<DataSet timestep="1" part="0" file="fields_000001.vtu"/><DataSet timestep="1" part="0" file="die.vtu"/>'
                    '</Collection></VTKFile>')
         run = data.Run(self.root)
         self.assertEqual([len(step.dies) for step in (run.initial, run.final)], [0, 1])

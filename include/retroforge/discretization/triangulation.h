@@ -2,12 +2,20 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <deal.II/grid/tria.h>
+#include <deal.II/distributed/shared_tria.h>
 
+#include <retroforge/geometry/triangle_surface.h>
 #include <retroforge/mesh/tet_mesh.h>
 
 namespace retroforge
 {
+  /// A triangulation that all ranks know; its cells belong to them in their order, as many to each.
+  class SharedTriangulation : public dealii::parallel::shared::Triangulation<3>
+  {
+  public:
+    explicit SharedTriangulation(MPI_Comm comm);
+  };
+
   /// Fills an empty triangulation, serial or shared, with a mesh: cells in their order with their corners,
   /// vertices with the numbers of the nodes, the index of its patch as the boundary id of each face.
   /// deal.II accepts cells that are turned inside out and surfaces that are none: check the mesh before.
@@ -15,4 +23,7 @@ namespace retroforge
   void make_triangulation(const TetMesh              &mesh,
                           const NodalVectors<double> &X,
                           dealii::Triangulation<3>   &triangulation);
+
+  /// The same with a surface: its triangles in their order, vertices with their numbers.
+  void make_triangulation(const TriangleSurface &surface, dealii::Triangulation<2, 3> &triangulation);
 } // namespace retroforge

@@ -2,19 +2,21 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/output/pvd_writer.h>
 #include <retroforge/time/forging.h>
 
 namespace retroforge
 {
   /// The shapes of a run with their fields and the dies beside them, for ParaView: fields.pvd with
   /// fields_NNNNNN.vtu and die_NAME_NNNNNN.vtu, from the billet on, and failed.vtu where it failed.
-  /// doc/fields.md says what the fields are.
+  /// doc/fields.md says what the fields are. fields.pvd is complete after every call, so a run that is killed
+  /// leaves one that opens.
   class FieldWriter
   {
   public:
     /// What is passed must live as long.
-    FieldWriter(const std::string          &directory,
+    /// @param comm  of the ranks that write: each the cells that are its own, the first all else
+    FieldWriter(MPI_Comm                    comm,
+                const std::string          &directory,
                 const ForgingModel         &model,
                 const Process<double>      &process,
                 const TetMesh              &billet,
@@ -24,26 +26,31 @@ namespace retroforge
     /// remeshings as other nodal values are.
     void follow(const IncrementEvent &event);
 
-    /// The end of the increment followed last, with what its last stage found.
+    /// The end of the increment followed last, with what its last stage found. Collective.
+    /// @throws Error  if a file cannot be written
     void add(const IncrementEvent &event);
 
-    /// The workpiece where the run failed, with the fields of the last equilibrium.
+    /// The workpiece where the run failed, with the fields of the last equilibrium. The rank that calls this
+    /// writes all of it, for the others may have failed elsewhere.
     void add_failed(const ForgingState &state);
 
   private:
     struct Workpiece;
 
-    void add_billet();
-    void write(const std::string &file, const Workpiece &workpiece) const;
+    void add_billet(MPI_Comm comm);
+    void write(MPI_Comm comm, const std::string &file, const Workpiece &workpiece) const;
     /// @param suffix  of the file's name
     /// @param X       of the workpiece, which the picture of a plane covers
-    PvdWriter::Part
+    /// @returns the file
+    std::string
     write_die(unsigned int d, double stroke, const std::string &suffix, const NodalVectors<double> &X) const;
+    /// Replaces the last step where it is at the same time.
     void add_step(double                      stroke,
                   const std::string          &file,
                   const std::string          &suffix,
                   const NodalVectors<double> &X);
 
+    MPI_Comm                    comm_;
     std::string                 directory_;
     const ForgingModel         &model_;
     const Process<double>      &process_;
@@ -51,6 +58,7 @@ namespace retroforge
     const NodalVectors<double> &X_0_;
     NodalVectors<double>        displacement_;     ///< since the billet [mm]
     std::size_t                 n_remeshings_ = 0; ///< that it has been carried through
-    PvdWriter                   pvd_;
+    /// Times and their files: the workpiece, then the dies.
+    std::vector<std::pair<double, std::string>> series_;
   };
 } // namespace retroforge

@@ -3,11 +3,11 @@
 // Proves: every writer reports a full disk and a folder that does not exist with file, reason and remedy; and
 // a write that fails leaves the old file as it was.
 #include <retroforge/core/error.h>
+#include <retroforge/discretization/triangulation.h>
+#include <retroforge/output/field_file.h>
 #include <retroforge/output/history.h>
-#include <retroforge/output/pvd_writer.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/output/summary.h>
-#include <retroforge/output/vtu_writer.h>
 
 #include <sys/resource.h>
 
@@ -36,14 +36,16 @@ void all_writers(const std::string &file)
   TetMesh mesh;
   mesh.X     = {Vec3({0., 0., 0.}), Vec3({1., 0., 0.}), Vec3({0., 1., 0.}), Vec3({0., 0., 1.})};
   mesh.cells = {{{0, 1, 2, 3}}};
-  show([&] { write_vtu(file, mesh, mesh.X, {}, {}, {}); });
-  show([&] { PvdWriter(file).add(0., {{"workpiece", "a.vtu"}}); });
+  dealii::Triangulation<3> triangulation;
+  make_triangulation(mesh, mesh.X, triangulation);
+  show([&] { FieldFile<3>(triangulation).write(file); });
   show([&] { History history(file); });
   show([&] { Summary().write(file); });
 }
 
-int main()
+int main(int argc, char **argv)
 {
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   all_writers("/dev/full");
   std::cout << "the device is still one: " << std::filesystem::is_character_file("/dev/full") << '\n';
   all_writers("nowhere/file");

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""Files of fields as VTK reads them. Proved, of known functions of the place written by write_fields:
+- linear fields have their values at the points, under names with units; cell fields the cell's value at all its points; tensors are
+  symmetric, row by row; what is beyond single precision is infinite; planes of symmetry read back to the same bits;
+- a quadratic velocity is VTK's quadratic tetrahedra, and between the points, too, it is the function;
+- surfaces are triangles with values at their vertices;
+- two ranks write one file with two pieces, or one where a rank has no cell, that reads as that of one rank;
+- of whole runs: a time series has the workpiece and the dies at each time, and on two ranks, through a remeshing, the fields are those
+  of one rank but for the solver's tolerance. Usage: fields.py RETROFORGE WRITE_FIELDS"""
+import os
+import shutil
+import sys
+import xml.etree.ElementTree as xml
+
+import numpy as np
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from whole_runs import changed, command, cube, judge, main, prm, run, start, text_of  # noqa: E402
+
+WRITE_FIELDS = os.path.abspath(sys.argv[2])
+FILES = ("linear.vtu", "quadratic.vtu", "one_cell.vtu", "surface.vtu")
+TRIANGLE, TETRAHEDRON, QUADRATIC_TETRAHEDRON = 5, 10, 24
+SINGLE = 2e-6  # of numbers near ten
+CASE = changed(cube(20, 7, 2, 4), {"Remeshing": {"when": "increments", "every": 2}, "Contact": {"approach": 1},
+                                   "Output": {"fields every": 2}, "Newton": {"tolerance": 1e-10}})
+
+
+def read(file):
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(file)
+    reader.Update()
+    return reader.GetOutput()
+
+
+def points(grid):
+    return vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
+
+
+def fields(data):
+    return {data.GetArrayName(k): vtk_to_numpy(data.GetArray(k)) for k in range(data.GetNumberOfArrays())}
+
+
+def connectivity(grid):
+    return vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(grid.GetNumberOfCells(), -1)
+
+
+def types(grid):
+    return set(vtk_to_numpy(grid.GetCellTypesArray()))
+
+
+def linear(x):
+    return 1 + 2 * x[:, 0] - 3 * x[:, 1] + 0.5 * x[:, 2]
+
+
+def quadratic(x):
+    return np.stack([x[:, 0]**2 - x[:, 1] * x[:, 2], 1 + x[:, 1] * x[:, 0], x[:, 2]**2 + 0.25 * x[:, 0]], axis=1)
+
+
+def near(a, b, tolerance=SINGLE):
+    return a.shape == b.shape and np.abs(a - b).max() < tolerance * max(1, np.abs(b).max())
+
+
+def between(grid, n=200):
+    """Random places inside, and the fields there as VTK interpolates them."""
+    places = vtk.vtkPoints()
+    for x in np.random.default_rng(1).uniform(0.2, 2.8, (n, 3)):
+        places.InsertNextPoint(x)
+    probed = vtk.vtkPolyData()
+    probed.SetPoints(places)
+    probe = vtk.vtkProbeFilter()
+    probe.SetFindCellStrategy(vtk.vtkCellLocatorStrategy())  # the default one walks from cell to cell, by points they share
+    probe.SetInputData(probed)
+    probe.SetSourceData(grid)
+    probe.Update()
+    judge("places are inside", probe.GetValidPoints().GetNumberOfTuples() == n)
+    return points(probe.GetOutput()), fields(probe.GetOutput().GetPointData())
+
+
+def written():
+    for ranks in (1, 2):
+        done = start(([] if ranks == 1 else ["mpirun", "-np", str(ranks)]) + [WRITE_FIELDS])
+        judge(f"{ranks} rank(s): written", done.returncode == 0, done.stderr)
+        os.mkdir(f"ranks_{ranks}")
+        for file in FILES:
+            shutil.move(file, f"ranks_{ranks}")
+
+
+def box():
+    for name, kind, corners in (("linear", TETRAHEDRON, 4), ("quadratic", QUADRATIC_TETRAHEDRON, 10)):
+        grid = read(f"ranks_1/{name}.vtu")
+        x, data, cells = points(grid), fields(grid.GetPointData()), connectivity(grid)
+        judge(f"{name}: cells", types(grid) == {kind} and cells.shape == (162, corners) and len(x) == cells.size)
+        judge(f"{name}: they fill the box", abs(sum(np.linalg.det(x[c[1:4]] - x[c[0]]) for c in cells) / 6 - 27) < 1e-4)
+        judge(f"{name}: names", set(data) == {"pressure [MPa]", "displacement [mm]", "label", "velocity [mm/s]", "number", "stress [MPa]"},
+              set(data))
+        judge(f"{name}: scalar", near(data["pressure [MPa]"], linear(x)))
+        judge(f"{name}: vector", near(data["displacement [mm]"], x))
+        judge(f"{name}: velocity at the points", near(data["velocity [mm/s]"], quadratic(x)))
+        judge(f"{name}: too large", np.isinf(data["label"]).all())
+        number = data["number"][cells]
+        judge(f"{name}: of cells", (number == np.arange(len(cells))[:, None]).all())
+        stress = data["stress [MPa]"].reshape(-1, 3, 3)[cells]
+        expected = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]]) + number[:, :, None, None] * np.diag([1, 0, 0])
+        judge(f"{name}: tensor", (stress == expected).all())
+        planes = fields(grid.GetFieldData())["symmetry_planes"]
+        judge(f"{name}: planes of symmetry", np.array_equal(planes, [[0.1, 0, 1 / 3, -1, 0, 0], [0, 0, 0, 0, -1, 0]]), planes)
+        x, data = between(grid)
+        judge(f"{name}: a linear field between the points", near(data["pressure [MPa]"], linear(x), 1e-5))
+        is_quadratic = near(data["velocity [mm/s]"], quadratic(x), 1e-5)
+        judge(f"{name}: velocity between the points", is_quadratic == (name == "quadratic"))
+
+
+def surface():
+    grid = read("ranks_1/surface.vtu")
+    x, cells = points(grid), connectivity(grid)
+    judge("surface: triangles", types(grid) == {TRIANGLE} and near(x[cells[:, 2]], np.ones((4, 3))))
+    normals = np.cross(x[cells[:, 1]] - x[cells[:, 0]], x[cells[:, 2]] - x[cells[:, 0]])
+    judge("surface: they keep their orientation", (normals[:, 2] > 0).all(), normals)
+    judge("surface: vector", near(fields(grid.GetPointData())["gradient"], quadratic(x)))
+
+
+def ranks():
+    for file in FILES:
+        one, two = (read(f"ranks_{n}/{file}") for n in (1, 2))
+        a, b = fields(one.GetPointData()), fields(two.GetPointData())
+        judge(f"{file}: the same on two ranks", a.keys() == b.keys() and all(np.array_equal(a[name], b[name]) for name in a) and
+              np.array_equal(points(one), points(two)) and np.array_equal(connectivity(one), connectivity(two)))
+        n_pieces = len(list(xml.parse(f"ranks_2/{file}").iter("Piece")))
+        judge(f"{file}: pieces of two ranks", n_pieces == (2 if file in FILES[:2] else 1), n_pieces)
+    judge("two runs write the same bytes", all(text_of("ranks_1", file) == text_of(".", file) for file in FILES)
+          if start([WRITE_FIELDS]).returncode == 0 else False)
+
+
+def series():
+    run("simulate", "alone")
+    done = start(["mpirun", "-np", "2"] + command("simulate", "together"))
+    judge("series: ends on two ranks, remeshed", done.returncode == 0 and done.stdout.count("remeshed") == 1, done.stdout + done.stderr)
+    entries = [(float(entry.get("timestep")), entry.get("file")) for entry in xml.parse("together/fields.pvd").iter("DataSet")]
+    judge("series: times and files", entries == [(time, f"{name}_{number}.vtu") for time, number in (
+        (0, "000000"), (0.01, "000002"), (0.02, "000004")) for name in ("fields", "die_lower", "die_upper")], entries)
+    for file in (file for _, file in entries):
+        one, two = (read(f"{folder}/{file}") for folder in ("alone", "together"))
+        a, b = ({"points": points(grid), **fields(grid.GetPointData())} for grid in (one, two))
+        off = {name: np.abs(a[name] - b[name]).max() / max(np.abs(a[name]).max(), 1e-30) for name in a}
+        judge(f"series: {file} is that of one rank", a.keys() == b.keys() and max(off.values()) < 1e-4, off)
+
+
+main({"case.prm": prm(CASE)}, (written, box, surface, ranks, series))
