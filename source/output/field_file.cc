@@ -24,6 +24,32 @@ namespace retroforge
       flags.compression_level   = dealii::DataOutBase::VtkFlags::best_speed;
       return flags;
     }
+    /// The pieces of all ranks in their order, on the first. deal.II's gather() would compress once more what
+    /// is compressed.
+    std::string joined(const MPI_Comm comm, std::string piece)
+    {
+      const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
+      if (dealii::Utilities::MPI::this_mpi_process(comm) > 0)
+      {
+        const int error = MPI_Send(piece.data(), piece.size(), MPI_CHAR, 0, 0, comm);
+        AssertThrowMPI(error);
+        return "";
+      }
+      for (unsigned int rank = 1; rank < n_ranks; ++rank)
+      {
+        MPI_Status status;
+        int        size  = 0;
+        int        error = MPI_Probe(rank, 0, comm, &status);
+        AssertThrowMPI(error);
+        error = MPI_Get_count(&status, MPI_CHAR, &size);
+        AssertThrowMPI(error);
+        const std::size_t begin = piece.size();
+        piece.resize(begin + size);
+        error = MPI_Recv(&piece[begin], size, MPI_CHAR, rank, 0, comm, MPI_STATUS_IGNORE);
+        AssertThrowMPI(error);
+      }
+      return piece;
+    }
   } // namespace
 
   template <int dim>
@@ -221,16 +247,14 @@ namespace retroforge
   void FieldFile<dim>::write(const std::string &file)
   {
     data_out_.build_patches(degree_);
-    const auto flags  = vtk_flags();
-    const auto comm   = triangulation_.get_communicator();
-    const auto pieces = dealii::Utilities::MPI::gather(comm, data_out_.piece(flags));
-    if (dealii::Utilities::MPI::this_mpi_process(comm) != 0)
+    const auto        flags  = vtk_flags();
+    const MPI_Comm    comm   = triangulation_.get_communicator();
+    const std::string pieces = joined(comm, data_out_.piece(flags));
+    if (dealii::Utilities::MPI::this_mpi_process(comm) > 0)
       return;
     std::ostringstream out;
     dealii::DataOutBase::write_vtu_header(out, flags);
-    out << planes_;
-    for (const std::string &piece : pieces)
-      out << piece;
+    out << planes_ << pieces;
     dealii::DataOutBase::write_vtu_footer(out);
     write_file(file, out.str());
   }

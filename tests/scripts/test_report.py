@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""The report reads what a run leaves (three encodings of VTU), and copes with what it does not leave.
+"""The report reads what a run leaves (three encodings of VTU, also in pieces), and copes with what it does not leave.
 
 By hand: the boundary of n^3 boxes of six tetrahedra has 12 n^2 triangles, and its area is 6 x side^2. A pressure p on a
 surface is the nodal gradient p x area vector; per area, its normal part is p, at edges and corners too.
@@ -39,6 +39,24 @@ class Report(ScratchTest):
                 self.assertAlmostEqual(np.linalg.norm(areas, axis=1).sum(), 6 * synthetic_run.SIDE**2, 6)
                 outward = np.einsum("ij,ij->i", areas, surface.to_triangles(surface.points) - synthetic_run.SIDE / 2)
                 self.assertGreater(outward.min(), 0)
+
+    def test_pieces_of_quadratic_cells(self):
+        """All fields are at points: those of nodes have one value at each place, those of cells at the points of one cell."""
+        points, cells = synthetic_run.cube(2)
+        edges = np.array([(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)])
+        places = np.concatenate([points[cells], points[cells][:, edges].mean(axis=2)], axis=1).reshape(-1, 3)
+        number = np.repeat(np.arange(len(cells)) * 1.0, 10)
+        synthetic_run.write_vtu(self.root / "a.vtu", places, np.arange(len(places)).reshape(-1, 10),
+                                {"x": places, "number": number, "tensor": number[:, None] * np.arange(9), "same": 0 * number,
+                                 "neither": np.arange(len(places)) * 1.0}, {}, "zlib", n_pieces=3)
+        mesh = vtu.read(self.root / "a.vtu")
+        self.assertEqual((len(mesh.points), mesh.cells.shape), (len(points), cells.shape))
+        self.assertEqual((sorted(mesh.point_data), sorted(mesh.cell_data)), (["same", "x"], ["number", "same", "tensor"]))
+        np.testing.assert_array_equal(mesh.points[mesh.cells], points[cells])
+        np.testing.assert_array_equal(mesh.point_data["x"], mesh.points)
+        np.testing.assert_array_equal(mesh.cell_data["number"], np.arange(len(cells)))
+        np.testing.assert_array_equal(mesh.cell_data["tensor"], np.outer(np.arange(len(cells)), np.arange(9)))
+        self.assertEqual(len(mesh.surface().triangles), 12 * 2**2)
 
     def test_triangles(self):
         points, triangles = synthetic_run.dome(4, depth=0.0)

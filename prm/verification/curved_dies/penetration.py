@@ -15,7 +15,9 @@ import xml.etree.ElementTree
 
 import numpy as np
 import vtk
-from vtk.util.numpy_support import vtk_to_numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "contrib"))
+from retroforge_report import vtu  # noqa: E402
 
 LATTICE = np.array([(i, j, 3 - i - j) for i in range(4) for j in range(4 - i)]) / 3.0
 CHORDS = np.array([(0.5, 0.5, 0.0), (0.0, 0.5, 0.5), (0.5, 0.0, 0.5), (1 / 3, 1 / 3, 1 / 3)])
@@ -65,15 +67,9 @@ def symmetry_planes(settings):
 
 def surface(file, planes):
     """Faces of a workpiece that lie on no symmetry plane, n x 3 corners x 3 coordinates."""
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(file)
-    reader.Update()
-    skin = vtk.vtkGeometryFilter()
-    skin.SetInputConnection(reader.GetOutputPort())
-    skin.Update()
-    points = vtk_to_numpy(skin.GetOutput().GetPoints().GetData()).astype(float)
-    faces = points[vtk_to_numpy(skin.GetOutput().GetPolys().GetData()).reshape(-1, 4)[:, 1:]]
-    tolerance = 1e-5 * np.linalg.norm(np.ptp(points, axis=0))
+    skin = vtu.read(file).surface()
+    faces = skin.points[skin.triangles]
+    tolerance = 1e-5 * np.linalg.norm(np.ptp(skin.points, axis=0))
     for point, normal in planes:
         faces = faces[np.abs((faces - point) @ normal).max(axis=1) > tolerance]
     return faces
@@ -147,10 +143,10 @@ def read_dies(results, settings):
 
 
 def fields(results):
-    """[(time, file)] of the workpiece, part 0, in the order of the run"""
+    """[(time, file)] of the workpiece, in the order of the run"""
     tree = xml.etree.ElementTree.parse(os.path.join(results, "fields.pvd"))
     return [(float(entry.get("timestep")), os.path.join(results, entry.get("file"))) for entry in tree.iter("DataSet")
-            if int(entry.get("part")) == 0]
+            if not entry.get("file").startswith("die_")]
 
 
 def measure(faces, die, displacement):

@@ -12,11 +12,12 @@ import os
 import sys
 
 import numpy as np
-import vtk
-from vtk.util.numpy_support import vtk_to_numpy
 
 import dies
 import runs
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "contrib"))
+from retroforge_report import vtu  # noqa: E402
 
 RADIUS, GAP = 30.0, 0.35  # of the sphere; between it and the billet at the start, more than it ever grows or shifts [mm]
 CASE = {
@@ -61,12 +62,9 @@ def offset(options):
 
 def by_growth(output, centre):
     """d(energy)/d(growth): the sensitivity by the punch's vertices times their normals, outwards from its centre."""
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(os.path.join(output, "sensitivity_die_upper.vtu"))
-    reader.Update()
-    points = vtk_to_numpy(reader.GetOutput().GetPoints().GetData()).astype(float)
-    gradient = vtk_to_numpy(reader.GetOutput().GetPointData().GetArray("denergy_dXdie")).astype(float)
-    normals = points - centre
+    mesh = vtu.read(os.path.join(output, "sensitivity_die_upper.vtu"))
+    gradient = mesh.point_data["denergy_dXdie"].astype(float)
+    normals = mesh.points - centre
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     return float(np.einsum("ki,ki->", gradient, normals))
 

@@ -9,12 +9,13 @@ import os
 import sys
 
 import numpy as np
-import vtk
-from vtk.util.numpy_support import vtk_to_numpy
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", ".."))
 import case_tools  # noqa: E402
+
+sys.path.insert(0, os.path.join(HERE, "..", "..", "..", "contrib"))
+from retroforge_report import vtu  # noqa: E402
 
 HEIGHT, WIDTH, DEPTH = 20.0, 16.0, 6.0
 
@@ -168,13 +169,8 @@ def run(build, name, angle, die, whole):
 
 def by_nodes(folder):
     """{objective: gradient by the first mesh's nodes}, and the nodes"""
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(os.path.join(folder, "sensitivity.vtu"))
-    reader.Update()
-    grid = reader.GetOutput()
-    data = grid.GetPointData()
-    fields = {data.GetArrayName(k): vtk_to_numpy(data.GetArray(k)) for k in range(data.GetNumberOfArrays())}
-    return {name[1:-4]: f for name, f in fields.items() if name.startswith("d") and name.endswith("_dX0")}, vtk_to_numpy(grid.GetPoints().GetData())
+    mesh = vtu.read(os.path.join(folder, "sensitivity.vtu"))
+    return {name[1:-4]: f for name, f in mesh.point_data.items() if name.startswith("d") and name.endswith("_dX0")}, mesh.points
 
 
 def write_scene(angle):
@@ -224,7 +220,7 @@ def compare_nodes(angle, die, copies, factors):
     gradients, x = by_nodes(f"sector_{angle}_{die}")
     of_whole, all_x = by_nodes(f"sector_{angle}_{die}_whole")
     at = {tuple(np.round(p, 4) + 0.0): k for k, p in enumerate(all_x)}
-    inside = [k for k, p in enumerate(x) if p[1] > 1e-6 and p @ [np.sin(np.radians(angle)), -np.cos(np.radians(angle)), 0.0] > 1e-6]
+    inside = [k for k, p in enumerate(x) if p[1] > 1e-4 and p @ [np.sin(np.radians(angle)), -np.cos(np.radians(angle)), 0.0] > 1e-4]
     same = [at[tuple(np.round(x[k], 4) + 0.0)] for k in inside]
     worst = 0.0
     for objective, factor in factors.items():

@@ -141,6 +141,12 @@ def series():
     entries = [(float(entry.get("timestep")), entry.get("file")) for entry in xml.parse("together/fields.pvd").iter("DataSet")]
     judge("series: times and files", entries == [(time, f"{name}_{number}.vtu") for time, number in (
         (0, "000000"), (0.01, "000002"), (0.02, "000004")) for name in ("fields", "die_lower", "die_upper")], entries)
+    # It ends where fields were written, too.
+    done = run("simulate", "failed", "Press/stroke=18", "Press/increments=6", "Press/max cuts=0", "Press/largest move=0.3",
+               "Remeshing/when=never", "Output/fields every=1")
+    last = [(entry.get("timestep"), entry.get("file")) for entry in xml.parse("failed/fields.pvd").iter("DataSet")]
+    judge("series: where it failed there is one picture", done.returncode == 1 and len({time for time, _ in last[-6:]}) == 2 and
+          [file for _, file in last[-3:]] == ["failed.vtu", "die_lower_failed.vtu", "die_upper_failed.vtu"], last)
     for file in (file for _, file in entries):
         one, two = (read(f"{folder}/{file}") for folder in ("alone", "together"))
         a, b = ({"points": points(grid), **fields(grid.GetPointData())} for grid in (one, two))
