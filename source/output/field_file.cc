@@ -124,12 +124,11 @@ namespace retroforge
                                  const unsigned int n_components,
                                  const ValueAt     &value_at)
   {
-    const auto      &handler = dofs(degree, n_components);
-    const auto      &fe      = handler.get_fe();
-    dealii::IndexSet relevant;
-    dealii::DoFTools::extract_locally_relevant_dofs(handler, relevant);
-    Values &values =
-      values_.emplace_back(handler.locally_owned_dofs(), relevant, triangulation_.get_communicator());
+    const auto                                  &handler = dofs(degree, n_components);
+    const auto                                  &fe      = handler.get_fe();
+    Values                                      &values  = values_.emplace_back(handler.locally_owned_dofs(),
+                                          dealii::DoFTools::extract_locally_relevant_dofs(handler),
+                                          triangulation_.get_communicator());
     std::vector<dealii::types::global_dof_index> of_cell(fe.dofs_per_cell);
     for (const auto &cell : handler.active_cell_iterators())
       if (!cell->is_artificial())

@@ -71,7 +71,7 @@ def between(grid, n=200):
     probed = vtk.vtkPolyData()
     probed.SetPoints(places)
     probe = vtk.vtkProbeFilter()
-    probe.SetFindCellStrategy(vtk.vtkCellLocatorStrategy())  # the default one walks from cell to cell, by points they share
+    probe.SetFindCellStrategy(vtk.vtkCellLocatorStrategy())  # the default one, by points that cells share, misses some
     probe.SetInputData(probed)
     probe.SetSourceData(grid)
     probe.Update()
