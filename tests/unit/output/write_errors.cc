@@ -43,8 +43,9 @@ void all_writers(const std::string &file)
   show([&] { Summary().write(file); });
 }
 
-int main()
+int main(int argc, char **argv)
 {
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   all_writers("/dev/full");
   std::cout << "the device is still one: " << std::filesystem::is_character_file("/dev/full") << '\n';
   all_writers("nowhere/file");
