@@ -97,6 +97,9 @@ namespace retroforge
     for (std::size_t e = 0; e < contact.chords.size(); ++e)
     {
       const auto &[m, ends, images] = contact.chords[e];
+      if (value_of(bulges[e].c) < 1.)
+        for (const unsigned int v : ends)
+          contact.middles_around[v].clear();
       const Number wanted = 0.5 * (contact.projections[ends[0]].delta + contact.projections[ends[1]].delta);
       const Number part   = contact.ramps[ends[0]] * contact.ramps[ends[1]] * bulges[e].c;
       set(m, contact.own_gaps[m] + part * (wanted - contact.own_gaps[m]));

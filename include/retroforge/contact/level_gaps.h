@@ -19,7 +19,9 @@
 ///   whole, delta'_v = delta_v - o_v, delta'_m = delta_m + w'_a w'_b c_m ((delta'_a + delta'_b)/2 - delta_m),
 ///   w' = w(delta').
 /// An edge that spans a sharp corner of the die is held out by its own gap: c_m falls from 1 at |b_m| = 0.02
-/// of the edge's length, that is a length of 0.16 radii, to 0 at 0.05.
+/// of the edge's length, that is a length of 0.16 radii, to 0 at 0.05. There a ripple remains, and a vertex
+/// that is pressed because the middles around it are would take part in it by pulling: where c_m < 1,
+/// vertices decide for themselves.
 namespace retroforge
 {
   /// The edges at curved dies, from pairs whose projections are there.
@@ -45,7 +47,8 @@ namespace retroforge
     return chords;
   }
 
-  /// Makes gaps and ramps those of the levelled gaps; own gaps stay in ContactSet::own_gaps.
+  /// Makes gaps and ramps those of the levelled gaps; own gaps stay in ContactSet::own_gaps. Vertices at
+  /// edges with c_m < 1 lose their middles_around.
   template <typename Number>
   void level_gaps(const NodalVectors<Number> &X, const FrictionRamp &ramp, ContactSet<Number> &contact);
 
