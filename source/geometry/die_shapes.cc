@@ -71,10 +71,12 @@ namespace retroforge
       using std::cos;
       using std::sin;
       using std::tan;
-      for (const auto &[name, x] : {std::make_pair("depth", &profile.depth),
-                                    std::make_pair("edge radius", &profile.edge),
-                                    std::make_pair("fillet radius", &profile.fillet)})
-        require(value_of(*x) > 0., where + "/" + name, "is " + as_text(value_of(*x)), "must be > 0");
+      const auto require_positive = [&where](const std::string &name, const Number &x) {
+        require(value_of(x) > 0., where + "/" + name, "is " + as_text(value_of(x)), "must be > 0");
+      };
+      require_positive("depth", profile.depth);
+      require_positive("edge radius", profile.edge);
+      require_positive("fillet radius", profile.fillet);
       require(value_of(profile.draft) >= 0. && value_of(profile.draft) < 80.,
               where + "/draft angle",
               "is " + as_text(value_of(profile.draft)),

@@ -118,7 +118,7 @@ namespace retroforge
     /// each into.
     std::vector<Face> friction_faces;
     /// Where velocities are quadratic: of each pair of a vertex, the pairs of its surface edges' middles, if
-    /// all of them are in reach of its die; else, and of middles, none.
+    /// all of them are in reach of its die, and the die is smooth there; else, and of middles, none.
     std::vector<std::vector<unsigned int>> middles_around;
     /// Where velocities are quadratic: edges at a curved die, and all gaps before they were levelled [mm].
     std::vector<Chord>  chords;
