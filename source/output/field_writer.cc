@@ -169,11 +169,11 @@ namespace retroforge
     const ForgingState &run     = event.state;
     const Scene        &scene   = run.leg->scene;
     const SolvedStage  &last    = event.solved.last();
-    const ContactFields contact = contact_fields(last.stage, run.W, last.active);
+    const ContactFields contact = contact_fields(last.stage, run.next.W, last.active);
     const std::string   number = six_digits(run.increments), file = "fields_" + number + ".vtu";
     add_billet(comm_);
     write(
-      comm_, file, {scene.mesh, scene.spaces, run.X, last.X, run.W, run.strain, &displacement_, &contact});
+      comm_, file, {scene.mesh, scene.spaces, run.X, last.X, run.next.W, run.strain, &displacement_, &contact});
     add_step(run.stroke, file, number, run.X);
   }
 
@@ -188,7 +188,7 @@ namespace retroforge
            state.leg->scene.spaces,
            state.X,
            state.X,
-           state.W,
+           state.next.W,
            state.strain,
            displacement,
            nullptr});

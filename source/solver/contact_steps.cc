@@ -21,17 +21,24 @@ namespace retroforge
       return speed;
     }
 
-    /// By a correction along the die's normal, as far as the symmetry planes let the node go that way.
-    void put_onto_die(const Stage<double> &stage, const unsigned int p, Field<double> &W)
+    /// Adds to the velocity of a pair's node along the die's normal, as far as the symmetry planes let the
+    /// node go that way.
+    void add_along_normal(const Stage<double> &stage, const unsigned int p, const double speed, Field<double> &W)
     {
-      const NodeIndex           k    = stage.contact.pairs[p].point.velocity_node;
-      const ContactNode<double> node = stage.contact_node(p, W, {});
-      Vec3                      free = node.n;
+      const NodeIndex k    = stage.contact.pairs[p].point.velocity_node;
+      const Vec3     &n    = stage.contact.projections[p].n;
+      Vec3            free = n;
       for (const Vec3 &fixed : stage.scene.spaces.fixed_directions(k))
         free -= (fixed * free) * fixed;
       constexpr double held = 1e-3; // of the normal: symmetry holds the node, not the die
-      if (const double part = free * node.n; part > held)
-        W.V[k] -= (approach_excess(node) - beyond * fastest(stage.physics.dies)) / part * free;
+      if (const double part = free * n; part > held)
+        W.V[k] += speed / part * free;
+    }
+
+    void put_onto_die(const Stage<double> &stage, const unsigned int p, Field<double> &W)
+    {
+      add_along_normal(
+        stage, p, beyond * fastest(stage.physics.dies) - approach_excess(stage.contact_node(p, W, {})), W);
     }
 
     /// Whether a node is at its die: what it may approach at is little of its speed.
@@ -44,8 +51,9 @@ namespace retroforge
     /// A node is pressed against its die by more than this part of the mean force of those that are.
     constexpr double pressing = 0.1;
 
-    /// Of each pair, whether the metal presses it against its die when no node is held.
-    std::vector<char> pressed_by_metal(const Stage<double> &stage, const Field<double> &W)
+    /// Of each pair with a velocity of its own, the force with which the metal presses its node against the
+    /// die when no node is held.
+    std::vector<double> forces_of_metal(const Stage<double> &stage, const Field<double> &W)
     {
       const auto &pairs = stage.contact.pairs;
       // Edges hold nodes, too: these are not the die's to hold.
@@ -56,27 +64,35 @@ namespace retroforge
       Field<double> r = stage.residual(W, edges);
       stage.scene.velocities.gather(r.V);
       std::vector<double> force(pairs.size(), 0.);
-      double              sum = 0.;
-      unsigned int        n   = 0;
       for (unsigned int p = 0; p < pairs.size(); ++p)
-        if (const auto node = stage.contact_node(p, W, {});
-            pairs[p].point.has_own_velocity() && touches(node))
-        {
-          force[p] = -(r.V[pairs[p].point.velocity_node] * node.n);
-          sum += std::max(0., force[p]);
-          n += force[p] > 0.;
-        }
-      std::vector<char> pressed(pairs.size(), 0);
-      for (unsigned int p = 0; p < pairs.size(); ++p)
+        if (pairs[p].point.has_own_velocity())
+          force[p] = -(r.V[pairs[p].point.velocity_node] * stage.contact.projections[p].n);
+      return force;
+    }
+
+    std::vector<char> pressed_by_metal(const Stage<double> &stage, const Field<double> &W)
+    {
+      std::vector<double> force = forces_of_metal(stage, W);
+      double              sum   = 0.;
+      unsigned int        n     = 0;
+      for (unsigned int p = 0; p < force.size(); ++p)
+      {
+        if (!touches(stage.contact_node(p, W, {})))
+          force[p] = 0.;
+        sum += std::max(0., force[p]);
+        n += force[p] > 0.;
+      }
+      std::vector<char> pressed(force.size(), 0);
+      for (unsigned int p = 0; p < force.size(); ++p)
         pressed[p] = force[p] > 0. && force[p] > pressing * sum / n;
       return pressed;
     }
   } // namespace
 
-  void hold_on_dies(const Stage<double> &stage, Field<double> &W)
+  std::vector<char> hold_on_dies(const Stage<double> &stage, Field<double> &W, const ActiveSet &pressed)
   {
     const auto       &pairs = stage.contact.pairs;
-    std::vector<char> held  = pressed_by_metal(stage, W);
+    std::vector<char> held  = pressed.empty() ? pressed_by_metal(stage, W) : pressed;
     for (unsigned int sweep = 0; sweep < sweeps; ++sweep)
       for (unsigned int p = 0; p < pairs.size(); ++p)
         if (pairs[p].point.has_own_velocity())
@@ -85,6 +101,15 @@ namespace retroforge
           if (held[p])
             put_onto_die(stage, p, W);
         }
+    return held;
+  }
+
+  void lean_on_dies(const Stage<double> &stage, const std::vector<char> &held, Field<double> &W)
+  {
+    const std::vector<double> force = forces_of_metal(stage, W);
+    for (unsigned int p = 0; p < force.size(); ++p)
+      if (held[p] && force[p] > 0.)
+        add_along_normal(stage, p, force[p] / (stage.physics.contact.rho * stage.areas.S[p]), W);
   }
 
   void stop_at_dies(const Stage<double> &stage, const ActiveSet &active, Field<double> &W)

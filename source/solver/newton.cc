@@ -69,6 +69,7 @@ namespace retroforge
   double Newton::relative_residual(const Stage<double> &stage,
                                    const Field<double> &W,
                                    const ActiveSet     &frozen,
+                                   const Scale         &reference,
                                    Field<double>       &r)
   {
     r                     = stage.residual(W, frozen);
@@ -82,10 +83,9 @@ namespace retroforge
     const double momentum = std::sqrt(norm.first * norm.first + partition.sum(bubble2));
     // Where nothing pushes yet, all there is is rounding: what is small against the flow at the dies' speed
     // is measured against that.
-    const auto       whole      = reference_scale(stage);
     constexpr double negligible = 1e-3;
-    return std::max(momentum / std::max(scale.first, negligible * whole.first),
-                    norm.second / std::max(scale.second, negligible * whole.second));
+    return std::max(momentum / std::max(scale.first, negligible * reference.first),
+                    norm.second / std::max(scale.second, negligible * reference.second));
   }
 
   /// d/da of the functional along the step: momentum and bubble rows only.
@@ -103,6 +103,7 @@ namespace retroforge
 
   double Newton::line_search(const Stage<double> &stage,
                              Field<double>       &W,
+                             const Field<double> &r,
                              const Field<double> &step,
                              const ActiveSet     &active)
   {
@@ -111,12 +112,19 @@ namespace retroforge
       W.P[k] += step.P[k];
     Field<double> velocity_step = step;
     std::fill(velocity_step.P.begin(), velocity_step.P.end(), 0.);
-    const auto slope_at = [&](const double a) {
+    const auto residual_at = [&](const double a) {
       Field<double> trial = W;
       trial.add(a, velocity_step);
-      return slope(stage.residual(trial, active), step);
+      return stage.residual(trial, active);
     };
-    const double start = slope_at(0.);
+    const Field<double> whole = residual_at(1.);
+    // What the new pressures add to the slope at the start is their product with the change of continuity,
+    // which is linear in the velocity.
+    const auto &partition = scene_.partition;
+    double      added     = 0.;
+    for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
+      added += step.P[k] * (whole.P[k] - r.P[k]);
+    const double start = slope(r, step) + partition.sum(added);
     double       a     = 1.;
     if (start < 0.)
     {
@@ -126,7 +134,7 @@ namespace retroforge
       constexpr double       rough_root = 0.8; // of the slope at the start
       for (unsigned int trial = 0; trial < trials; ++trial)
       {
-        const double s = slope_at(a);
+        const double s = slope(trial == 0 ? whole : residual_at(a), step);
         if (std::abs(s) <= rough_root * std::abs(start))
           break;
         if (s > 0.)
@@ -204,8 +212,11 @@ namespace retroforge
   /// Linear systems are not solved better than this only because steps are poor.
   constexpr double least_forcing = 1e-6;
 
-  NewtonStatistics
-  Newton::solve(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen, const Start start)
+  NewtonStatistics Newton::solve(const Stage<double> &stage,
+                                 Field<double>       &W,
+                                 const ActiveSet     &frozen,
+                                 const Start          start,
+                                 const ActiveSet     &pressed)
   {
     NewtonStatistics statistics;
     const bool       linear = stage.physics.law.is_linear();
@@ -216,8 +227,14 @@ namespace retroforge
     // A recorded active set comes with its solution.
     const bool decides = frozen.empty() && !linear;
     if (decides && !from_rest)
-      hold_on_dies(stage, W);
+    {
+      const std::vector<char> held = hold_on_dies(stage, W, pressed);
+      settle_bubbles(stage, W);
+      lean_on_dies(stage, held, W);
+    }
+    settle_bubbles(stage, W);
     unsigned int  picard = decides && start == Start::far ? picard_steps : 0;
+    const Scale   reference = reference_scale(stage);
     Field<double> r, step;
     double        last = 1., largest_forcing = parameters_.forcing;
     bool          whole = false; // the step before
@@ -233,7 +250,7 @@ namespace retroforge
       // The first matrix makes the frames and scales that residuals are measured in.
       if (iteration == 0)
         assemble();
-      statistics.residual = relative_residual(stage, W, first_active, r);
+      statistics.residual = relative_residual(stage, W, first_active, reference, r);
       if (first_active == frozen && statistics.residual <= parameters_.tolerance)
         return statistics;
       if (iteration > 0)
@@ -245,7 +262,8 @@ namespace retroforge
         largest_forcing = std::max(least_forcing, 0.1 * largest_forcing);
       const double goal = 0.1 * parameters_.tolerance / std::max(statistics.residual, parameters_.tolerance);
       // As good as the quadratic convergence that the residual's fall, or its size, promises.
-      const double promise = std::max(0.1 * statistics.residual, std::pow(statistics.residual / last, 2));
+      const double fall    = statistics.residual / last;
+      const double promise = 0.1 * std::max(statistics.residual, fall * fall);
       double       forcing = linear ? goal : std::max(goal, std::min(largest_forcing, promise));
       forcing              = std::min(0.5, std::max(1e-12, forcing));
       Field<double> rhs(scene_.spaces);
@@ -258,14 +276,14 @@ namespace retroforge
         if (decides && iteration < contacts_settle)
         {
           const ActiveSet active = stage.decide_active(W);
-          taken                  = line_search(stage, W, step, active);
+          taken                  = line_search(stage, W, r, step, active);
           stop_at_dies(stage, active, W);
         }
         else
         {
           // A step that had to be cut was a poor direction: where dies are stiff, the next one is solved for
           // better.
-          taken           = line_search(stage, W, step, frozen);
+          taken           = line_search(stage, W, r, step, frozen);
           largest_forcing = taken == 1. ? std::min(parameters_.forcing, 10. * largest_forcing)
                                         : std::max(least_forcing, 0.1 * largest_forcing);
         }
@@ -275,6 +293,7 @@ namespace retroforge
       }
       else
         W.add(1., step);
+      settle_bubbles(stage, W);
       last = statistics.residual;
     }
     std::ostringstream what;

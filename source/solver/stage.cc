@@ -121,19 +121,23 @@ namespace retroforge
     return forces;
   }
 
-  void recover_bubbles(const Stage<double> &stage, Field<double> &W)
+  void settle_bubbles(const Stage<double> &stage, Field<double> &W)
   {
-    const Scene     &scene     = stage.scene;
-    const Partition &partition = scene.partition;
+    const Scene &scene = stage.scene;
     if (scene.spaces.n_bubbles() == 0)
       return;
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
-    {
-      W.beta[c] = Vec3();
+    for (const CellIndex c : scene.partition.visited_cells)
       W.beta[c] = solve_bubble(
         geometry_of_cell(scene.mesh, stage.X, c), MiniPair::on_cell(scene.spaces, W, c), stage.physics.law);
-    }
-    partition.gather_cells(W.beta.data()->begin_raw(), 3);
+  }
+
+  void recover_bubbles(const Stage<double> &stage, Field<double> &W)
+  {
+    if (W.beta.empty())
+      return;
+    std::fill(W.beta.begin(), W.beta.end(), Vec3());
+    settle_bubbles(stage, W);
+    stage.scene.partition.gather_cells(W.beta.data()->begin_raw(), 3);
   }
 
   void reverse_residual(const StageView<double> &view, const Field<double> &lambda, StageBar &bar)

@@ -25,7 +25,7 @@ namespace retroforge
     ForgingState state;
     state.X      = X_0;
     state.volume = volume(leg->scene.mesh.cells, X_0);
-    state.W      = Field<double>(leg->scene.spaces);
+    state.next.W = Field<double>(leg->scene.spaces);
     state.strain = std::vector<double>(leg->scene.mesh.n_cells(), 0.);
     state.leg    = std::move(leg);
     return state;
@@ -52,6 +52,7 @@ namespace retroforge
     guess.W.V   = record.solves.front().V;
     guess.W.P   = record.solves.front().P;
     guess.known = Start::near;
+    guess.ahead = 0.;
     return limits_.refusal(process, *state.leg, record, state.X, solved.X);
   }
 
@@ -66,15 +67,20 @@ namespace retroforge
   void Forging::change_mesh(const RemeshRecord &remesh, ForgingState &state) const
   {
     state.repaired += remesh.repaired;
-    const TransferOperator   &J = remesh.transfer;
-    NodalVectors<double>      V(state.W.V.begin(), state.W.V.begin() + state.X.size());
-    const std::vector<double> P = J.apply(state.W.P);
-    V                           = J.apply(V);
+    const TransferOperator &J          = remesh.transfer;
+    const auto              transferred = [&](const Spaces &spaces, const Field<double> &W) {
+      if (W.V.empty())
+        return W;
+      const NodalVectors<double> V(W.V.begin(), W.V.begin() + remesh.X_before.size());
+      return interpolated(spaces, J.apply(V), J.apply(W.P));
+    };
     auto strain = transfer_cells(state.leg->scene.mesh, state.X, J, remesh.mesh, state.strain);
     state.strains_before.push_back(std::exchange(state.strain, std::move(strain)));
     state.X   = J.positions(state.X);
     state.leg = std::make_shared<Leg>(remesh.mesh, model_, timings_);
-    state.W   = interpolated(state.leg->scene.spaces, std::move(V), P);
+    state.next.W     = transferred(state.leg->scene.spaces, state.next.W);
+    state.next.rate  = transferred(state.leg->scene.spaces, state.next.rate);
+    state.next.known = Start::far;
     state.remeshed.push_back(state.increments);
   }
 
@@ -102,7 +108,7 @@ namespace retroforge
                                        stage->W,
                                        stage->weight * solved.start->dt,
                                        state.strain);
-    state.W    = solved.last().W;
+    state.next = state.leg->increment.guess_after(solved, record);
     state.slip = limits_.slip(process, record, X_before, state.X) / record.step;
     state.stroke += record.step;
     state.energy.deformation += record.deformation_energy;
@@ -172,7 +178,7 @@ namespace retroforge
       record.step       = std::min(whole() / (1 << state.depth), press_.stroke - state.stroke);
       record.parameters = std::exchange(state.parameters, "");
       SolvedIncrement solved;
-      Guess           guess{state.W, record.remesh ? Start::far : Start::near};
+      Guess           guess = state.next;
       for (;;)
       {
         const Refusal refusal = attempt(process, state, guess, record, solved);
@@ -181,7 +187,7 @@ namespace retroforge
         if (refusal.of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0)
         {
           renew();
-          guess = {state.W, Start::far};
+          guess = state.next;
           continue;
         }
         record.step = std::ldexp(record.step, -static_cast<int>(refusal.halvings));
@@ -237,9 +243,7 @@ namespace retroforge
       record.newton = record.krylov = record.linear_solves = 0;
       if (record.remesh)
         change_mesh(*record.remesh, state);
-      Guess guess{Field<double>(state.leg->scene.spaces)};
-      guess.W.V                    = record.solves[0].V;
-      guess.W.P                    = record.solves[0].P;
+      const Guess           guess  = state.leg->increment.recorded_guess(record);
       const SolvedIncrement solved = state.leg->increment.forward(process, state.X, true, guess, record);
       finish_increment(process, record, solved, state, watch);
     }

@@ -186,7 +186,9 @@ namespace retroforge
       const Stage<double>        stage(scene_, start.physics, start.contact, position);
       const ActiveSet            frozen     = replay ? record.solves[s].active : ActiveSet();
       const Start                known      = s == 0 ? guess.known : Start::near;
-      const NewtonStatistics     statistics = newton_.solve(stage, W, frozen, known);
+      guess.advance(s == 0 ? guess.ahead : record.step * (scheme.node(s) - scheme.node(s - 1)), W);
+      const NewtonStatistics     statistics =
+        newton_.solve(stage, W, frozen, known, s == 0 ? ActiveSet() : solves.back().active);
       record.newton += statistics.iterations;
       record.krylov += statistics.krylov;
       solves.push_back({W.V, W.P, replay ? frozen : stage.decide_active(W)});
@@ -283,6 +285,36 @@ namespace retroforge
                                       const IncrementRecord      &record) const
   {
     return recorded(start_of(process, X, record), X, record);
+  }
+
+  Field<double> Increment::rate(const IncrementRecord &record) const
+  {
+    const Scheme &scheme = scheme_of(record);
+    const double  stroke = record.step * (scheme.node(scheme.n_stages() - 1) - scheme.node(0));
+    if (stroke == 0.)
+      return {};
+    Field<double>      rate(scene_.spaces);
+    const SolveRecord &first = record.solves.front(), &last = record.solves.back();
+    for (std::size_t k = 0; k < rate.V.size(); ++k)
+      rate.V[k] = (last.V[k] - first.V[k]) / stroke;
+    for (std::size_t k = 0; k < rate.P.size(); ++k)
+      rate.P[k] = (last.P[k] - first.P[k]) / stroke;
+    return rate;
+  }
+
+  Guess Increment::guess_after(const SolvedIncrement &solved, const IncrementRecord &record) const
+  {
+    const Scheme &scheme = scheme_of(record);
+    return {
+      solved.last().W, Start::near, rate(record), record.step * (1. - scheme.node(scheme.n_stages() - 1))};
+  }
+
+  Guess Increment::recorded_guess(const IncrementRecord &record) const
+  {
+    Field<double> W(scene_.spaces);
+    W.V = record.solves.front().V;
+    W.P = record.solves.front().P;
+    return {std::move(W), Start::near, rate(record)};
   }
 
   NodalVectors<double> Increment::retreat(const Process<double>      &process,

@@ -36,18 +36,28 @@ namespace retroforge
     far   ///< interpolated from another mesh: strain rates are wrong here and there
   };
 
-  /// Where Newton's method begins.
+  /// Where Newton's method begins in the stages of an increment.
   struct Guess
   {
     Field<double> W;
     Start         known = Start::near;
+    Field<double> rate;       ///< of W over the stroke; empty: not known
+    double        ahead = 0.; ///< stroke from W to the first stage [mm]
+
+    /// Takes a solution ahead by `stroke`, as far as the rate tells.
+    void advance(const double stroke, Field<double> &solution) const
+    {
+      if (!rate.V.empty())
+        solution.add(stroke, rate);
+    }
   };
 
   /// Solves the equilibrium of a stage for W by Newton's method, with a line search on the power functional:
   /// the step length is a root of its slope along the step, monotone because the functional is convex in V.
   /// A step that must be cut tells that the power law bends more than its tangent knows. Steps at constant
   /// viscosity (Picard) are short of no length: one follows each that was cut, and a start from afar begins
-  /// with them. At first the slope is that of the functional with the contacts of the step, and nodes that
+  /// with them. Bubbles settle after each step, so that what Newton's method sees is a functional of V and P
+  /// alone: a bubble in metal that hardly flows would keep it from converging. At first the slope is that of the functional with the contacts of the step, and nodes that
   /// arrive do so at once (contact_steps.h); where that does not converge, of the functional itself, which
   /// always does.
   class Newton
@@ -56,9 +66,13 @@ namespace retroforge
     Newton(const Scene &scene, const NewtonParameters &parameters, LinearSystem &system);
 
     /// @param W       in: initial guess; out: the solution
-    /// @param frozen  empty, or the recorded active set of a replay
-    NewtonStatistics
-    solve(const Stage<double> &stage, Field<double> &W, const ActiveSet &frozen, Start start = Start::near);
+    /// @param frozen   empty, or the recorded active set of a replay
+    /// @param pressed  empty, or the active set of a solution nearby, with the same pairs
+    NewtonStatistics solve(const Stage<double> &stage,
+                           Field<double>       &W,
+                           const ActiveSet     &frozen,
+                           Start                start   = Start::near,
+                           const ActiveSet     &pressed = {});
 
     /// The velocity field of a Newtonian metal under the same dies, as a start from nothing.
     void initial_guess(const Stage<double> &stage,
@@ -67,14 +81,20 @@ namespace retroforge
                        NewtonStatistics    &statistics);
 
   private:
+    using Scale = std::pair<double, double>; ///< of momentum and continuity, as residual_scale
+
+    /// @param reference  of a flow at the dies' speed
     double relative_residual(const Stage<double> &stage,
                              const Field<double> &W,
                              const ActiveSet     &frozen,
+                             const Scale         &reference,
                              Field<double>       &r);
     /// Advances W and returns the part of the velocity step that was taken.
+    /// @param r       residual at W, with the same contacts
     /// @param active  empty, or the contacts that count throughout
     double line_search(const Stage<double> &stage,
                        Field<double>       &W,
+                       const Field<double> &r,
                        const Field<double> &step,
                        const ActiveSet     &active);
     double slope(const Field<double> &r, const Field<double> &step) const;

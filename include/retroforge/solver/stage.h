@@ -105,7 +105,10 @@ namespace retroforge
   /// Force of each die on the workpiece [N], contact and friction.
   std::vector<Vec3> die_forces(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
 
-  /// beta of every cell from V and P (Field::beta is overwritten, and gathered).
+  /// The equilibrium of bubbles at given V and P, in the cells this rank visits; W.beta is where each starts.
+  void settle_bubbles(const Stage<double> &stage, Field<double> &W);
+
+  /// beta of every cell from V and P alone (Field::beta is overwritten, and gathered).
   void recover_bubbles(const Stage<double> &stage, Field<double> &W);
 
   /// A stage and its solution.

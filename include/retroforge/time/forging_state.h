@@ -12,7 +12,7 @@ namespace retroforge
     std::shared_ptr<Leg> leg;
     NodalVectors<double> X;
     std::vector<double>  strain; ///< accumulated equivalent strain of each cell
-    Field<double>        W;      ///< the last increment's solution, where the next one starts
+    Guess                next;   ///< where the next increment starts: at the last one's solution
     double               stroke   = 0.;
     double               volume   = 0.; ///< at the start of the run [mm^3]
     double               repaired = 0.; ///< metal thinner than an element taken away [mm^3]

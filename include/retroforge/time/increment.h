@@ -128,6 +128,13 @@ namespace retroforge
                  const StageSource          &source,
                  std::vector<Costate>       &costates);
 
+    /// Where the increment after a solved one begins: its last solution, and how it changed from stage to
+    /// stage. Only what is recorded enters, so that a run that is resumed begins there, too.
+    Guess guess_after(const SolvedIncrement &solved, const IncrementRecord &record) const;
+
+    /// Where a replay begins: at what was recorded.
+    Guess recorded_guess(const IncrementRecord &record) const;
+
     /// X_i of a recorded increment from X_{i+1}, but for rounding.
     NodalVectors<double> retreat(const Process<double>      &process,
                                  const NodalVectors<double> &X_next,
@@ -142,6 +149,8 @@ namespace retroforge
                                                            const IncrementRecord      &record) const;
     /// That of the record, which is the model's unless the run was restarted with another.
     const Scheme &scheme_of(const IncrementRecord &record) const;
+    /// Change of (V, P) over the stroke from the first stage to the last; empty where they are at one time.
+    Field<double> rate(const IncrementRecord &record) const;
     /// @return nothing where a node ran into a die unwatched
     std::vector<SolveRecord> solve_stages(const IncrementStart<double> &start,
                                           const NodalVectors<double>   &X,

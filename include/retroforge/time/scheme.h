@@ -4,6 +4,7 @@
 
 #include <retroforge/core/types.h>
 
+#include <numeric>
 #include <string>
 
 namespace retroforge
@@ -21,6 +22,9 @@ namespace retroforge
     std::vector<double>              b;           ///< of sum 1
 
     unsigned int n_stages() const { return b.size(); }
+
+    /// Part of the increment's time at which stage s is.
+    double node(const unsigned int s) const { return std::accumulate(a[s].begin(), a[s].end(), 0.); }
 
     /// The schemes there are; the first one is the default.
     static const std::vector<Scheme> &all();
