@@ -21,24 +21,23 @@ namespace retroforge
       return speed;
     }
 
-    /// Adds to the velocity of a pair's node along the die's normal, as far as the symmetry planes let the
-    /// node go that way.
-    void add_along_normal(const Stage<double> &stage, const unsigned int p, const double speed, Field<double> &W)
+    /// By a correction along the die's normal, as far as the symmetry planes let the node go that way.
+    /// @param speed  with which the node then goes through the die
+    void sink_into_die(const Stage<double> &stage, const unsigned int p, const double speed, Field<double> &W)
     {
-      const NodeIndex k    = stage.contact.pairs[p].point.velocity_node;
-      const Vec3     &n    = stage.contact.projections[p].n;
-      Vec3            free = n;
+      const NodeIndex           k    = stage.contact.pairs[p].point.velocity_node;
+      const ContactNode<double> node = stage.contact_node(p, W, {});
+      Vec3                      free = node.n;
       for (const Vec3 &fixed : stage.scene.spaces.fixed_directions(k))
         free -= (fixed * free) * fixed;
       constexpr double held = 1e-3; // of the normal: symmetry holds the node, not the die
-      if (const double part = free * n; part > held)
-        W.V[k] += speed / part * free;
+      if (const double part = free * node.n; part > held)
+        W.V[k] -= (approach_excess(node) - speed) / part * free;
     }
 
     void put_onto_die(const Stage<double> &stage, const unsigned int p, Field<double> &W)
     {
-      add_along_normal(
-        stage, p, beyond * fastest(stage.physics.dies) - approach_excess(stage.contact_node(p, W, {})), W);
+      sink_into_die(stage, p, beyond * fastest(stage.physics.dies), W);
     }
 
     /// Whether a node is at its die: what it may approach at is little of its speed.
@@ -109,7 +108,7 @@ namespace retroforge
     const std::vector<double> force = forces_of_metal(stage, W);
     for (unsigned int p = 0; p < force.size(); ++p)
       if (held[p] && force[p] > 0.)
-        add_along_normal(stage, p, force[p] / (stage.physics.contact.rho * stage.areas.S[p]), W);
+        sink_into_die(stage, p, force[p] / (stage.physics.contact.rho * stage.areas.S[p]), W);
   }
 
   void stop_at_dies(const Stage<double> &stage, const ActiveSet &active, Field<double> &W)

@@ -55,6 +55,17 @@ namespace retroforge
       return std::max(speed, 1e-300) / std::cbrt(volume);
     }
 
+    /// What residuals are measured against. Where nothing pushes yet, all there is is rounding: what is small
+    /// against the flow at the dies' speed, `reference`, is measured against that.
+    std::pair<double, double>
+    scale_of(const Stage<double> &stage, const Field<double> &W, const std::pair<double, double> &reference)
+    {
+      constexpr double negligible = 1e-3;
+      const auto       scale      = residual_scale(stage, W);
+      return {std::max(scale.first, negligible * reference.first),
+              std::max(scale.second, negligible * reference.second)};
+    }
+
     /// What residual_scale would be in a flow at the dies' speed.
     std::pair<double, double> reference_scale(const Stage<double> &stage)
     {
@@ -69,23 +80,18 @@ namespace retroforge
   double Newton::relative_residual(const Stage<double> &stage,
                                    const Field<double> &W,
                                    const ActiveSet     &frozen,
-                                   const Scale         &reference,
+                                   const Scale         &scale,
                                    Field<double>       &r)
   {
     r                     = stage.residual(W, frozen);
     const auto  norm      = system_.residual_norm(r);
-    const auto  scale     = residual_scale(stage, W);
     double      bubble2   = 0.;
     const auto &partition = scene_.partition;
     if (scene_.spaces.n_bubbles() > 0)
       for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
         bubble2 += r.beta[c].norm_square();
     const double momentum = std::sqrt(norm.first * norm.first + partition.sum(bubble2));
-    // Where nothing pushes yet, all there is is rounding: what is small against the flow at the dies' speed
-    // is measured against that.
-    constexpr double negligible = 1e-3;
-    return std::max(momentum / std::max(scale.first, negligible * reference.first),
-                    norm.second / std::max(scale.second, negligible * reference.second));
+    return std::max(momentum / scale.first, norm.second / scale.second);
   }
 
   /// d/da of the functional along the step: momentum and bubble rows only.
@@ -203,7 +209,8 @@ namespace retroforge
   /// Where less of a step is taken, the next is at constant viscosity.
   constexpr double short_step = 0.6;
 
-  /// Residual down to which steps are tried by line search; below it they are whole.
+  /// Residual down to which steps are tried by line search, and bubbles settle after them; below it they are
+  /// whole.
   constexpr double settled = 1e-6;
 
   /// Residual below which a whole step should leave less than poor_fall of it.
@@ -225,16 +232,16 @@ namespace retroforge
     if (from_rest && !linear)
       initial_guess(stage, W, frozen, statistics);
     // A recorded active set comes with its solution.
-    const bool decides = frozen.empty() && !linear;
+    const bool        decides = frozen.empty() && !linear;
+    std::vector<char> held;
     if (decides && !from_rest)
-    {
-      const std::vector<char> held = hold_on_dies(stage, W, pressed);
-      settle_bubbles(stage, W);
-      lean_on_dies(stage, held, W);
-    }
+      held = hold_on_dies(stage, W, pressed);
     settle_bubbles(stage, W);
-    unsigned int  picard = decides && start == Start::far ? picard_steps : 0;
+    if (!held.empty())
+      lean_on_dies(stage, held, W);
+    unsigned int  picard    = decides && start == Start::far ? picard_steps : 0;
     const Scale   reference = reference_scale(stage);
+    Scale         scale;
     Field<double> r, step;
     double        last = 1., largest_forcing = parameters_.forcing;
     bool          whole = false; // the step before
@@ -250,7 +257,10 @@ namespace retroforge
       // The first matrix makes the frames and scales that residuals are measured in.
       if (iteration == 0)
         assemble();
-      statistics.residual = relative_residual(stage, W, first_active, reference, r);
+      // Close to the solution the scale hardly changes any more.
+      if (last >= close)
+        scale = scale_of(stage, W, reference);
+      statistics.residual = relative_residual(stage, W, first_active, scale, r);
       if (first_active == frozen && statistics.residual <= parameters_.tolerance)
         return statistics;
       if (iteration > 0)
@@ -293,7 +303,8 @@ namespace retroforge
       }
       else
         W.add(1., step);
-      settle_bubbles(stage, W);
+      if (statistics.residual > settled)
+        settle_bubbles(stage, W);
       last = statistics.residual;
     }
     std::ostringstream what;

@@ -67,7 +67,7 @@ namespace retroforge
   void Forging::change_mesh(const RemeshRecord &remesh, ForgingState &state) const
   {
     state.repaired += remesh.repaired;
-    const TransferOperator &J          = remesh.transfer;
+    const TransferOperator &J           = remesh.transfer;
     const auto              transferred = [&](const Spaces &spaces, const Field<double> &W) {
       if (W.V.empty())
         return W;
@@ -76,8 +76,8 @@ namespace retroforge
     };
     auto strain = transfer_cells(state.leg->scene.mesh, state.X, J, remesh.mesh, state.strain);
     state.strains_before.push_back(std::exchange(state.strain, std::move(strain)));
-    state.X   = J.positions(state.X);
-    state.leg = std::make_shared<Leg>(remesh.mesh, model_, timings_);
+    state.X          = J.positions(state.X);
+    state.leg        = std::make_shared<Leg>(remesh.mesh, model_, timings_);
     state.next.W     = transferred(state.leg->scene.spaces, state.next.W);
     state.next.rate  = transferred(state.leg->scene.spaces, state.next.rate);
     state.next.known = Start::far;

@@ -184,10 +184,10 @@ namespace retroforge
     {
       const NodalVectors<double> position = advanced(X, start.dt, scheme.a[s], solves);
       const Stage<double>        stage(scene_, start.physics, start.contact, position);
-      const ActiveSet            frozen     = replay ? record.solves[s].active : ActiveSet();
-      const Start                known      = s == 0 ? guess.known : Start::near;
+      const ActiveSet            frozen = replay ? record.solves[s].active : ActiveSet();
+      const Start                known  = s == 0 ? guess.known : Start::near;
       guess.advance(s == 0 ? guess.ahead : record.step * (scheme.node(s) - scheme.node(s - 1)), W);
-      const NewtonStatistics     statistics =
+      const NewtonStatistics statistics =
         newton_.solve(stage, W, frozen, known, s == 0 ? ActiveSet() : solves.back().active);
       record.newton += statistics.iterations;
       record.krylov += statistics.krylov;

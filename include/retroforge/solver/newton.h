@@ -57,9 +57,9 @@ namespace retroforge
   /// A step that must be cut tells that the power law bends more than its tangent knows. Steps at constant
   /// viscosity (Picard) are short of no length: one follows each that was cut, and a start from afar begins
   /// with them. Bubbles settle after each step, so that what Newton's method sees is a functional of V and P
-  /// alone: a bubble in metal that hardly flows would keep it from converging. At first the slope is that of the functional with the contacts of the step, and nodes that
-  /// arrive do so at once (contact_steps.h); where that does not converge, of the functional itself, which
-  /// always does.
+  /// alone: a bubble in metal that hardly flows would keep it from converging. At first the slope is that of
+  /// the functional with the contacts of the step, and nodes that arrive do so at once (contact_steps.h);
+  /// where that does not converge, of the functional itself, which always does.
   class Newton
   {
   public:
@@ -83,11 +83,10 @@ namespace retroforge
   private:
     using Scale = std::pair<double, double>; ///< of momentum and continuity, as residual_scale
 
-    /// @param reference  of a flow at the dies' speed
     double relative_residual(const Stage<double> &stage,
                              const Field<double> &W,
                              const ActiveSet     &frozen,
-                             const Scale         &reference,
+                             const Scale         &scale,
                              Field<double>       &r);
     /// Advances W and returns the part of the velocity step that was taken.
     /// @param r       residual at W, with the same contacts

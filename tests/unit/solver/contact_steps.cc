@@ -8,7 +8,10 @@
 // - what the plane of symmetry fixes stays fixed, nodes that no die holds keep their velocity;
 // - also where they stick to a die they touch, which leaves them no speed of their own;
 // - nodes that were active in a step are left alone by what follows the step;
-// - a node that leaves its die, but that the metal presses against it, is held.
+// - a node that leaves its die, but that the metal presses against it, is held; so is one that is said to be
+//   pressed, where the metal pulls;
+// - nodes that lean on stiff dies are in balance along the normals: what is left is what the metal's forces
+//   change by sinking in, of the order of viscosity over penalty.
 
 #include <deal.II/base/mpi.h>
 
@@ -161,4 +164,48 @@ int main(int argc, char **argv)
               held_there == inside      ? "all"
               : held_there > inside / 2 ? "most"
                                         : "few");
+
+  // The same nodes, and metal that pulls them away.
+  ActiveSet said(pairs.size(), 0);
+  for (unsigned int p = 0; p < pairs.size(); ++p)
+    said[p] = chosen(p);
+  const auto n_held = [&](const ActiveSet &pressed_nodes) {
+    Field<double> pulled = pressed;
+    for (double &pressure : pulled.P)
+      pressure = -50.;
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+      if (chosen(p))
+        pulled.V[pairs[p].point.nodes[0]] -= 0.1 * corner.contact.projections[p].n;
+    const std::vector<char> on_die = hold_on_dies(corner.stage(), pulled, pressed_nodes);
+    unsigned int            n      = 0;
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+      n += chosen(p) && on_die[p] &&
+           std::abs(approach_excess(corner.stage().contact_node(p, pulled, {}))) < 1e-6;
+    return n;
+  };
+  std::printf("pulled away: held: %s, said to be pressed: %s\n",
+              n_held({}) == 0 ? "none" : "some",
+              n_held(said) == inside ? "all" : "few");
+
+  // Stiff dies, and metal that presses against both.
+  Random        third;
+  CornerStage   stiff(third, 1e6);
+  Field<double> leaning        = pressed;
+  stiff.contact.edge_stiffness = 1e-6; // edges press with nodes that sink in, as softly as in a run
+  lean_on_dies(stiff.stage(), hold_on_dies(stiff.stage(), leaning), leaning);
+  Field<double> r = stiff.stage().residual(leaning, {});
+  stiff.scene.velocities.gather(r.V);
+  double       unbalanced = 0.;
+  unsigned int leant      = 0;
+  for (unsigned int p = 0; p < pairs.size(); ++p)
+    if (chosen(p))
+    {
+      const auto   node  = stiff.stage().contact_node(p, leaning, {});
+      const double force = contact_force(node, stiff.physics.law, stiff.physics.contact) * node.n;
+      ++leant;
+      unbalanced = std::max(unbalanced, std::abs(r.V[pairs[p].point.velocity_node] * node.n) / force);
+    }
+  std::printf("leaning: some: %s, unbalanced: %s\n",
+              yes(leant > 3),
+              unbalanced < 1e-4 ? "below 1e-4 of the force" : "more");
 }

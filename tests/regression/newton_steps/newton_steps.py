@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""How many linear solves an increment takes. While no node arrives, the velocity of the next stage is known from how it changed
+between those before, but for a second difference: one solve of a stage is enough. What a start is
+made of is recorded: a run that is resumed has the same bits, solves included. Usage: newton_steps.py RETROFORGE"""
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from whole_runs import changed, cube, history_of, judge, main, prm, run, summary_of  # noqa: E402
+
+CASE = changed(cube(20, 6, 2, 8), {"Remeshing": {"when": "never"}, "Contact": {"penetration": 1e-5}})
+WHOLE = ("Press/stroke=2", "Press/increments=8")
+
+
+def solves(output):
+    return [int(row["newton"]) for row in history_of(output)]
+
+
+def steady():
+    for scheme, stages in (("midpoint", 2), ("euler", 1)):
+        done = run("simulate", scheme, f"Press/scheme={scheme}")
+        judge(f"{scheme}: ends", done.returncode == 0, done.stderr)
+        taken = solves(scheme)[3:]
+        most = 1 if stages == 2 else 2  # without a second stage there is nothing to tell how the first one changes
+        judge(f"{scheme}: linear solves per stage", max(taken) <= most * stages, taken)
+
+
+def resumed():
+    """From the record of the first half of the stroke."""
+    run("gradient", "whole")
+    run("gradient", "half", "Press/stroke=1", "Press/increments=4")
+    done = run("gradient", "half", "--resume", *WHOLE)
+    judge("resumed: ends", done.returncode == 0, done.stderr)
+    judge("resumed: energy", summary_of("half")["objectives"][0]["value"] == summary_of("whole")["objectives"][0]["value"])
+    judge("resumed: solves", solves("half") == solves("whole"), (solves("half"), solves("whole")))
+
+
+def remeshed():
+    """The start is carried to a new mesh with its change; the run resumes there with the same bits, too."""
+    settings = ("Remeshing/when=increments", "Remeshing/every=3")
+    run("gradient", "whole_remeshed", *settings)
+    run("gradient", "half_remeshed", *settings, "Press/stroke=1", "Press/increments=4")
+    done = run("gradient", "half_remeshed", *settings, *WHOLE, "--resume")
+    judge("remeshed: ends", done.returncode == 0, done.stderr)
+    judge("remeshed: some", summary_of("whole_remeshed")["remeshings"] >= 2)
+    judge("remeshed: solves", solves("half_remeshed") == solves("whole_remeshed"))
+    judge("remeshed: energy", summary_of("half_remeshed")["objectives"][0]["value"] ==
+          summary_of("whole_remeshed")["objectives"][0]["value"])
+
+
+if __name__ == "__main__":
+    main({"case.prm": prm(CASE)}, (steady, resumed, remeshed))
