@@ -219,6 +219,10 @@ namespace retroforge
   /// Linear systems are not solved better than this only because steps are poor.
   constexpr double least_forcing = 1e-6;
 
+  /// How well the last step of a replay is solved for. Replays are made to be subtracted from each other, and
+  /// begin so close to their solutions that the tolerance says little: each takes one step more.
+  constexpr double refined = 1e-5;
+
   NewtonStatistics Newton::solve(const Stage<double> &stage,
                                  Field<double>       &W,
                                  const ActiveSet     &frozen,
@@ -261,7 +265,8 @@ namespace retroforge
       if (last >= close)
         scale = scale_of(stage, W, reference);
       statistics.residual = relative_residual(stage, W, first_active, scale, r);
-      if (first_active == frozen && statistics.residual <= parameters_.tolerance)
+      const bool found = first_active == frozen && statistics.residual <= parameters_.tolerance;
+      if (found && frozen.empty())
         return statistics;
       if (iteration > 0)
         assemble();
@@ -275,11 +280,16 @@ namespace retroforge
       const double fall    = statistics.residual / last;
       const double promise = 0.1 * std::max(statistics.residual, fall * fall);
       double       forcing = linear ? goal : std::max(goal, std::min(largest_forcing, promise));
-      forcing              = std::min(0.5, std::max(1e-12, forcing));
+      forcing              = found ? refined : std::min(0.5, std::max(1e-12, forcing));
       Field<double> rhs(scene_.spaces);
       rhs.add(-1., r);
       statistics.krylov += system_.solve(rhs, forcing, step);
       ++statistics.iterations;
+      if (found)
+      {
+        W.add(1., step);
+        return statistics;
+      }
       if (first_active == frozen && statistics.residual > settled)
       {
         double taken;

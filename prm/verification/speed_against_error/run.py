@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""Seconds against errors of the energy and of a derivative of it, for both pairs of elements:   run.py BUILD [SCENE]...
+"""Seconds against errors of the energy and of a derivative of it:   run.py BUILD [SCENE]...
 
-Each scene is run on a series of meshes with `Discretization/element` mini and P2-P1, forward and backward, and once on a finer mesh
-that says what is right. Seconds are of the processor, all of the run, least of --repeat; runs of both elements take turns. Prints a
-table for each scene, and at the errors named how many times longer the mini element takes, by straight lines between its points in
-logarithms; where it does not come so far, that is a lower bound (>) from its finest mesh. --picture FILE draws them all."""
+A scene is run, forward and backward, with two methods, each on a series of ever finer discretisations: pairs of elements on
+meshes (cube, cylinder, tripod, hub), or time schemes with increments on one mesh (cube-time, hub-time). A finer run says
+what is right. Seconds are of the processor, all of the run, least of --repeat; runs of both methods take turns. Prints a table for
+each scene, and at the errors named how many times longer the first method takes, by straight lines between its points in logarithms;
+where it does not come so far, that is a lower bound (>) from its finest run. --picture FILE draws them all."""
 import argparse
 import json
 import math
@@ -19,41 +20,55 @@ sys.path.insert(0, PRM)
 from case_tools import energy, figure, gradient  # noqa: E402
 
 MINI, QUADRATIC = "mini", "P2-P1"
+EULER, MIDPOINT = "euler", "midpoint"
+
+# What a method is, what makes it finer, and how that is called in tables.
+ELEMENTS = ("Discretization/element", "Billet/element size", "size [mm]")
+SCHEMES = ("Press/scheme", "Press/increments", "increments")
 
 
 class Scene:
-    """Where a scene is and on which meshes it is run."""
+    """Where a scene is, and how it is run."""
 
-    def __init__(self, case, parameter, sizes, reference, bars, settings=None):
-        self.case, self.parameter, self.sizes, self.reference, self.settings = case, parameter, sizes, reference, settings or {}
+    def __init__(self, case, parameter, kind, series, reference, bars, settings=None):
+        self.case, self.parameter, self.kind, self.series, self.settings = case, parameter, kind, series, settings or {}
+        self.reference = reference  # method and fineness
         self.bars = bars  # errors of energy and derivative at which seconds are compared
 
+    def words(self, method, fineness):
+        settings = {**self.settings, self.kind[0]: method, self.kind[1]: fineness, "Output/fields every": 0}
+        return [word for name, value in settings.items() for word in ("--set", f"{name}={value}")]
 
+
+CUBE = os.path.join(HERE, "cube.prm")
 SCENES = {
-    "cube": Scene(os.path.join(HERE, "cube.prm"), "billet/stretch", {MINI: [6, 4, 3, 2.2, 1.7, 1.3, 1.05], QUADRATIC: [20, 16, 12, 9, 7]},
+    "cube": Scene(CUBE, "billet/stretch", ELEMENTS, {MINI: [6, 4, 3, 2.2, 1.7, 1.3, 1.05], QUADRATIC: [20, 16, 12, 9, 7]},
                   (QUADRATIC, 5), (0.0012, 0.002)),
-    "cylinder": Scene(os.path.join(HERE, "..", "speed", "case.prm"), "billet/radius",
+    "cylinder": Scene(os.path.join(HERE, "..", "speed", "case.prm"), "billet/radius", ELEMENTS,
                       {MINI: [6, 4, 3, 2.2, 1.7], QUADRATIC: [14, 10, 8, 6]}, (QUADRATIC, 4), (0.005, 0.005),
                       {"Press/stroke": 12, "Press/increments": 24}),
-    "tripod": Scene(os.path.join(PRM, "reproduction", "laroussi_2003", "tripod", "case.prm"), "billet/radius",
+    "tripod": Scene(os.path.join(PRM, "reproduction", "laroussi_2003", "tripod", "case.prm"), "billet/radius", ELEMENTS,
                     {MINI: [7, 5, 4, 3], QUADRATIC: [12, 9, 7]}, (MINI, 2), (0.005, 0.01),
                     {"Press/stroke": 10, "Press/increments": 20, "Design/parameters": "billet/radius"}),
-    "hub": Scene(os.path.join(PRM, "tutorial", "hub", "hub.prm"), "billet/radius",
+    "hub": Scene(os.path.join(PRM, "tutorial", "hub", "hub.prm"), "billet/radius", ELEMENTS,
                  {MINI: [8, 5, 4, 3], QUADRATIC: [12, 8]}, (MINI, 2), (0.01, 0.02),
                  {"Billet/radius": 15.6, "Press/stroke": 20, "Press/increments": 40, "Objectives/names": "energy",
                   "Design/parameters": "billet/radius"}),
+    "cube-time": Scene(CUBE, "billet/stretch", SCHEMES, {EULER: [4, 8, 16, 32, 64, 128], MIDPOINT: [2, 4, 8, 16, 32]},
+                       (MIDPOINT, 256), (0.001, 0.001), {"Billet/element size": 5, "Press/stroke": 20}),
+    "hub-time": Scene(os.path.join(PRM, "tutorial", "hub", "hub.prm"), "billet/radius", SCHEMES,
+                      {EULER: [10, 20, 40, 80, 160], MIDPOINT: [5, 10, 20, 40, 80]}, (MIDPOINT, 320), (0.001, 0.001),
+                      {"Press/stroke": 8, "Remeshing/when": "never", "Objectives/names": "energy", "Design/parameters": "billet/radius"}),
 }
 
 
 class Run:
     """One `gradient`; its seconds of processor time are the least of several."""
 
-    def __init__(self, build, scene, element, size, repeat, timeout):
+    def __init__(self, build, scene, method, fineness, repeat, timeout):
         words = ["timeout", str(timeout), os.path.join(build, "retroforge"), "gradient", scene.case, "--output", "run", "--overwrite"]
-        settings = {**scene.settings, "Discretization/element": element, "Billet/element size": size, "Output/fields every": 0}
-        for name, value in settings.items():
-            words += ["--set", f"{name}={value}"]
-        self.element, self.size, self.seconds, self.ended = element, size, math.inf, True
+        words += scene.words(method, fineness)
+        self.method, self.fineness, self.seconds, self.ended = method, fineness, math.inf, True
         for _ in range(repeat):
             log = os.open("run.log", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
             child = os.posix_spawnp("timeout", words, os.environ, file_actions=[(os.POSIX_SPAWN_DUP2, log, 1), (os.POSIX_SPAWN_DUP2, log, 2)])
@@ -80,18 +95,24 @@ def seconds_to(points, error):
     return points[-1][0], False
 
 
+def line(runs, method, reference, i):
+    return [(run.seconds, abs(run.errors(reference)[i])) for run in runs if run.method == method]
+
+
 def compare(name, scene, runs, reference):
-    """At each bar: how many times longer the mini element takes."""
+    """At each bar: how many times longer the first method takes."""
+    first, second = scene.series
     for i, what in enumerate(("energy", "derivative")):
-        line = {element: [(run.seconds, abs(run.errors(reference)[i])) for run in runs if run.element == element] for element in (MINI, QUADRATIC)}
-        if not all(line.values()):
+        lines = [line(runs, method, reference, i) for method in (first, second)]
+        if not all(lines):
             continue
-        (mini, there), (quadratic, found) = (seconds_to(line[element], scene.bars[i]) for element in (MINI, QUADRATIC))
+        (slow, there), (fast, found) = (seconds_to(points, scene.bars[i]) for points in lines)
         if not found:
-            print(f"{what}, {scene.bars[i]:.2%}: P2/P1 does not come so far on these meshes" + ("" if not there else f", mini in {mini:.2g} s"))
+            print(f"{what}, {scene.bars[i]:.2%}: {second} does not come so far here" + ("" if not there else f", {first} in {slow:.2g} s"))
             continue
-        print(f"{what}, {scene.bars[i]:.2%}: mini {'' if there else '> '}{mini:.3g} s, P2/P1 {quadratic:.3g} s: {'' if there else '> '}{mini / quadratic:.2g} times")
-        figure(f"{name}_{what}_ratio", mini / quadratic)
+        bound = "" if there else "> "
+        print(f"{what}, {scene.bars[i]:.2%}: {first} {bound}{slow:.3g} s, {second} {fast:.3g} s: {bound}{slow / fast:.2g} times")
+        figure(f"{name}_{what}_ratio", slow / fast)
 
 
 def draw(results, file):
@@ -102,15 +123,14 @@ def draw(results, file):
     page, axes = pyplot.subplots(2, len(results), figsize=(3.6 * len(results), 6.4), squeeze=False, sharex="col")
     for column, (name, (runs, reference)) in enumerate(results.items()):
         for row, what in enumerate(("energy", "derivative")):
-            for element, mark in ((MINI, "o-"), (QUADRATIC, "s-")):
-                points = sorted((run.seconds, abs(run.errors(reference)[row])) for run in runs if run.element == element)
-                axes[row][column].loglog(*zip(*points), mark, label=element.replace("-", "/"))
+            for method, mark in zip(SCENES[name].series, ("o-", "s-")):
+                axes[row][column].loglog(*zip(*sorted(line(runs, method, reference, row))), mark, label=method.replace("-", "/"))
             axes[row][column].set_title(f"{name}: {what}")
             axes[row][column].grid(True, which="both", alpha=0.3)
+            axes[row][column].legend()
         axes[1][column].set_xlabel("seconds")
     axes[0][0].set_ylabel("relative error")
     axes[1][0].set_ylabel("relative error")
-    axes[0][0].legend()
     page.tight_layout()
     page.savefig(file, dpi=110)
 
@@ -133,20 +153,20 @@ def main():
         if not reference.ended:
             print(f"{name}: the reference, {scene.reference}, did not end")
             continue
-        print(f"\n{name}: reference {scene.reference[0]}, {scene.reference[1]:g} mm: energy {reference.energy:.6g} mJ, "
+        print(f"\n{name}: reference {scene.reference[0]}, {scene.kind[2]} {scene.reference[1]:g}: energy {reference.energy:.6g} mJ, "
               f"derivative by {scene.parameter} {reference.slope:.6g}, {reference.seconds:.3g} s\n")
-        print("| element | size [mm] | nodes | s | energy | derivative |\n" + "| --- " * 6 + "|", flush=True)
-        runs, series = [], {element: list(sizes) for element, sizes in scene.sizes.items()}
+        print(f"| {scene.kind[0].split('/')[1]} | {scene.kind[2]} | nodes | s | energy | derivative |\n" + "| --- " * 6 + "|", flush=True)
+        runs, series = [], {method: list(steps) for method, steps in scene.series.items()}
         while any(series.values()):
-            for element, sizes in series.items():
-                if sizes:
-                    run = Run(options.build, scene, element, sizes.pop(0), options.repeat, options.timeout)
+            for method, steps in series.items():
+                if steps:
+                    run = Run(options.build, scene, method, steps.pop(0), options.repeat, options.timeout)
                     if not run.ended:
-                        print(f"| {element} | {run.size:g} | did not end | {run.seconds:.3g} | | |", flush=True)
+                        print(f"| {method} | {run.fineness:g} | did not end | {run.seconds:.3g} | | |", flush=True)
                         continue
                     runs.append(run)
                     errors = run.errors(reference)
-                    print(f"| {element} | {run.size:g} | {run.nodes} | {run.seconds:.3g} | {errors[0]:+.2%} | {errors[1]:+.2%} |", flush=True)
+                    print(f"| {method} | {run.fineness:g} | {run.nodes} | {run.seconds:.3g} | {errors[0]:+.3%} | {errors[1]:+.3%} |", flush=True)
         print()
         compare(name, scene, runs, reference)
         results[name] = (runs, reference)
