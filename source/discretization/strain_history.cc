@@ -4,6 +4,8 @@
 #include <retroforge/discretization/strain_history.h>
 #include <retroforge/element/cell_geometry.templates.h>
 
+#include <numeric>
+
 namespace retroforge
 {
   template <typename Number>
@@ -14,9 +16,23 @@ namespace retroforge
                                         const Number               &dt,
                                         const std::vector<Number>  &q_n)
   {
+    std::vector<CellIndex> all(mesh.n_cells());
+    std::iota(all.begin(), all.end(), 0);
+    return accumulate_strain(mesh, spaces, X, W, dt, q_n, all);
+  }
+
+  template <typename Number>
+  std::vector<Number> accumulate_strain(const TetMesh                &mesh,
+                                        const Spaces                 &spaces,
+                                        const NodalVectors<Number>   &X,
+                                        const Field<Number>          &W,
+                                        const Number                 &dt,
+                                        const std::vector<Number>    &q_n,
+                                        const std::vector<CellIndex> &cells)
+  {
     std::vector<Number> q = q_n;
     with_pair(spaces, [&](const auto pair) {
-      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+      for (const CellIndex c : cells)
         q[c] += dt * cell_strain_rate(geometry_of_cell(mesh, X, c), pair.on_cell(spaces, W, c));
     });
     return q;
@@ -57,7 +73,14 @@ namespace retroforge
                                                  const NodalVectors<Number> &, \
                                                  const Field<Number> &,        \
                                                  const Number &,               \
-                                                 const std::vector<Number> &);
+                                                 const std::vector<Number> &); \
+  template std::vector<Number> accumulate_strain(const TetMesh &,              \
+                                                 const Spaces &,               \
+                                                 const NodalVectors<Number> &, \
+                                                 const Field<Number> &,        \
+                                                 const Number &,               \
+                                                 const std::vector<Number> &,  \
+                                                 const std::vector<CellIndex> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE

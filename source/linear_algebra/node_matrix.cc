@@ -12,13 +12,6 @@
 
 namespace retroforge
 {
-  dealii::IndexSet NodeRange::dofs(const unsigned int width) const
-  {
-    dealii::IndexSet set(width * n);
-    set.add_range(width * begin, width * end);
-    return set;
-  }
-
   NodePattern::NodePattern(const NodeRange          &rows,
                            const NodeRange          &columns,
                            const Rows<unsigned int> &neighbours)

@@ -130,7 +130,7 @@ namespace retroforge
         if (!scene.mesh.is_surface(face) || value_of(weight_of(region, face, view.stage.X)) == 0.)
           continue;
         FreeFace free{face, cell_at(scene.topology, face), {}};
-        if (free.cell < scene.partition.cell_begin || free.cell >= scene.partition.cell_end)
+        if (!scene.partition.cells().owns(free.cell))
           continue;
         for (const auto &[die, first] : pairs[face.nodes[0]])
           for (const auto &[die_1, second] : pairs[face.nodes[1]])
@@ -168,7 +168,7 @@ namespace retroforge
       sums[0] += area * power(strain_rate(view, free.cell), Number(exponent_));
       sums[1] += area;
     }
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+    for (const CellIndex c : partition.cells().owned())
       sums[2] += strain_rate(view, c) / double(stage.scene.mesh.n_cells());
     return sums;
   }
@@ -193,7 +193,7 @@ namespace retroforge
         reverse_strain_rate(view, free.cell, e_bar, bar);
     }
     if (weights[2] != 0.)
-      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+      for (const CellIndex c : partition.cells().owned())
         reverse_strain_rate(view, c, weights[2] / stage.scene.mesh.n_cells(), bar);
   }
 

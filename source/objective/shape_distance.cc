@@ -107,7 +107,7 @@ namespace retroforge
     std::vector<Number> sums(3, Number(0.));
     const Partition    &partition = view.scene.partition;
     const auto          S         = lumped_areas(triangles(view.scene.mesh), view.X);
-    for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
+    for (const NodeIndex k : partition.nodes().owned())
       if (value_of(S[k]) > 0.)
       {
         const Vector3<Number> d  = from_axis(view.X[k]);
@@ -128,7 +128,7 @@ namespace retroforge
     const auto          faces     = triangles(view.scene.mesh);
     const auto          S         = lumped_areas(faces, view.X);
     std::vector<double> S_bar(S.size(), 0.);
-    for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
+    for (const NodeIndex k : partition.nodes().owned())
       if (S[k] > 0.)
       {
         const Vec3   d = from_axis(view.X[k]);

@@ -72,7 +72,7 @@ namespace retroforge
   {
     const Partition    &partition = view.scene.partition;
     std::vector<Number> sums(3, Number(0.));
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+    for (const CellIndex c : partition.cells().owned())
     {
       const Number volume = cell_volume(view, c);
       const auto   f      = integrands(view.q[c]);
@@ -98,7 +98,7 @@ namespace retroforge
                                           FinalBar                  &bar) const
   {
     const Partition &partition = view.scene.partition;
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+    for (const CellIndex c : partition.cells().owned())
     {
       const auto f = integrands(view.q[c]), slope = slopes(view.q[c]);
       reverse_cell_volume(view, c, weights[0] + weights[1] * f[0] + weights[2] * f[1], bar.X);

@@ -27,7 +27,7 @@ namespace retroforge
   {
     const Partition &partition = view.scene.partition;
     Number           volume(0.);
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+    for (const CellIndex c : partition.cells().owned())
       volume += cell_volume(view, c);
     return {volume};
   }
@@ -37,7 +37,7 @@ namespace retroforge
                                           FinalBar                  &bar) const
   {
     const Partition &partition = view.scene.partition;
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+    for (const CellIndex c : partition.cells().owned())
       reverse_cell_volume(view, c, weights[0], bar.X);
   }
 

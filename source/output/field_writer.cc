@@ -172,8 +172,9 @@ namespace retroforge
     const ContactFields contact = contact_fields(last.stage, run.next.W, last.active);
     const std::string   number = six_digits(run.increments), file = "fields_" + number + ".vtu";
     add_billet(comm_);
-    write(
-      comm_, file, {scene.mesh, scene.spaces, run.X, last.X, run.next.W, run.strain, &displacement_, &contact});
+    write(comm_,
+          file,
+          {scene.mesh, scene.spaces, run.X, last.X, run.next.W, run.strain, &displacement_, &contact});
     add_step(run.stroke, file, number, run.X);
   }
 

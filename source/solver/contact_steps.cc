@@ -61,7 +61,7 @@ namespace retroforge
         if (pairs[p].point.has_own_velocity())
           edges[p] = 0;
       Field<double> r = stage.residual(W, edges);
-      stage.scene.velocities.gather(r.V);
+      stage.scene.exchange.update(r.V);
       std::vector<double> force(pairs.size(), 0.);
       for (unsigned int p = 0; p < pairs.size(); ++p)
         if (pairs[p].point.has_own_velocity())

@@ -42,7 +42,7 @@ namespace retroforge
     {
       const Partition &partition = stage.scene.partition;
       double           volume = 0., speed = 0.;
-      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+      for (const CellIndex c : partition.cells().owned())
         volume += geometry_of_cell(stage.scene.mesh, stage.X, c).volume;
       for (const auto &die : stage.physics.dies)
         speed = std::max(speed, die.velocity.norm());
@@ -88,7 +88,7 @@ namespace retroforge
     double      bubble2   = 0.;
     const auto &partition = scene_.partition;
     if (scene_.spaces.n_bubbles() > 0)
-      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+      for (const CellIndex c : partition.cells().owned())
         bubble2 += r.beta[c].norm_square();
     const double momentum = std::sqrt(norm.first * norm.first + partition.sum(bubble2));
     return std::max(momentum / scale.first, norm.second / scale.second);
@@ -99,10 +99,10 @@ namespace retroforge
   {
     const auto &partition = scene_.partition;
     double      sum       = 0.;
-    for (unsigned int i = 0; i < scene_.velocities.n_owned(); ++i)
-      sum += r.V[scene_.velocities.node(i)] * step.V[scene_.velocities.node(i)];
+    for (const NodeIndex k : scene_.velocities.owned())
+      sum += r.V[k] * step.V[k];
     if (scene_.spaces.n_bubbles() > 0)
-      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+      for (const CellIndex c : partition.cells().owned())
         sum += r.beta[c] * step.beta[c];
     return partition.sum(sum);
   }
@@ -128,7 +128,7 @@ namespace retroforge
     // which is linear in the velocity.
     const auto &partition = scene_.partition;
     double      added     = 0.;
-    for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
+    for (const NodeIndex k : partition.nodes().owned())
       added += step.P[k] * (whole.P[k] - r.P[k]);
     const double start = slope(r, step) + partition.sum(added);
     double       a     = 1.;
@@ -265,9 +265,12 @@ namespace retroforge
       if (last >= close)
         scale = scale_of(stage, W, reference);
       statistics.residual = relative_residual(stage, W, first_active, scale, r);
-      const bool found = first_active == frozen && statistics.residual <= parameters_.tolerance;
+      const bool found    = first_active == frozen && statistics.residual <= parameters_.tolerance;
       if (found && frozen.empty())
+      {
+        scene_.exchange.gather(W);
         return statistics;
+      }
       if (iteration > 0)
         assemble();
       picard -= picard > 0;
@@ -288,6 +291,7 @@ namespace retroforge
       if (found)
       {
         W.add(1., step);
+        scene_.exchange.gather(W);
         return statistics;
       }
       if (first_active == frozen && statistics.residual > settled)

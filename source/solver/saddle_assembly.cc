@@ -152,29 +152,27 @@ namespace retroforge
       return velocities_.owns(k) ? velocities_.local(k) : invalid_index;
     };
     const auto pressure_row = [&](const NodeIndex k) {
-      return partition.owns(k) ? k - partition.node_begin : invalid_index;
+      return pressures_.owns(k) ? pressures_.local(k) : invalid_index;
     };
     const auto velocity_number = [&](const NodeIndex k) { return velocities_.number(k); };
-    const auto pressure_number = [](const NodeIndex k) { return k; };
+    const auto pressure_number = [&](const NodeIndex k) { return pressures_.number(k); };
     const auto pattern = [](const NodeRange &rows, const NodeRange &columns, const Rows<unsigned int> &met) {
       return std::make_shared<const NodePattern>(rows, columns, met);
     };
-    const unsigned int n_v = velocities_.n_owned(), n_p = pressures_.n_owned();
-    const NodeRange   &v  = velocities_.range();
-    const auto         pp = pattern(
-      pressures_, pressures_, neighbours(partition, n_p, pressure, pressure, pressure_row, pressure_number));
+    const NodeRange   &v = velocities_.range(), &p = pressures_.range();
+    const unsigned int n_v = v.n_owned(), n_p = p.n_owned();
+    const auto         pp =
+      pattern(p, p, neighbours(partition, n_p, pressure, pressure, pressure_row, pressure_number));
     const bool alike = n_of_cell == 4;
     const auto vv =
       alike ? pp
             : pattern(v, v, neighbours(partition, n_v, velocity, velocity, velocity_row, velocity_number));
     const auto vp =
       alike ? pp
-            : pattern(
-                v, pressures_, neighbours(partition, n_v, velocity, pressure, velocity_row, pressure_number));
+            : pattern(v, p, neighbours(partition, n_v, velocity, pressure, velocity_row, pressure_number));
     const auto pv =
       alike ? pp
-            : pattern(
-                pressures_, v, neighbours(partition, n_p, pressure, velocity, pressure_row, velocity_number));
+            : pattern(p, v, neighbours(partition, n_p, pressure, velocity, pressure_row, velocity_number));
     const auto make = [&](la::SparseMatrix                         &matrix,
                           const std::shared_ptr<const NodePattern> &met,
                           const unsigned int                        rows,
@@ -195,7 +193,7 @@ namespace retroforge
   {
     const Partition &partition = scene_.partition;
     const Spaces    &spaces    = scene_.spaces;
-    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
+    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
       diagonal_.push_back(system_.A->pattern().position(local, velocities_.range().begin + local));
     const auto place = [](const NodePattern &pattern, const unsigned int local, const unsigned int column) {
       const unsigned int position = pattern.position(local, column);
@@ -217,17 +215,18 @@ namespace retroforge
           for (unsigned int b = 0; b < n; ++b)
             places[n * a + b] = place(system_.A->pattern(), local, velocities_.number(nodes[b]));
           for (unsigned int b = 0; b < 4; ++b)
-            places[n * n + 4 * a + b] = place(system_.B->pattern(), local, nodes[b]);
+            places[n * n + 4 * a + b] = place(system_.B->pattern(), local, pressures_.number(nodes[b]));
         }
       for (unsigned int a = 0; a < 4; ++a)
-        if (partition.owns(nodes[a]))
+        if (pressures_.owns(nodes[a]))
         {
-          const unsigned int local = nodes[a] - partition.node_begin;
+          const unsigned int local = pressures_.local(nodes[a]);
           for (unsigned int b = 0; b < n; ++b)
             places[n * n + 4 * n + n * a + b] =
               place(system_.D->pattern(), local, velocities_.number(nodes[b]));
           for (unsigned int b = 0; b < 4; ++b)
-            places[n * n + 8 * n + 4 * a + b] = place(system_.C->pattern(), local, nodes[b]);
+            places[n * n + 8 * n + 4 * a + b] =
+              place(system_.C->pattern(), local, pressures_.number(nodes[b]));
         }
     }
   }
@@ -235,10 +234,9 @@ namespace retroforge
   template <typename Tangents>
   void SaddleMatrix::add_cell(const unsigned int visited, const Tangents &tangents, const unsigned int lane)
   {
-    constexpr unsigned int n         = Tangents::n_nodes;
-    const auto            &t         = tangents.pack;
-    const Partition       &partition = scene_.partition;
-    const NodeIndex       *nodes     = scene_.spaces.velocity_nodes(partition.visited_cells[visited]);
+    constexpr unsigned int n     = Tangents::n_nodes;
+    const auto            &t     = tangents.pack;
+    const NodeIndex       *nodes = scene_.spaces.velocity_nodes(scene_.partition.visited_cells[visited]);
     const Place *of_A = &places_[places_per_cell_ * visited], *of_B = of_A + n * n, *of_D = of_B + 4 * n,
                 *of_C = of_D + 4 * n;
     for (unsigned int a = 0; a < n; ++a)
@@ -273,9 +271,9 @@ namespace retroforge
     const double mass = t.volume[lane] / 20. / t.viscosity[lane];
     for (unsigned int a = 0; a < 4; ++a)
     {
-      if (!partition.owns(nodes[a]))
+      if (!pressures_.owns(nodes[a]))
         continue;
-      const unsigned int local = nodes[a] - partition.node_begin;
+      const unsigned int local = pressures_.local(nodes[a]);
       for (unsigned int b = 0; b < n; ++b)
       {
         double of_velocity[3] = {t.B[b][a][0][lane], t.B[b][a][1][lane], t.B[b][a][2][lane]};
@@ -325,7 +323,7 @@ namespace retroforge
         {
           const CellIndex c = partition.visited_cells[begin + lane];
           add_cell(begin + lane, tangents, lane);
-          if (c >= partition.cell_begin && c < partition.cell_end)
+          if (partition.cells().owns(c))
           {
             log_viscosity += std::log(tangents.pack.viscosity[lane]) * tangents.pack.volume[lane];
             volume += tangents.pack.volume[lane];
@@ -343,7 +341,7 @@ namespace retroforge
   {
     const Partition    &partition = scene_.partition;
     const NodePattern  &pattern   = system_.A->pattern();
-    std::vector<double> added(3 * velocities_.n_owned(), 0.);
+    std::vector<double> added(3 * velocities_.range().n_owned(), 0.);
     system_.penalties_couple = false;
     const ActiveSet chosen   = active.empty() ? stage.decide_active(W) : active;
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)

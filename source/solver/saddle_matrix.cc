@@ -14,18 +14,12 @@ namespace retroforge
   } // namespace
 
   SaddleMatrix::SaddleMatrix(const Scene &scene)
-      : scene_(scene)
-      , velocities_(scene.velocities)
-      , pressures_{scene.partition.node_begin, scene.partition.node_end, scene.mesh.n_nodes()}
+      : scene_(scene), velocities_(scene.velocities), pressures_(scene.partition.nodes())
   {
     make_patterns();
     make_positions();
-    if (scene.spaces.n_bubbles() == 0)
-      return;
-    eliminations_.resize(scene.partition.visited_cells.size());
-    visited_index_.assign(scene.mesh.n_cells(), invalid_index);
-    for (unsigned int v = 0; v < scene.partition.visited_cells.size(); ++v)
-      visited_index_[scene.partition.visited_cells[v]] = v;
+    if (scene_.spaces.n_bubbles() > 0)
+      eliminations_.resize(scene.partition.visited_cells.size());
   }
 
   void SaddleMatrix::assemble(const Stage<double> &stage,
@@ -37,15 +31,15 @@ namespace retroforge
       (*block)->clear();
     frames_ = make_frames(scene_, stage.contact);
     add_cells(stage, W, linearisation);
-    std::vector<double> viscous_diagonal(3 * velocities_.n_owned());
+    std::vector<double> viscous_diagonal(3 * velocities_.range().n_owned());
     for (unsigned int row = 0; row < viscous_diagonal.size(); ++row)
       viscous_diagonal[row] = diagonal_entry(row);
     const std::vector<double> added = add_contact(stage, W, active);
     scale_.assign(3 * frames_.size(), 1.);
     for (unsigned int row = 0; row < viscous_diagonal.size(); ++row)
-      scale_[3 * velocities_.node(row / 3) + row % 3] =
+      scale_[3 * velocities_.owned()[row / 3] + row % 3] =
         std::sqrt(viscous_diagonal[row] / (viscous_diagonal[row] + added[row]));
-    velocities_.gather(scale_.data(), 3);
+    scene_.exchange.update_components(scale_);
     scale_and_fix(viscous_diagonal);
     describe_rows();
   }
@@ -64,7 +58,7 @@ namespace retroforge
         of_columns[3 * number + i] = i < frames_[k].n_fixed ? 0. : scale_[3 * k + i];
     const std::vector<double> of_rows(of_columns.begin() + 3 * velocities_.range().begin,
                                       of_columns.begin() + 3 * velocities_.range().end);
-    const std::vector<double> of_pressures(pressures_.n, pressure_scale_);
+    const std::vector<double> of_pressures(pressures_.range().n, pressure_scale_);
     system_.A->scale(of_rows, of_columns);
     system_.B->scale(of_rows, of_pressures);
     system_.D->scale(of_pressures, of_columns);
@@ -77,12 +71,12 @@ namespace retroforge
 
   void SaddleMatrix::describe_rows()
   {
-    const unsigned int n_rows = 3 * velocities_.n_owned();
+    const unsigned int n_rows = 3 * velocities_.range().n_owned();
     system_.penalised.clear();
     system_.translations.assign(3 * n_rows, 0.);
-    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
+    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
     {
-      const NodeIndex  k     = velocities_.node(local);
+      const NodeIndex  k     = velocities_.owned()[local];
       const NodeFrame &frame = frames_[k];
       for (unsigned int i = frame.n_fixed; i < 3; ++i)
       {
@@ -102,23 +96,22 @@ namespace retroforge
 
   std::pair<double, double> SaddleMatrix::residual_norm(const Field<double> &r) const
   {
-    const Partition &partition = scene_.partition;
-    double           momentum2 = 0., continuity2 = 0.;
-    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
+    double momentum2 = 0., continuity2 = 0.;
+    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
     {
-      const NodeIndex k = velocities_.node(local);
+      const NodeIndex k = velocities_.owned()[local];
       const Vec3      v = frames_[k].to_frame(r.V[k]);
       for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
         momentum2 += std::pow(scale_[3 * k + i] * v[i], 2);
     }
-    for (NodeIndex k = partition.node_begin; k < partition.node_end; ++k)
+    for (const NodeIndex k : pressures_.owned())
       continuity2 += r.P[k] * r.P[k];
-    return {std::sqrt(partition.sum(momentum2)), std::sqrt(partition.sum(continuity2))};
+    return {std::sqrt(scene_.partition.sum(momentum2)), std::sqrt(scene_.partition.sum(continuity2))};
   }
 
   la::BlockVector SaddleMatrix::vector() const
   {
-    return la::BlockVector({velocities_.range().dofs(3), pressures_.dofs(1)}, scene_.partition.comm);
+    return la::BlockVector({velocities_.range().dofs(3), pressures_.range().dofs(1)}, scene_.partition.comm);
   }
 
   Field<double> SaddleMatrix::condensed(const Field<double> &rhs) const
@@ -141,57 +134,53 @@ namespace retroforge
     const Field<double> from       = condensed(rhs);
     double             *momentum   = b.block(0).begin();
     double             *continuity = b.block(1).begin();
-    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
+    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
     {
-      const NodeIndex k = velocities_.node(local);
+      const NodeIndex k = velocities_.owned()[local];
       const Vec3      v = frames_[k].to_frame(from.V[k]);
       for (unsigned int i = 0; i < 3; ++i)
         momentum[3 * local + i] = i < frames_[k].n_fixed ? 0. : scale_[3 * k + i] * v[i];
     }
-    for (unsigned int local = 0; local < pressures_.n_owned(); ++local)
-      continuity[local] = pressure_scale_ * from.P[pressures_.begin + local];
+    for (unsigned int local = 0; local < pressures_.range().n_owned(); ++local)
+      continuity[local] = pressure_scale_ * from.P[pressures_.owned()[local]];
   }
 
   void SaddleMatrix::unload(const la::BlockVector &x, const Field<double> &rhs, Field<double> &solution) const
   {
-    const Partition &partition = scene_.partition;
-    solution                   = Field<double>(scene_.spaces);
-    const double *velocity     = x.block(0).begin();
-    const double *pressure     = x.block(1).begin();
-    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
+    solution               = Field<double>(scene_.spaces);
+    const double *velocity = x.block(0).begin();
+    const double *pressure = x.block(1).begin();
+    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
     {
-      const NodeIndex k = velocities_.node(local);
+      const NodeIndex k = velocities_.owned()[local];
       Vec3            v;
       for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
         v[i] = scale_[3 * k + i] * velocity[3 * local + i];
       solution.V[k] = frames_[k].to_space(v);
     }
-    for (unsigned int local = 0; local < pressures_.n_owned(); ++local)
-      solution.P[pressures_.begin + local] = pressure_scale_ * pressure[local];
-    velocities_.gather(solution.V);
-    partition.gather(solution.P);
-    if (eliminations_.empty())
-      return;
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+    for (unsigned int local = 0; local < pressures_.range().n_owned(); ++local)
+      solution.P[pressures_.owned()[local]] = pressure_scale_ * pressure[local];
+    scene_.exchange.update(solution);
+    for (unsigned int v = 0; v < eliminations_.size(); ++v)
     {
+      const CellIndex          c = scene_.partition.visited_cells[v];
       const CellValues<double> w = MiniPair::on_cell(scene_.spaces, solution, c);
-      solution.beta[c]           = eliminations_[visited_index_[c]].recover_bubble(rhs.beta[c], w.V, w.P);
+      solution.beta[c]           = eliminations_[v].recover_bubble(rhs.beta[c], w.V, w.P);
     }
-    partition.gather_cells(solution.beta.data()->begin_raw(), 3);
   }
 
   void SaddleMatrix::load_guess(const Field<double> &guess, la::BlockVector &x) const
   {
     double *velocity = x.block(0).begin();
     double *pressure = x.block(1).begin();
-    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
+    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
     {
-      const NodeIndex k = velocities_.node(local);
+      const NodeIndex k = velocities_.owned()[local];
       const Vec3      v = frames_[k].to_frame(guess.V[k]);
       for (unsigned int i = 0; i < 3; ++i)
         velocity[3 * local + i] = i < frames_[k].n_fixed ? 0. : v[i] / scale_[3 * k + i];
     }
-    for (unsigned int local = 0; local < pressures_.n_owned(); ++local)
-      pressure[local] = guess.P[pressures_.begin + local] / pressure_scale_;
+    for (unsigned int local = 0; local < pressures_.range().n_owned(); ++local)
+      pressure[local] = guess.P[pressures_.owned()[local]] / pressure_scale_;
   }
 } // namespace retroforge

@@ -73,7 +73,7 @@ namespace retroforge
     const Partition          &partition = scene.partition;
     std::pair<Number, Number> power{Number(0.), Number(0.)};
     with_pair(scene.spaces, [&](const auto pair) {
-      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+      for (const CellIndex c : partition.cells().owned())
         power.first +=
           cell_dissipation(geometry_of_cell(scene.mesh, X, c), pair.on_cell(scene.spaces, W, c), physics.law);
     });
@@ -105,9 +105,9 @@ namespace retroforge
       }
     });
     double force2 = 0., flow2 = 0.;
-    for (unsigned int i = 0; i < scene.velocities.n_owned(); ++i)
-      force2 += std::pow(force[scene.velocities.node(i)], 2);
-    for (NodeIndex k = scene.partition.node_begin; k < scene.partition.node_end; ++k)
+    for (const NodeIndex k : scene.velocities.owned())
+      force2 += std::pow(force[k], 2);
+    for (const NodeIndex k : scene.partition.nodes().owned())
       flow2 += flow[k] * flow[k];
     return {std::sqrt(scene.partition.sum(force2)), std::sqrt(scene.partition.sum(flow2))};
   }
@@ -137,7 +137,7 @@ namespace retroforge
       return;
     std::fill(W.beta.begin(), W.beta.end(), Vec3());
     settle_bubbles(stage, W);
-    stage.scene.partition.gather_cells(W.beta.data()->begin_raw(), 3);
+    stage.scene.partition.cells().gather(W.beta.data()->begin_raw(), 3);
   }
 
   void reverse_residual(const StageView<double> &view, const Field<double> &lambda, StageBar &bar)
@@ -146,7 +146,7 @@ namespace retroforge
     const TetMesh       &mesh      = stage.scene.mesh;
     const Partition     &partition = stage.scene.partition;
     with_pair(stage.scene.spaces, [&](const auto pair) {
-      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+      for (const CellIndex c : partition.cells().owned())
       {
         const auto      X        = positions_of_cell(mesh, stage.X, c);
         const auto      w        = pair.on_cell(stage.scene.spaces, view.W, c);
@@ -177,7 +177,7 @@ namespace retroforge
     const TetMesh       &mesh      = stage.scene.mesh;
     const Partition     &partition = stage.scene.partition;
     with_pair(stage.scene.spaces, [&](const auto pair) {
-      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+      for (const CellIndex c : partition.cells().owned())
       {
         const auto                                       X     = positions_of_cell(mesh, stage.X, c);
         const auto                                       w     = pair.on_cell(stage.scene.spaces, view.W, c);

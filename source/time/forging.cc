@@ -49,10 +49,11 @@ namespace retroforge
     {
       return IncrementLimits::singular(state);
     }
-    guess.W.V   = record.solves.front().V;
-    guess.W.P   = record.solves.front().P;
-    guess.known = Start::near;
-    guess.ahead = 0.;
+    guess.W.V         = record.solves.front().V;
+    guess.W.P         = record.solves.front().P;
+    guess.known       = Start::near;
+    guess.ahead       = 0.;
+    const auto timing = timings_.scope("checks");
     return limits_.refusal(process, *state.leg, record, state.X, solved.X);
   }
 
@@ -94,6 +95,22 @@ namespace retroforge
     state.X = record.remesh->mesh.X; // J X + c to the last bit
   }
 
+  void Forging::add_strain(const SolvedIncrement &solved, ForgingState &state) const
+  {
+    const auto       timing = timings_.scope("checks");
+    const Scene     &scene  = state.leg->scene;
+    const Ownership &cells  = scene.partition.cells();
+    for (const auto &stage : solved.stages)
+      state.strain = accumulate_strain(scene.mesh,
+                                       scene.spaces,
+                                       stage->X,
+                                       stage->W,
+                                       stage->weight * solved.start->dt,
+                                       state.strain,
+                                       cells.owned());
+    cells.gather(state.strain.data(), 1);
+  }
+
   void Forging::finish_increment(const Process<double> &process,
                                  const IncrementRecord &record,
                                  const SolvedIncrement &solved,
@@ -101,13 +118,7 @@ namespace retroforge
                                  const Watch           &watch) const
   {
     const NodalVectors<double> X_before = std::exchange(state.X, solved.X);
-    for (const auto &stage : solved.stages)
-      state.strain = accumulate_strain(state.leg->scene.mesh,
-                                       state.leg->scene.spaces,
-                                       stage->X,
-                                       stage->W,
-                                       stage->weight * solved.start->dt,
-                                       state.strain);
+    add_strain(solved, state);
     state.next = state.leg->increment.guess_after(solved, record);
     state.slip = limits_.slip(process, record, X_before, state.X) / record.step;
     state.stroke += record.step;

@@ -125,13 +125,14 @@ namespace retroforge
 
   bool Increment::escaped(const Stage<double> &stage, const Field<double> &W) const
   {
-    // A point that was not watched must not have run into a die.
+    const auto                     timing = timings_.scope("checks");
     std::vector<std::vector<bool>> watched(scene_.dies.size(), std::vector<bool>(W.V.size(), false));
     for (const ContactPair &pair : stage.contact.pairs)
       if (pair.point.has_own_velocity())
         watched[pair.die][pair.point.velocity_node] = true;
+    // A point that was not watched must not have run into a die. Each rank looks at its own.
     const auto runs_into = [&](const unsigned int d, const ContactPoint &point) {
-      if (watched[d][point.velocity_node])
+      if (!scene_.velocities.owns(point.velocity_node) || watched[d][point.velocity_node])
         return false;
       const auto  &die = stage.physics.dies[d];
       const Vec3   u = point.velocity(W.V) - die.velocity, x = point.position(stage.X);
@@ -142,17 +143,18 @@ namespace retroforge
       const auto projection = scene_.dies[d].project(x, die, feature);
       return u * projection.n > approach_speed(projection.delta, stage.contact.tau, stage.contact.approach);
     };
-    for (unsigned int d = 0; d < scene_.dies.size(); ++d)
-    {
-      for (NodeIndex k = 0; k < stage.X.size(); ++k)
-        if (scene_.topology.is_on_surface(k) && runs_into(d, ContactPoint::node(k)))
-          return true;
-      if (const MeshEdges *edges = scene_.spaces.edges())
-        for (const auto &[a, b] : scene_.topology.surface_edges)
-          if (runs_into(d, ContactPoint::middle(a, b, stage.X.size() + edges->find(a, b))))
-            return true;
-    }
-    return false;
+    bool       found = false;
+    const auto look  = [&](const ContactPoint &point) {
+      for (unsigned int d = 0; d < scene_.dies.size() && !found; ++d)
+        found = runs_into(d, point);
+    };
+    for (NodeIndex k = 0; k < stage.X.size(); ++k)
+      if (scene_.topology.is_on_surface(k))
+        look(ContactPoint::node(k));
+    if (const MeshEdges *edges = scene_.spaces.edges())
+      for (const auto &[a, b] : scene_.topology.surface_edges)
+        look(ContactPoint::middle(a, b, stage.X.size() + edges->find(a, b)));
+    return dealii::Utilities::MPI::max(found ? 1 : 0, scene_.partition.comm) > 0;
   }
 
   std::shared_ptr<const IncrementStart<double>> Increment::start_of(const Process<double>      &process,
@@ -336,7 +338,7 @@ namespace retroforge
     std::vector<double> owned_part(const std::vector<double> &strain, const Partition &partition)
     {
       std::vector<double> part(strain.size(), 0.);
-      for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+      for (const CellIndex c : partition.cells().owned())
         part[c] = strain[c];
       return part;
     }
@@ -451,6 +453,7 @@ namespace retroforge
       minus_R_dot.beta[c] = -dot_of(R.beta[c]);
     system_.assemble(at.stage, at.W, at.active);
     system_.solve(minus_R_dot, model_.adjoint_tolerance, W_dot);
+    scene_.exchange.gather(W_dot);
     return make_dual(at.W, W_dot);
   }
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <deal.II/base/mpi.h>
+
 #include <retroforge/core/error.h>
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/self_crossing.h>
 #include <retroforge/time/increment_limits.h>
 
+#include <algorithm>
 #include <sstream>
 
 namespace retroforge
@@ -50,7 +53,7 @@ namespace retroforge
                                    const NodalVectors<double> &X,
                                    const NodalVectors<double> &X_next) const
   {
-    if (const std::string reason = too_much(leg.scene.mesh, X, X_next); !reason.empty())
+    if (const std::string reason = too_much(leg.scene, X, X_next); !reason.empty())
       return {reason};
     const Slip slip = largest_slip(process, record, X, X_next);
     if (allow(slip.of_edge))
@@ -66,22 +69,33 @@ namespace retroforge
   }
 
   std::string IncrementLimits::too_much(const TetMesh              &mesh,
+                                        const CellIndex             c,
                                         const NodalVectors<double> &X,
                                         const NodalVectors<double> &X_next) const
   {
-    for (CellIndex c = 0; c < mesh.n_cells(); ++c)
-    {
-      const auto   before = positions_of_cell(mesh, X, c), after = positions_of_cell(mesh, X_next, c);
-      const double volume = cell_geometry(after).volume;
-      if (!(volume > press_.smallest_volume * cell_geometry(before).volume))
-        return (volume > 0. ? "an element would be crushed" : "an element would be inverted") + at(before[0]);
-      for (unsigned int a = 0; a < 4; ++a)
-        for (unsigned int b = 0; b < a; ++b)
-          if (((after[a] - before[a]) - (after[b] - before[b])).norm() >
-              press_.largest_move * (before[a] - before[b]).norm())
-            return "an edge would be turned or stretched by more than Press/largest move" + at(before[a]);
-    }
+    const auto   before = positions_of_cell(mesh, X, c), after = positions_of_cell(mesh, X_next, c);
+    const double volume = cell_geometry(after).volume;
+    if (!(volume > press_.smallest_volume * cell_geometry(before).volume))
+      return (volume > 0. ? "an element would be crushed" : "an element would be inverted") + at(before[0]);
+    for (unsigned int a = 0; a < 4; ++a)
+      for (unsigned int b = 0; b < a; ++b)
+        if (((after[a] - before[a]) - (after[b] - before[b])).norm() >
+            press_.largest_move * (before[a] - before[b]).norm())
+          return "an edge would be turned or stretched by more than Press/largest move" + at(before[a]);
     return "";
+  }
+
+  std::string IncrementLimits::too_much(const Scene                &scene,
+                                        const NodalVectors<double> &X,
+                                        const NodalVectors<double> &X_next) const
+  {
+    const auto &owned     = scene.partition.cells().owned();
+    const auto  is_broken = [&](const CellIndex c) { return !too_much(scene.mesh, c, X, X_next).empty(); };
+    const auto  found     = std::find_if(owned.begin(), owned.end(), is_broken);
+    // All ranks tell of the same cell.
+    const CellIndex first =
+      dealii::Utilities::MPI::min(found == owned.end() ? invalid_index : *found, scene.partition.comm);
+    return first == invalid_index ? "" : too_much(scene.mesh, first, X, X_next);
   }
 
   IncrementLimits::Slip IncrementLimits::largest_slip(const Process<double>      &process,

@@ -6,7 +6,8 @@
 
 namespace retroforge
 {
-  /// The unknowns W = (V, beta, P) of a pair's spaces, or anything dual to them. The same on every rank.
+  /// The unknowns W = (V, beta, P) of a pair's spaces, or anything dual to them. Every rank has room for
+  /// all of it, and is right where it works (FieldExchange).
   template <typename Number>
   struct Field
   {

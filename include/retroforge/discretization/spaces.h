@@ -28,6 +28,7 @@ namespace retroforge
     unsigned int n_pressure_nodes() const { return n_nodes_; }
     unsigned int n_bubbles() const { return pair_ == ElementPair::mini ? n_cells_ : 0; }
 
+    unsigned int n_nodes_per_cell() const { return nodes_per_cell_; }
     /// Of a cell: the corners, then the middles of the edges where there are any. The first four are its
     /// pressure nodes.
     const NodeIndex *velocity_nodes(const CellIndex c) const { return &cell_nodes_[nodes_per_cell_ * c]; }

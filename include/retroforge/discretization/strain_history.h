@@ -19,7 +19,18 @@
 namespace retroforge
 {
   /// q_np1 = q_n + dt ebar(X, W),  one value per cell, dimensionless.
-  /// @param X, W  positions [mm] and velocities [mm/s] of the increment's last stage
+  /// @param X, W   positions [mm] and velocities [mm/s] of the increment's last stage
+  /// @param cells  those whose strain grows; the others' stays
+  template <typename Number>
+  std::vector<Number> accumulate_strain(const TetMesh                &mesh,
+                                        const Spaces                 &spaces,
+                                        const NodalVectors<Number>   &X,
+                                        const Field<Number>          &W,
+                                        const Number                 &dt,
+                                        const std::vector<Number>    &q_n,
+                                        const std::vector<CellIndex> &cells);
+
+  /// The same of all cells.
   template <typename Number>
   std::vector<Number> accumulate_strain(const TetMesh              &mesh,
                                         const Spaces               &spaces,

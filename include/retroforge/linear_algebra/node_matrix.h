@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/core/node_range.h>
 #include <retroforge/core/rows.h>
 #include <retroforge/linear_algebra/types.h>
 
@@ -9,17 +10,6 @@
 
 namespace retroforge
 {
-  /// Nodes of a space, [begin, end) of n of which are this rank's.
-  struct NodeRange
-  {
-    unsigned int begin = 0, end = 0, n = 0;
-
-    unsigned int n_owned() const { return end - begin; }
-    bool         owns(const unsigned int node) const { return begin <= node && node < end; }
-    /// Of the degrees of freedom that are this rank's, `width` to a node.
-    dealii::IndexSet dofs(unsigned int width) const;
-  };
-
   /// The nodes of one space that the owned nodes of another meet in the rows of a matrix.
   class NodePattern
   {

@@ -66,7 +66,8 @@ namespace retroforge
     Newton(const Scene &scene, const NewtonParameters &parameters, LinearSystem &system);
 
     /// @param W       in: initial guess; out: the solution
-    /// @param frozen   empty, or the recorded active set of a replay, which ends with a step below the tolerance
+    /// @param frozen   empty, or the recorded active set of a replay, which ends with a step below the
+    /// tolerance
     /// @param pressed  empty, or the active set of a solution nearby, with the same pairs
     NewtonStatistics solve(const Stage<double> &stage,
                            Field<double>       &W,

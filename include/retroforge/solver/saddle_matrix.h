@@ -50,7 +50,8 @@ namespace retroforge
     void load(const Field<double> &rhs, la::BlockVector &b) const;
     /// Velocities and pressures as unknowns.
     void load_guess(const Field<double> &guess, la::BlockVector &x) const;
-    /// The solution of the uncondensed system from that of the condensed one. All ranks get all of it.
+    /// The solution of the uncondensed system from that of the condensed one: what this rank works with
+    /// (FieldExchange).
     void unload(const la::BlockVector &x, const Field<double> &rhs, Field<double> &solution) const;
 
     /// The scaled norm of a residual's momentum rows, and of its continuity rows.
@@ -78,15 +79,13 @@ namespace retroforge
     Field<double> condensed(const Field<double> &rhs) const;
 
     const Scene                           &scene_;
-    const VelocityOwnership               &velocities_;
-    NodeRange                              pressures_;
+    const Ownership                       &velocities_, &pressures_;
     SaddleSystem                           system_;
     std::vector<NodeFrame>                 frames_; ///< of each velocity node
     std::vector<double>                    scale_;  ///< of each velocity component in its frame
     double                                 pressure_scale_ = 1.;
-    std::vector<BubbleElimination<double>> eliminations_;  ///< of the visited cells; empty without bubbles
-    std::vector<CellIndex>                 visited_index_; ///< cell -> position in visited_cells
-    std::vector<unsigned int>              diagonal_;      ///< where an owned node stands in its own row
+    std::vector<BubbleElimination<double>> eliminations_; ///< of the visited cells; empty without bubbles
+    std::vector<unsigned int>              diagonal_;     ///< where an owned node stands in its own row
     /// Of each visited cell, for n velocity nodes: n x n places in rows of A, n x 4 of B, 4 x n of D, 4 x 4
     /// of C; zero in rows of other ranks.
     std::vector<Place> places_;

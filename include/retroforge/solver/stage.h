@@ -4,28 +4,29 @@
 
 #include <retroforge/contact/contact.h>
 #include <retroforge/discretization/field.h>
-#include <retroforge/discretization/velocity_ownership.h>
+#include <retroforge/discretization/field_exchange.h>
 #include <retroforge/element/semi_analytic.h>
-#include <retroforge/mesh/partition.h>
 
 namespace retroforge
 {
   /// What does not move: the mesh, the spaces on it, who works on what of it, and the shapes of the dies.
   struct Scene
   {
-    TetMesh           mesh;
-    Topology          topology;
-    Spaces            spaces;
-    Partition         partition;
-    VelocityOwnership velocities;
-    std::vector<Die>  dies;
+    TetMesh          mesh;
+    Topology         topology;
+    Spaces           spaces;
+    Partition        partition;
+    Ownership        velocities;
+    FieldExchange    exchange;
+    std::vector<Die> dies;
 
     Scene(TetMesh made_mesh, const ElementPair pair, std::vector<Die> dies, MPI_Comm comm)
         : mesh(std::move(made_mesh))
         , topology(mesh)
         , spaces(mesh, topology, pair)
-        , partition(mesh, comm)
-        , velocities(spaces, partition)
+        , partition(mesh, topology, comm)
+        , velocities(velocity_ownership(spaces, partition))
+        , exchange(mesh, topology, spaces, partition, velocities)
         , dies(std::move(dies))
     {
     }
@@ -70,7 +71,8 @@ namespace retroforge
   using ActiveSet = std::vector<char>;
 
   /// Equilibrium at given positions: the sums over cells and contact nodes of value, residual, tangent data,
-  /// and their reverse. Entries of results are right on owned nodes and cells; `gather` completes them.
+  /// and their reverse. Entries of results are right on owned nodes and in visited cells;
+  /// FieldExchange completes them.
   template <typename Number>
   class Stage
   {

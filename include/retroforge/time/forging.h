@@ -68,6 +68,7 @@ namespace retroforge
                     IncrementRecord       &record,
                     SolvedIncrement       &solved) const;
     void    remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
+    void    add_strain(const SolvedIncrement &solved, ForgingState &state) const;
     /// Takes the state to the increment's end, and tells `watch`.
     void finish_increment(const Process<double> &process,
                           const IncrementRecord &record,

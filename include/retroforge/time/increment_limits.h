@@ -69,9 +69,14 @@ namespace retroforge
       std::string where;
     };
 
-    /// Of elements and their edges; empty when it is not.
+    /// Of a cell and its edges; empty when it is not.
+    std::string too_much(const TetMesh              &mesh,
+                         CellIndex                   c,
+                         const NodalVectors<double> &X,
+                         const NodalVectors<double> &X_next) const;
+    /// Of the first cell of which it is. Collective.
     std::string
-    too_much(const TetMesh &mesh, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const;
+    too_much(const Scene &scene, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const;
     Slip largest_slip(const Process<double>      &process,
                       const IncrementRecord      &record,
                       const NodalVectors<double> &X,

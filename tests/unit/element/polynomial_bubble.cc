@@ -237,20 +237,20 @@ CellSystem condense(const Residual &residual, const std::vector<double> &start, 
     for (unsigned int j = 0; j < 3; ++j)
       bubble(i, j) = H(12 + i, 12 + j);
   inverse.invert(bubble);
-  CellSystem system;
-  const auto nodal = [](const unsigned int k) { return k % 4 < 3 ? 3 * (k / 4) + k % 4 : 15 + k / 4; };
+  CellSystem system(4);
+  const auto nodal = [](const unsigned int k) { return k < 12 ? k : k + 3; };
   for (unsigned int r = 0; r < 16; ++r)
   {
     system.rhs[r] = rhs[nodal(r)];
     for (unsigned int s = 0; s < 16; ++s)
-      system.matrix[r][s] = H(nodal(r), nodal(s));
+      system.matrix(r, s) = H(nodal(r), nodal(s));
     for (unsigned int i = 0; i < 3; ++i)
       for (unsigned int j = 0; j < 3; ++j)
       {
         const double factor = H(nodal(r), 12 + i) * inverse(i, j);
         system.rhs[r] -= factor * rhs[12 + j];
         for (unsigned int s = 0; s < 16; ++s)
-          system.matrix[r][s] -= factor * H(12 + j, nodal(s));
+          system.matrix(r, s) -= factor * H(12 + j, nodal(s));
       }
   }
   return system;
@@ -269,10 +269,11 @@ Differences solution_differences(const double element_size)
   const TetMesh          mesh = unit_cube(element_size);
   const Spaces           spaces(mesh, Topology(mesh), ElementPair::mini);
   const auto             start    = flow.interpolant(mesh, spaces);
-  const auto             traction = flow.traction_load(mesh, free_patch);
+  const auto             traction = flow.traction_load(mesh, spaces, free_patch);
   const auto             points   = sub_cell_points();
   QuadratureElement      quadrature(mesh);
-  NodalSystem            system(mesh, held_velocities(mesh, free_patch));
+  const Unknowns         unknowns(spaces);
+  GlobalSystem           system(mesh, unknowns, held_velocities(mesh, spaces, free_patch));
 
   const auto solve = [&](const auto &cell_system) {
     NodalVectors<double> boundary = traction;
@@ -282,7 +283,7 @@ Differences solution_differences(const double element_size)
       {
         Vec3 &force = boundary[mesh.cells[c][a]]; // given to the node's first cell
         for (unsigned int i = 0; i < 3; ++i)
-          cell.rhs[4 * a + i] += force[i];
+          cell.rhs[3 * a + i] += force[i];
         force = Vec3();
       }
       return cell;
@@ -294,7 +295,7 @@ Differences solution_differences(const double element_size)
     const auto geometry = cell_geometry(X);
     return condense([&](const auto &w) { return flatten(cell_residual(geometry, unflatten(w), flow.law)); },
                     flatten(MiniPair::on_cell(spaces, start, c)),
-                    flatten(flow.body_load(points, X)));
+                    flatten(flow.body_load(MiniPair(), points, X)));
   });
   const std::vector<double> polynomial = solve([&](const CellIndex c) {
     return condense([&](const auto &w) { return quadrature.residual(c, w, flow.law); },
@@ -311,7 +312,11 @@ Differences solution_differences(const double element_size)
       {
         double d = 0.;
         for (unsigned int a = 0; a < 4; ++a)
-          d += point.lambda[a] * (hat[4 * mesh.cells[c][a] + i] - polynomial[4 * mesh.cells[c][a] + i]);
+        {
+          const NodeIndex    k = mesh.cells[c][a];
+          const unsigned int u = i < 3 ? unknowns.velocity(k, i) : unknowns.pressure(k);
+          d += point.lambda[a] * (hat[u] - polynomial[u]);
+        }
         (i < 3 ? differences.v : differences.p) += d * d * point.weight * volume;
       }
   }

@@ -27,7 +27,7 @@ public:
   {
     const Partition    &partition = view.scene.partition;
     std::vector<Number> sums(2, Number(0.));
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+    for (const CellIndex c : partition.cells().owned())
     {
       const Number volume = cell_volume(view, c);
       sums[0] += volume;
@@ -49,7 +49,7 @@ public:
                          FinalBar                  &bar) const override
   {
     const Partition &partition = view.scene.partition;
-    for (CellIndex c = partition.cell_begin; c < partition.cell_end; ++c)
+    for (const CellIndex c : partition.cells().owned())
     {
       reverse_cell_volume(view, c, weights[0] + weights[1] * height(view, c), bar.X);
       for (const NodeIndex k : view.scene.mesh.cells[c])

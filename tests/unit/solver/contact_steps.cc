@@ -194,7 +194,7 @@ int main(int argc, char **argv)
   stiff.contact.edge_stiffness = 1e-6; // edges press with nodes that sink in, as softly as in a run
   lean_on_dies(stiff.stage(), hold_on_dies(stiff.stage(), leaning), leaning);
   Field<double> r = stiff.stage().residual(leaning, {});
-  stiff.scene.velocities.gather(r.V);
+  stiff.scene.exchange.update(r.V);
   double       unbalanced = 0.;
   unsigned int leant      = 0;
   for (unsigned int p = 0; p < pairs.size(); ++p)

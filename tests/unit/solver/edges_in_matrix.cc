@@ -75,6 +75,7 @@ namespace
       Field<double> solution;
       system.assemble(stage(), W, pressed);
       system.solve(rhs, 1e-12, solution);
+      scene.exchange.gather(solution);
       return solution;
     }
 

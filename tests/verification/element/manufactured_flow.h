@@ -108,6 +108,7 @@ namespace retroforge
 
     static double pressure_at(const Vec3 &x) { return pressure(Point<double>{{x[0], x[1], x[2]}}); }
 
+    /// Without bubbles.
     Field<double> interpolant(const TetMesh &mesh, const Spaces &spaces) const
     {
       Field<double> W(spaces);
@@ -116,41 +117,51 @@ namespace retroforge
         W.V[k] = velocity_at(mesh.X[k]);
         W.P[k] = pressure_at(mesh.X[k]);
       }
+      if (const MeshEdges *edges = spaces.edges())
+        for (EdgeIndex e = 0; e < edges->size(); ++e)
+          W.V[mesh.n_nodes() + e] =
+            velocity_at(0.5 * (mesh.X[edges->nodes[e][0]] + mesh.X[edges->nodes[e][1]]));
       return W;
     }
 
-    /// The body force on the nodes and the bubble of a cell at X.
-    CellValues<double> body_load(const std::vector<SubCellPoint> &points, const Four<Vec3> &X) const
+    /// The body force on the velocity functions of a cell at X.
+    template <typename Pair>
+    auto body_load(const Pair pair, const std::vector<SubCellPoint> &points, const Four<Vec3> &X) const
     {
-      CellValues<double> load   = {};
-      const double       volume = cell_geometry(X).volume;
+      typename Pair::template Values<double> load   = {};
+      const double                           volume = cell_geometry(X).volume;
       for (const SubCellPoint &point : points)
       {
-        const Vec3 force = body_force(point.position(X)) * (point.weight * volume);
-        for (unsigned int a = 0; a < 4; ++a)
-          load.V[a] += point.lambda[a] * force;
-        load.beta += point.bubble * force;
+        const Vec3                force  = body_force(point.position(X)) * (point.weight * volume);
+        const std::vector<double> values = velocity_functions(pair, point);
+        for (unsigned int f = 0; f < values.size(); ++f)
+          coefficient(load, f) += values[f] * force;
       }
       return load;
     }
 
-    /// Nodal forces of the traction on one patch.
-    NodalVectors<double> traction_load(const TetMesh &mesh, const std::string &patch) const
+    /// Forces of the traction on one patch at the velocity nodes.
+    NodalVectors<double>
+    traction_load(const TetMesh &mesh, const Spaces &spaces, const std::string &patch) const
     {
-      const dealii::QGaussSimplex<2> rule(3);
-      NodalVectors<double>           load(mesh.n_nodes());
-      for (const BoundaryFace &face : mesh.faces)
-        if (mesh.patches[face.patch].name == patch)
+      const dealii::QGaussSimplex<2> rule(4);
+      NodalVectors<double>           load(spaces.n_velocity_nodes());
+      for (unsigned int f = 0; f < mesh.faces.size(); ++f)
+        if (mesh.patches[mesh.faces[f].patch].name == patch)
         {
-          const Vec3 &A = mesh.X[face.nodes[0]], &B = mesh.X[face.nodes[1]], &C = mesh.X[face.nodes[2]];
-          const Vec3  n = cross(Vec3(B - A), Vec3(C - A)); // twice the area long
+          const std::vector<NodeIndex> nodes = velocity_nodes_of_face(mesh, spaces, f);
+          const Vec3                  &A = mesh.X[nodes[0]], &B = mesh.X[nodes[1]], &C = mesh.X[nodes[2]];
+          const Vec3                   n = cross(Vec3(B - A), Vec3(C - A)); // twice the area long
           for (unsigned int q = 0; q < rule.size(); ++q)
           {
-            const double                s = rule.point(q)[0], t = rule.point(q)[1];
-            const std::array<double, 3> lambda = {{1. - s - t, s, t}};
-            const Vec3                  force  = traction(A + s * (B - A) + t * (C - A), n) * rule.weight(q);
-            for (unsigned int c = 0; c < 3; ++c)
-              load[face.nodes[c]] += lambda[c] * force;
+            const double        s = rule.point(q)[0], t = rule.point(q)[1], r = 1. - s - t;
+            const Vec3          force  = traction(A + s * (B - A) + t * (C - A), n) * rule.weight(q);
+            std::vector<double> values = {r, s, t};
+            if (nodes.size() > 3)
+              values = {
+                r * (2. * r - 1.), s * (2. * s - 1.), t * (2. * t - 1.), 4. * r * s, 4. * s * t, 4. * t * r};
+            for (unsigned int c = 0; c < values.size(); ++c)
+              load[nodes[c]] += values[c] * force;
           }
         }
       return load;
