@@ -35,7 +35,7 @@ def measure(build, size):
     seconds = summary["wall_seconds"]
     divided = sum(seconds.get(part, 0.0) for part in ("assembly", "preconditioner", "krylov", "checks"))
     serial = sum(seconds.get(part, 0.0) for part in ("contact", "record"))
-    return {"nodes": summary["mesh"]["nodes"], "tetrahedra": summary["mesh"]["tetrahedra"], "divided": divided / INCREMENTS,
+    return {"nodes": summary["mesh"]["nodes"], "tetrahedra": summary["mesh"]["cells"], "divided": divided / INCREMENTS,
             "serial": serial / INCREMENTS, "krylov": summary["krylov_iterations"] / INCREMENTS, "newton": summary["newton_iterations"] / INCREMENTS}
 
 

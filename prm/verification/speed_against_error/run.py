@@ -52,13 +52,13 @@ SCENES = {
                     {"Press/stroke": 10, "Press/increments": 20, "Design/parameters": "billet/radius"}),
     "hub": Scene(os.path.join(PRM, "tutorial", "hub", "hub.prm"), "billet/radius", ELEMENTS,
                  {MINI: [8, 5, 4, 3], QUADRATIC: [12, 8]}, (MINI, 2), (0.01, 0.02),
-                 {"Billet/radius": 15.6, "Press/stroke": 20, "Press/increments": 40, "Objectives/names": "energy",
+                 {"Billet/radius": 15.6, "Press/stroke": 20, "Press/increments": 40, 
                   "Design/parameters": "billet/radius"}),
     "cube-time": Scene(CUBE, "billet/stretch", SCHEMES, {EULER: [4, 8, 16, 32, 64, 128], MIDPOINT: [2, 4, 8, 16, 32]},
                        (MIDPOINT, 256), (0.001, 0.001), {"Billet/element size": 5, "Press/stroke": 20}),
     "hub-time": Scene(os.path.join(PRM, "tutorial", "hub", "hub.prm"), "billet/radius", SCHEMES,
                       {EULER: [10, 20, 40, 80, 160], MIDPOINT: [5, 10, 20, 40, 80]}, (MIDPOINT, 320), (0.001, 0.001),
-                      {"Press/stroke": 8, "Remeshing/when": "never", "Objectives/names": "energy", "Design/parameters": "billet/radius"}),
+                      {"Press/stroke": 8, "Remeshing/when": "never", "Design/parameters": "billet/radius"}),
 }
 
 
@@ -86,13 +86,15 @@ class Run:
 
 
 def seconds_to(points, error):
-    """Least seconds at which the errors of (seconds, error) have fallen below `error`, by straight lines in logarithms; and whether it does."""
+    """Least seconds from which on the errors of (seconds, error) stay below `error`, by straight lines in logarithms; and whether they do."""
     points = sorted(points)
-    for (s, e), (t, f) in zip([(points[0][0], max(points[0][1], error))] + points, points):
-        if f <= error:
-            part = 1.0 if e <= f else math.log(e / error) / math.log(e / f)
-            return s * (t / s) ** part, True
-    return points[-1][0], False
+    above = [i for i, (_, e) in enumerate(points) if e > error]
+    if not above:
+        return points[0][0], True
+    if above[-1] == len(points) - 1:
+        return points[-1][0], False
+    (s, e), (t, f) = points[above[-1]], points[above[-1] + 1]
+    return s * (t / s) ** (math.log(e / error) / math.log(e / f)), True
 
 
 def line(runs, method, reference, i):
