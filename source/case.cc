@@ -38,7 +38,7 @@ namespace retroforge
       for (const DieParameters &die : parameters.dies)
         states.push_back(die.initial_state());
       return Remesher(parameters.remeshing, parameters.edge_length(mesh), dies, mesh.patches, comm)
-        .remesh(mesh, mesh.X, states, 0., timings)
+        .remesh(mesh, mesh.X, states, {}, 0., timings)
         ->mesh;
     }
 

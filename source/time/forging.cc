@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/discretization/error_indicator.h>
 #include <retroforge/discretization/strain_history.h>
 #include <retroforge/linear_algebra/direct_solver.h>
 #include <retroforge/mesh/mesh_quality.h>
@@ -85,12 +86,30 @@ namespace retroforge
     state.remeshed.push_back(state.increments);
   }
 
+  std::optional<OptimalSizes> Forging::error_sizes(const Process<double> &process,
+                                                   const ForgingState    &state) const
+  {
+    if (!remesher_.follows_errors() || state.increments == 0)
+      return {};
+    const auto   timing = timings_.scope("error sizes");
+    const Scene &scene  = state.leg->scene;
+    return optimal_sizes(scene.mesh,
+                         state.X,
+                         indicated_errors(scene.mesh, scene.spaces, state.X, state.W, process.law),
+                         velocity_degree(scene.spaces),
+                         remesher_.error_size_bounds());
+  }
+
   void Forging::remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const
   {
     const auto   timing     = timings_.scope("remeshing");
     const double repairable = remesher_.largest_repair() * state.volume - state.repaired;
-    record.remesh           = remesher_.remesh(
-      state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies, repairable, timings_);
+    record.remesh           = remesher_.remesh(state.leg->scene.mesh,
+                                     state.X,
+                                     process.at_stroke(state.stroke).dies,
+                                     error_sizes(process, state),
+                                     repairable,
+                                     timings_);
     change_mesh(*record.remesh, state);
     state.X = record.remesh->mesh.X; // J X + c to the last bit
   }
@@ -173,15 +192,19 @@ namespace retroforge
         remesh(process, state, record);
         frozen = remesher_.frozen(state.leg->scene.mesh);
       };
+      const auto ask_for_other_sizes = [&](const std::optional<OptimalSizes> &errors) {
+        return errors && Remesher::worthwhile(*errors, since_remeshing(), state.increments == 1);
+      };
       const bool crossed = remesher_.enabled() && crosses(state);
       if (crossed && state.repaired >= remesher_.largest_repair() * state.volume)
         limits_.check_fold(state);
-      if (crossed || (remesher_.enabled() && remesher_.due(state.leg->scene.mesh,
-                                                           state.X,
-                                                           process.at_stroke(state.stroke).dies,
-                                                           frozen,
-                                                           since_remeshing(),
-                                                           state.increments == 0)))
+      if (crossed || (remesher_.enabled() && (remesher_.due(state.leg->scene.mesh,
+                                                            state.X,
+                                                            process.at_stroke(state.stroke).dies,
+                                                            frozen,
+                                                            since_remeshing(),
+                                                            state.increments == 0) ||
+                                              ask_for_other_sizes(error_sizes(process, state)))))
         renew();
       if (crossed)
         limits_.check_fold(state);

@@ -39,23 +39,29 @@ namespace retroforge
                       element_size,
                       "Wanted length of the edges; 0 for that of the billet. Units: mm.",
                       Double(0.));
-    prm.add_parameter("sizes",
-                      sizes,
-                      "dies: edges are shorter near curved dies, as their curvature and sharp edges ask for; "
-                      "uniform: the same length everywhere. Units: none.",
-                      Selection("uniform|dies"));
+    prm.add_parameter(
+      "sizes",
+      sizes,
+      "dies: edges are shorter near curved dies, as their curvature and sharp edges ask for; "
+      "uniform: the same length everywhere; error: as many elements as a uniform mesh has, "
+      "where by the jumps of the strain rate they lessen the error of the power most, and near "
+      "curved dies as with dies. Units: none.",
+      Selection("uniform|dies|error"));
     prm.add_parameter(
       "chord error",
       chord_error,
       "Wanted distance between a surface edge and a curved die, r its radius there: edges are "
       "sqrt(8 r error) long. 0 for 2 % of the element size. Units: mm.",
       Double(0.));
-    prm.add_parameter(
-      "smallest size",
-      smallest_size,
-      "Edges near curved dies are not wanted shorter than this part of the element size. Units: "
-      "none.",
-      Double(1e-3, 1.));
+    prm.add_parameter("smallest size",
+                      smallest_size,
+                      "Edges are not wanted shorter than this part of the element size. Units: none.",
+                      Double(1e-3, 1.));
+    prm.add_parameter("largest size",
+                      largest_size,
+                      "Where sizes follow the error, edges are not wanted longer than this times the element "
+                      "size. Units: none.",
+                      Double(1., 100.));
     prm.add_parameter(
       "growth",
       growth,
@@ -93,6 +99,8 @@ namespace retroforge
     constexpr double coarse = 2.;
     // A mesh that cannot follow its die does so no better when it is remade each time: increments in between.
     constexpr unsigned int settling = 2;
+    // The error must be larger by this than it could be with as many cells, for a mesh to be remade.
+    constexpr double worthwhile_gain = 1.5;
     // Distance from a die, over the element size, within which a node touches it.
     constexpr double touching_distance = 1e-2;
 
@@ -142,6 +150,7 @@ namespace retroforge
   {
     if (parameters_.sizes == "uniform")
       return;
+    const double largest = follows_errors() ? error_size_bounds().largest : element_size;
     const double chord_error =
       parameters_.chord_error > 0. ? parameters_.chord_error : relative_chord_error * element_size;
     for (unsigned int d = 0; d < dies.size(); ++d)
@@ -151,10 +160,10 @@ namespace retroforge
         for (const double curvature : facet_curvature(*dies[d].surface(), dies[d].feature_angle()))
           size.push_back(std::clamp(std::sqrt(8. * chord_error / std::max(curvature, 1e-300)),
                                     parameters_.smallest_size * element_size,
-                                    element_size));
+                                    largest));
         near_die_[d].emplace(*dies[d].surface(),
                              size,
-                             element_size,
+                             largest,
                              parameters_.growth,
                              refined_edges(dies[d], patches, element_size),
                              parameters_.smallest_size * element_size);
@@ -233,10 +242,23 @@ namespace retroforge
     return deepest;
   }
 
-  SizeField Remesher::size_field(const DieStates &states) const
+  SizeBounds Remesher::error_size_bounds() const
   {
-    return [this, states](const Vec3 &x) {
-      double size = element_size_;
+    return {element_size_,
+            parameters_.smallest_size * element_size_,
+            parameters_.largest_size * element_size_,
+            parameters_.growth};
+  }
+
+  bool Remesher::worthwhile(const OptimalSizes &sizes, const unsigned int increments, const bool first)
+  {
+    return (first || increments > settling) && sizes.gain > worthwhile_gain;
+  }
+
+  SizeField Remesher::size_field(const DieStates &states, std::shared_ptr<const ErrorSizes> errors) const
+  {
+    return [this, states, errors = std::move(errors)](const Vec3 &x) {
+      double size = errors ? (*errors)(x) : element_size_;
       for (unsigned int d = 0; d < dies_.size(); ++d)
         if (near_die_[d])
           size = std::min(size, (*near_die_[d])(x - states[d].displacement));
@@ -327,17 +349,20 @@ namespace retroforge
     }
   }
 
-  std::shared_ptr<const RemeshRecord> Remesher::remesh(const TetMesh              &mesh,
-                                                       const NodalVectors<double> &X,
-                                                       const DieStates            &states,
-                                                       const double                repairable,
-                                                       Timings                    &timings) const
+  std::shared_ptr<const RemeshRecord> Remesher::remesh(const TetMesh                     &mesh,
+                                                       const NodalVectors<double>        &X,
+                                                       const DieStates                   &states,
+                                                       const std::optional<OptimalSizes> &errors,
+                                                       const double                       repairable,
+                                                       Timings                           &timings) const
   {
     auto                   record = std::make_shared<RemeshRecord>();
     std::vector<NodeIndex> old_node;
     const auto             make_numbered = [&]() {
       const NodalVectors<double> rounded = on_grid(X);
-      RemeshedMesh made = make(mesh, rounded, size_field(states), states, repairable, record->repaired);
+      const SizeField            size =
+        size_field(states, errors ? std::make_shared<ErrorSizes>(*errors, error_size_bounds()) : nullptr);
+      RemeshedMesh made = make(mesh, rounded, size, states, repairable, record->repaired);
       for (NodeIndex k = 0; k < made.mesh.n_nodes(); ++k)
         if (const NodeIndex old = made.old_node[k]; old != invalid_index)
           made.mesh.X[k] += X[old] - rounded[old];

@@ -69,6 +69,8 @@ namespace retroforge
                     SolvedIncrement       &solved) const;
     void    remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
     void    add_strain(const SolvedIncrement &solved, ForgingState &state) const;
+    /// What the last solution's errors ask for; empty where sizes do not follow them, or nothing is solved.
+    std::optional<OptimalSizes> error_sizes(const Process<double> &process, const ForgingState &state) const;
     /// Takes the state to the increment's end, and tells `watch`.
     void finish_increment(const Process<double> &process,
                           const IncrementRecord &record,

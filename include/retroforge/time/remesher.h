@@ -4,6 +4,7 @@
 
 #include <retroforge/core/timer.h>
 #include <retroforge/record/increment_record.h>
+#include <retroforge/remeshing/error_sizes.h>
 #include <retroforge/remeshing/local_remesher.h>
 #include <retroforge/remeshing/size_field.h>
 #include <retroforge/remeshing/uncross.h>
@@ -21,9 +22,10 @@ namespace retroforge
     std::string         method         = "local";
     unsigned int        every          = 5;
     double              element_size   = 0.;
-    std::string         sizes          = "dies"; ///< uniform, dies
+    std::string         sizes          = "dies"; ///< uniform, dies, error
     double              chord_error    = 0.;
     double              smallest_size  = 0.2;
+    double              largest_size   = 4.;
     double              growth         = 0.3;
     double              fit            = 0.1;
     double              largest_repair = 5e-4; ///< of the workpiece's volume, over the run
@@ -65,19 +67,32 @@ namespace retroforge
              unsigned int                increments,
              bool                        first) const;
 
+    /// Whether sizes follow indicated errors.
+    bool follows_errors() const { return parameters_.sizes == "error"; }
+
+    /// What such sizes may be.
+    SizeBounds error_size_bounds() const;
+
+    /// Whether a mesh is to be remade because its errors ask for other sizes.
+    /// @param increments  since the last remeshing
+    /// @param first       whether one increment has been made: the first mesh knows nothing of errors
+    static bool worthwhile(const OptimalSizes &sizes, unsigned int increments, bool first);
+
     /// Cells that remeshing cannot make better, of a mesh just made.
     std::vector<bool> frozen(const TetMesh &mesh) const;
 
     /// Collective: made on rank 0, the same everywhere. Numbered with renumber().
     /// @param repairable  volume of slivers at the surface that may be taken away, see without_slivers()
     /// [mm^3]
+    /// @param errors   sizes that follow them, where any are known
     /// @param timings  "transfer" gets what it takes to find J
     /// @throws Error  when no method gives a sound mesh
-    std::shared_ptr<const RemeshRecord> remesh(const TetMesh              &mesh,
-                                               const NodalVectors<double> &X,
-                                               const DieStates            &states,
-                                               double                      repairable,
-                                               Timings                    &timings) const;
+    std::shared_ptr<const RemeshRecord> remesh(const TetMesh                     &mesh,
+                                               const NodalVectors<double>        &X,
+                                               const DieStates                   &states,
+                                               const std::optional<OptimalSizes> &errors,
+                                               double                             repairable,
+                                               Timings                           &timings) const;
 
     /// Whether a surface that crosses itself can be repaired, because what crosses is thinner than an
     /// element.
@@ -86,8 +101,10 @@ namespace retroforge
       return uncross(mesh, X, size_field(states)).has_value();
     }
 
-    /// Wanted length of edges: near a curved die as its curvature asks for. Refers to this object.
-    SizeField size_field(const DieStates &states) const;
+    /// Wanted length of edges: near a curved die as its curvature asks for, elsewhere and where that is
+    /// shorter as errors do. Refers to this object.
+    /// @param errors  null: the element size
+    SizeField size_field(const DieStates &states, std::shared_ptr<const ErrorSizes> errors = {}) const;
 
     /// Whether a surface edge at a curved die is much longer than wanted there.
     bool too_coarse(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const;

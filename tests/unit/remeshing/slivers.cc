@@ -91,7 +91,7 @@ namespace
     Timings                timings;
     for (const double allowed : {1., 0.})
     {
-      const auto   record = remesher.remesh(mesh, mesh.X, {}, allowed, timings);
+      const auto   record = remesher.remesh(mesh, mesh.X, {}, {}, allowed, timings);
       const double after = volume(record->mesh.cells, record->mesh.X), before = volume(mesh.cells, mesh.X);
       std::cout << "remeshed, " << allowed << " mm^3 allowed: " << n_flat(record->mesh)
                 << " flat cells left, taken away: " << yes(record->repaired > 0.)

@@ -177,8 +177,9 @@ int main(int argc, char **argv)
   parameters.method = "local";
   const std::vector<Die> dies;
   Timings                timings;
-  mesh =
-    Remesher(parameters, h, dies, mesh.patches, MPI_COMM_WORLD).remesh(mesh, mesh.X, {}, 0., timings)->mesh;
+  mesh = Remesher(parameters, h, dies, mesh.patches, MPI_COMM_WORLD)
+           .remesh(mesh, mesh.X, {}, {}, 0., timings)
+           ->mesh;
   parameters.method = method;
   const Remesher remesher(parameters, h, dies, mesh.patches, MPI_COMM_WORLD);
 
@@ -196,7 +197,7 @@ int main(int argc, char **argv)
     ++study.done;
     const double                        before = volume(mesh.cells, X);
     std::shared_ptr<const RemeshRecord> record;
-    study.seconds += cpu_seconds([&]() { record = remesher.remesh(mesh, X, {}, 0., timings); });
+    study.seconds += cpu_seconds([&]() { record = remesher.remesh(mesh, X, {}, {}, 0., timings); });
     study.transfer_seconds += cpu_seconds([&]() { transfer_again(mesh, X, *record, q); });
     q                 = record->transfer.apply(q);
     mesh              = record->mesh;
