@@ -3,8 +3,8 @@
 # Copyright (C) 2026 The Retroforge authors
 """What sizes that follow the error gain:   run.py BUILD [SCENE]...
 
-Each scene is forged with `Remeshing/sizes` uniform, dies and error on a series of element sizes, and with error on a finer mesh that
-says what is right. Prints the nodes (mean over the increments, remeshings counted), seconds of processor time, and the errors of the
+Each scene is forged with `Remeshing/sizes` uniform, dies and error on a series of element sizes, and with error and the element and size
+of --reference, which says what is right. Prints the nodes (mean over the increments, remeshings counted), seconds of processor time, and the errors of the
 energy and of one local objective; and at equal nodes, by straight lines between the points of a series in logarithms, how many times
 smaller the errors are than with uniform sizes, and how many times sooner an error is reached. --element P2-P1 for quadratic
 velocities, --sizes for others than those of the scene."""
@@ -27,15 +27,15 @@ FLAT = ("uniform", "error")  # without curved dies, `dies` is `uniform`
 class Scene:
     def __init__(self, case, kinds, local, sizes, reference, settings):
         self.case, self.kinds, self.local, self.settings = os.path.join(PRM, case), kinds, local, settings
-        self.sizes, self.reference = sizes, reference  # {element: [size, ...]}, {element: size}
+        self.sizes, self.reference = sizes, reference  # {element: [size, ...]}, (element, size)
 
 
 SCENES = {
     "bar": Scene("tutorial/bar_bending/bar_bending.prm", KINDS, "largest strain", {"mini": [6, 5, 4, 3], "P2-P1": [12, 9, 7]},
-                 {"mini": 2, "P2-P1": 5}, {"Press/stroke": 6, "Press/increments": 20, "Remeshing/growth": 0.5}),
+                 ("P2-P1", 7), {"Press/stroke": 6, "Press/increments": 20, "Remeshing/growth": 0.5}),
     "cube": Scene("verification/speed_against_error/cube.prm", FLAT, "maximum strain", {"mini": [6, 5, 4, 3], "P2-P1": [16, 12, 9]},
-                  {"mini": 1.7, "P2-P1": 5}, {"Objectives/names": "energy, maximum strain", "Remeshing/when": "quality"}),
-    "hub": Scene("tutorial/hub/hub.prm", KINDS, "unfilled", {"mini": [6, 5, 4], "P2-P1": []}, {"mini": 2.5},
+                  ("P2-P1", 6), {"Objectives/names": "energy, maximum strain", "Remeshing/when": "quality"}),
+    "hub": Scene("tutorial/hub/hub.prm", KINDS, "unfilled", {"mini": [6, 5, 4], "P2-P1": []}, ("mini", 2.5),
                  {"Billet/radius": 15.6, "Press/stroke": 20, "Press/increments": 40}),
 }
 
@@ -105,7 +105,7 @@ def main():
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(SCENES) + "; default all")
     parser.add_argument("--element", default="mini", choices=("mini", "P2-P1"))
     parser.add_argument("--sizes", help="element sizes, separated by commas [mm]")
-    parser.add_argument("--reference", type=float, help="element size of the run that says what is right [mm]")
+    parser.add_argument("--reference", nargs=2, metavar=("ELEMENT", "SIZE"), help="of the run that says what is right; default that of the scene")
     parser.add_argument("--set", action="append", default=[], metavar="Section/name=value")
     parser.add_argument("--timeout", type=float, default=900, help="seconds after which a run is given up")
     options = parser.parse_args()
@@ -118,12 +118,12 @@ def main():
         sizes = [float(size) for size in options.sizes.split(",")] if options.sizes else scene.sizes[options.element]
         if not sizes:
             continue
-        reference = Run(options.build, scene, options.element, "error", options.reference or scene.reference[options.element], more,
-                        4 * options.timeout)
+        element, size = options.reference or scene.reference
+        reference = Run(options.build, scene, element, "error", float(size), more, 4 * options.timeout)
         if not reference.ended:
             print(f"{name}: the reference, {reference.size:g} mm, did not end")
             continue
-        print(f"\n{name}: reference {options.element}, error, {reference.size:g} mm, {reference.nodes:.0f} nodes, {reference.seconds:.3g} s: energy "
+        print(f"\n{name}: reference {element}, error, {reference.size:g} mm, {reference.nodes:.0f} nodes, {reference.seconds:.3g} s: energy "
               f"{reference.values['energy']:.6g} mJ, {scene.local} {reference.values[scene.local]:.5g}\n")
         print(f"| sizes | element size [mm] | nodes | s | energy | {scene.local} |\n" + "| --- " * 6 + "|", flush=True)
         runs = []
