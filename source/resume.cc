@@ -133,9 +133,7 @@ namespace retroforge
 
   void Resumption::check_increments() const
   {
-    const RecordReader record(directory_);
-    for (unsigned int i = 0; i < n_increments; ++i)
-      record.read(i);
+    RecordReader(directory_).check_increments();
   }
 
   void Resumption::check_start(const TetMesh              &mesh,

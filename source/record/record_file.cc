@@ -316,4 +316,24 @@ namespace retroforge
     return read_whole<IncrementRecord>(file,
                                        [&](const hid_t f) { return read_increment(f, file, i, shape_); });
   }
+
+  void RecordReader::check_increments() const
+  {
+    const auto n_nodes = [](const IncrementRecord &increment) {
+      return increment.solves.empty() ? 0 : increment.solves.front().P.size();
+    };
+    std::size_t n = header_.mesh.n_nodes();
+    for (unsigned int i = 0; i < n_increments_; ++i)
+    {
+      const IncrementRecord increment = read(i);
+      const std::size_t begins_on = increment.remesh ? increment.remesh->X_before.size() : n_nodes(increment);
+      if (begins_on != n)
+        throw Error(finished() ? file_ : increment_file(directory_, i),
+                    increment_name(i) + " begins on a mesh of " + std::to_string(begins_on) +
+                      " nodes where there is one of " + std::to_string(n),
+                    "an increment goes on with the mesh of the one before, or remeshes it",
+                    "restore the record from a copy, or run the simulation again");
+      n = n_nodes(increment);
+    }
+  }
 } // namespace retroforge

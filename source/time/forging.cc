@@ -95,7 +95,7 @@ namespace retroforge
     const Scene &scene  = state.leg->scene;
     return optimal_sizes(scene.mesh,
                          state.X,
-                         indicated_errors(scene.mesh, scene.spaces, state.X, state.W, process.law),
+                         indicated_errors(scene.mesh, scene.spaces, state.X, state.next.W, process.law),
                          velocity_degree(scene.spaces),
                          remesher_.error_size_bounds());
   }

@@ -98,6 +98,9 @@ namespace retroforge
     /// @throws Error  if the increment is damaged or of another run
     IncrementRecord read(unsigned int i) const;
 
+    /// Reads all increments.  @throws Error  as read, or if one does not begin on the mesh that was there
+    void check_increments() const;
+
   private:
     IncrementHead head(unsigned int i) const;
 

@@ -122,6 +122,7 @@ void read_all()
   const RecordReader reader(folder);
   require_sound_mesh(reader.header().mesh);
   unsigned int n = reader.header().mesh.n_nodes();
+  reader.check_increments();
   fuzz::require(reader.header().X_0.size() == n && finite(reader.header().X_0), "X_0 is not finite");
   for (const unsigned int facets : reader.header().die_facets)
     fuzz::require(facets > 0, "a die has no facets");
