@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 // Proves: files that are whole but not a usable record are refused, each with its reason: missing, foreign,
 // of another format or run, with arrays of wrong kind or shape, with indices of nodes, dies or patches that
-// do not exist.
+// do not exist; and an increment that begins on a mesh that was not there.
 #include "record_test_tools.h"
 
 #include <deal.II/base/exceptions.h>
@@ -61,6 +61,26 @@ void replace_attribute(const hid_t group, const std::string &name, const Number 
 {
   hdf5::check(H5Adelete(group, name.c_str()), name);
   hdf5::write_attribute(group, name, &value);
+}
+
+/// Increments that can be read, of which one begins on a mesh that was not there.
+void show_lost_remeshing()
+{
+  const RecordHeader larger = sample_header(brick(3, 3, 3));
+  fresh_folder(folder);
+  RecordWriter writer(folder, larger);
+  writer.write(sample_increment(larger, 0));
+  writer.write(sample_remeshed(larger, 1));
+  show_error("remeshed", []() {
+    RecordReader(folder).check_increments();
+    std::cout << "  each begins on the mesh that was there, ";
+  });
+  {
+    const hdf5::Handle handle(H5Fopen(increment.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, increment);
+    const hdf5::Handle group = hdf5::open_group(handle, "increment_000001");
+    hdf5::check(H5Ldelete(group, "remesh", H5P_DEFAULT), "remesh");
+  }
+  show_error("remeshing lost", []() { RecordReader(folder).check_increments(); });
 }
 
 void show_bad_files()
@@ -218,6 +238,7 @@ void show_bad_writing()
 int main()
 {
   show_bad_files();
+  show_lost_remeshing();
   show_bad_headers();
   show_bad_increments();
   show_bad_writing();
