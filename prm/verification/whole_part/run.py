@@ -184,6 +184,7 @@ def write_scene(angle):
 
 
 FILLING = ("unfilled volume", "filling")
+PRESSURE = "contact pressure"
 
 
 def compare(build, angle, die, copies):
@@ -206,7 +207,8 @@ def compare(build, angle, die, copies):
     for a, b in zip(part["parameters"], whole["parameters"]):
         offs = [abs(b["scale"] * (factors[o] * a["gradient"][o] - b["gradient"][o])) / largest[o] for o in names]
         for name, off in zip(names, offs):
-            kind = "filling_gradient" if name in FILLING else "gradient"
+            # On a penalty, the contact pressure's derivatives keep half of the digits.
+            kind = "filling_gradient" if name in FILLING else "pressure_gradient" if name == PRESSURE and die == "cavity" else "gradient"
             worst[kind] = max(worst.get(kind, 0.0), off)
         print(f"| {a['name']} | " + " | ".join(f"{off:.1e}" for off in offs) + " |")
     for key, value in worst.items():
