@@ -11,7 +11,7 @@ namespace retroforge
     template <typename T>
     struct TangentInput
     {
-      T volume, g[4][3], V[10][3], P[4];
+      T volume, g[4][3], V[10][3];
     };
 
     /// Stress factor and d log(factor)/d(eps:eps), of one cell or lane by lane.
@@ -93,7 +93,6 @@ namespace retroforge
       T K[4][4][3][3];        ///< g_d (x) g_c + g_c·g_d I
       T h, h_1[4], h_2[4][4]; ///< sums over the points of half times 1, 4 lambda_a, 16 lambda_a lambda_b
       T rank_one[4];
-      T z[4][4][3];  ///< eps_q g_c
       T y[4][10][3]; ///< eps_q times the gradients of the nodes' functions
     };
 
@@ -126,14 +125,14 @@ namespace retroforge
 
     /// Adds  sum_q rank_one_q y_q,n (x) y_q,m  to a block unless the stresses are linear, and writes it to
     /// both sides of the diagonal.
-    template <typename T, unsigned int n_nodes>
+    template <typename T>
     RETROFORGE_INLINE void finish(const T (&rank_one)[4],
-                                  const T (&y)[4][n_nodes][3],
+                                  const T (&y)[4][10][3],
                                   const bool         linear,
                                   const unsigned int n,
                                   const unsigned int m,
                                   T (&block)[3][3],
-                                  T (&A)[n_nodes][n_nodes][3][3])
+                                  T (&A)[10][10][3][3])
     {
       if (!linear)
         for (unsigned int q = 0; q < 4; ++q)
@@ -157,11 +156,9 @@ namespace retroforge
       for (unsigned int a = 0; a < 4; ++a)
         for (unsigned int b = 0; b <= a; ++b)
         {
-          T block[3][3] = {}, hats[3][3] = {};
+          T block[3][3] = {};
           add_scaled(v.h_2[a][b] - v.h_1[a] - v.h_1[b] + v.h, v.K[a][b], block);
           finish(v.rank_one, v.y, linear, a, b, block, t.A);
-          add_scaled(v.h, v.K[a][b], hats);
-          finish(v.rank_one, v.z, linear, a, b, hats, t.coarse_A);
         }
       for (unsigned int e = 0; e < 6; ++e)
       {
@@ -208,25 +205,6 @@ namespace retroforge
       }
     }
 
-    /// R_V = sum_q weight s_q grad N_n + B P,  R_P = B^T V
-    template <typename T>
-    RETROFORGE_INLINE void
-    residual(const TangentInput<T> &in, const T (&half)[4], const Viscous<T> &v, TaylorHoodBlocks<T> &t)
-    {
-      for (T &r : t.R_P)
-        r = T{};
-      for (unsigned int n = 0; n < 10; ++n)
-        for (unsigned int i = 0; i < 3; ++i)
-        {
-          T sum = T{};
-          for (unsigned int q = 0; q < 4; ++q)
-            sum += 2. * half[q] * v.y[q][n][i] + t.B[n][q][i] * in.P[q];
-          t.R_V[n][i] = sum;
-          for (unsigned int k = 0; k < 4; ++k)
-            t.R_P[k] += t.B[n][k][i] * in.V[n][i];
-        }
-    }
-
     template <typename T>
     RETROFORGE_INLINE void tangent_blocks(const TangentInput<T>     &in,
                                           const MaterialLaw<double> &law,
@@ -244,16 +222,16 @@ namespace retroforge
         ask_law(law, square(eps[q]), factor, slope);
         half[q]       = 0.5 * quarter * factor;
         v.rank_one[q] = 4. * slope * half[q];
+        T z[4][3];
         for (unsigned int c = 0; c < 4; ++c)
-          eps_times_g(eps[q], in.g[c], v.z[q][c]);
-        combine(v.z[q], q, v.y[q]);
+          eps_times_g(eps[q], in.g[c], z[c]);
+        combine(z, q, v.y[q]);
       }
       fill(in.g, half, v);
       t.volume    = in.volume;
       t.viscosity = v.h / in.volume;
       velocity_blocks(v, linear, t);
       pressure_blocks(in, t);
-      residual(in, half, v, t);
     }
 
     RETROFORGE_ALSO_FOR("fma")
@@ -269,7 +247,6 @@ namespace retroforge
     {
       TangentInput<double> input;
       input.volume = geometry.volume;
-      std::copy(w.P.begin(), w.P.end(), input.P);
       for (unsigned int i = 0; i < 3; ++i)
       {
         for (unsigned int c = 0; c < 4; ++c)

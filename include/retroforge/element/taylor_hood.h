@@ -86,19 +86,14 @@ namespace retroforge
                                            double                          weight,
                                            TaylorHoodValues<double>       &w_bar);
 
-  /// Second derivatives of Pi_T, the symmetric 34 x 34 matrix [A B; B^T 0] of one cell, and the first ones,
-  /// which come along for a tenth of the time.
+  /// Second derivatives of Pi_T, the symmetric 34 x 34 matrix [A B; B^T 0] of one cell.
   template <typename Number>
   struct TaylorHoodBlocks
   {
     Number A[10][10][3][3]; ///< velocity-velocity
     Number B[10][4][3];     ///< velocity of the first node, pressure of the second
-    /// A between the linear velocities that the corners span: a corner's hat is its own function and half of
-    /// those of the three middles beside it.
-    Number coarse_A[4][4][3][3];
-    Number R_V[10][3], R_P[4]; ///< the residual
-    Number viscosity;          ///< mean stress factor / 2 [MPa s], for the Schur complement's scale
-    Number volume;             ///< [mm^3]
+    Number viscosity;       ///< mean stress factor / 2 [MPa s], for the Schur complement's scale
+    Number volume;          ///< [mm^3]
   };
 
   using TaylorHoodTangent = TaylorHoodBlocks<double>;

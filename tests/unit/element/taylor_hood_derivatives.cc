@@ -6,8 +6,6 @@
 // - the residual is the gradient of the functional, the tangent [A B; B^T 0] the derivative of the residual,
 //   and so by Taylor: what residual and tangent leave of the functional is of order 2 and 3 in the step (with
 //   m = 1 the functional is quadratic, and nothing is left after the tangent);
-// - the tangent between linear velocities is that of all nodes, restricted: hat_a = N_a + 1/2 sum of the
-//   middles at a;
 // - Picard's matrix is the tangent of the Newtonian law that has the same viscosity at each point;
 // - the lanes of a pack are the cells one by one, to rounding;
 // - the reverse sweeps give the derivatives of lambda·residual, of the dissipation and of the mean strain
@@ -16,7 +14,6 @@
 // - a Newtonian cell at rest without regularisation (zero to the power zero) gives numbers everywhere.
 
 #include "derivative_checks.h"
-#include <retroforge/mesh/edges.h>
 
 using namespace retroforge;
 using TaylorHoodCase = Case<TaylorHoodValues>;
@@ -44,49 +41,16 @@ TaylorHoodTangent tangent(const TaylorHoodCase &c, const Linearisation linearisa
   return t;
 }
 
-/// Part of a node in the hat of a corner.
-double in_hat(const unsigned int corner, const unsigned int node)
-{
-  if (node < 4)
-    return node == corner ? 1. : 0.;
-  const auto &edge = tet_edge_corners[node - 4];
-  return edge[0] == corner || edge[1] == corner ? 0.5 : 0.;
-}
-
-void check_restriction(const TaylorHoodTangent &t, Errors &errors)
-{
-  std::vector<double> restricted, coarse;
-  for (unsigned int a = 0; a < 4; ++a)
-    for (unsigned int b = 0; b < 4; ++b)
-      for (unsigned int i = 0; i < 3; ++i)
-        for (unsigned int j = 0; j < 3; ++j)
-        {
-          double sum = 0.;
-          for (unsigned int r = 0; r < 10; ++r)
-            for (unsigned int s = 0; s < 10; ++s)
-              sum += in_hat(a, r) * t.A[r][s][i][j] * in_hat(b, s);
-          restricted.push_back(sum);
-          coarse.push_back(t.coarse_A[a][b][i][j]);
-        }
-  errors.compare("tangent of linear velocities", coarse, restricted);
-}
-
 void check_tangent(const TaylorHoodCase &c, Errors &errors)
 {
   const auto                t = tangent(c, Linearisation::newton);
   const std::vector<double> H = matrix(t);
   errors.compare("tangent", H, hessian(c));
-  TaylorHoodValues<double> R;
-  std::copy(t.R_P, t.R_P + 4, R.P.begin());
-  for (unsigned int r = 0; r < 30; ++r)
-    R.V[r / 3][r % 3] = t.R_V[r / 3][r % 3];
-  errors.compare("residual beside it", flatten(R), flatten(cell_residual(c.geometry(), c.w, c.law)));
   std::vector<double> transposed;
   for (unsigned int r = 0; r < n; ++r)
     for (unsigned int s = 0; s < n; ++s)
       transposed.push_back(H[n * s + r]);
   errors.compare("symmetry of the tangent", H, transposed);
-  check_restriction(t, errors);
   double mean = 0.;
   for (const double e : cell_strain_rates(c.geometry(), c.w))
     mean += c.law(1.5 * e * e) / 8.;
@@ -116,7 +80,6 @@ void check_picard(const TaylorHoodCase &c, Errors &errors)
     }
   }
   errors.compare("Picard", found, expected);
-  check_restriction(t, errors);
 }
 
 void check_lanes(Random &random, const NortonHoff<double> &law, Errors &errors)
