@@ -2,6 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/solver/node_frames.h>
 
+#include <deal.II/base/symmetric_tensor.h>
+
 namespace retroforge
 {
   namespace
@@ -40,7 +42,9 @@ namespace retroforge
           for (unsigned int i = 0; i < point.n_velocity_nodes(); ++i)
             append(point.velocity_node_at(i), contact.projections[p].n);
     for (NodeIndex k = 0; k < frames.size(); ++k)
-      if (n_axes[k] > 0)
+      if (n_axes[k] == 0)
+        frames[k].axes = dealii::unit_symmetric_tensor<3>();
+      else
       {
         frames[k].identity = false;
         for (unsigned int i = 0; i < 3 && n_axes[k] < 3; ++i)

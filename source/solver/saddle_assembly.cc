@@ -187,6 +187,26 @@ namespace retroforge
     system_.C = make(matrix.block(1, 1), pp, 1, 1);
     system_.S = make(system_.schur, pp, 1, 1);
     matrix.collect_sizes();
+    if (spaces.edges())
+      make_interpolation_pattern(*spaces.edges());
+  }
+
+  void SaddleMatrix::make_interpolation_pattern(const MeshEdges &edges)
+  {
+    Rows<unsigned int> parents;
+    const unsigned int n_vertices = scene_.mesh.n_nodes();
+    for (const NodeIndex k : velocities_.owned())
+    {
+      if (k < n_vertices)
+        parents.entries.push_back(pressures_.number(k));
+      else
+        for (const NodeIndex end : edges.nodes[k - n_vertices])
+          parents.entries.push_back(pressures_.number(end));
+      parents.begin.push_back(parents.entries.size());
+    }
+    const auto pattern =
+      std::make_shared<const NodePattern>(velocities_.range(), pressures_.range(), parents);
+    system_.P = std::make_unique<NodeMatrix>(system_.interpolation, pattern, 3, 3, scene_.partition.comm);
   }
 
   void SaddleMatrix::make_positions()

@@ -42,6 +42,8 @@ namespace retroforge
     scene_.exchange.update_components(scale_);
     scale_and_fix(viscous_diagonal);
     describe_rows();
+    if (system_.P)
+      fill_interpolation();
   }
 
   double &SaddleMatrix::diagonal_entry(const unsigned int row) const
@@ -87,9 +89,34 @@ namespace retroforge
         else
           for (unsigned int mode = 0; mode < 3; ++mode)
           {
-            const double along                        = frame.identity ? i == mode : frame.axes[i][mode];
-            system_.translations[mode * n_rows + row] = along / scale;
+            system_.translations[mode * n_rows + row] = frame.axes[i][mode] / scale;
           }
+      }
+    }
+  }
+
+  void SaddleMatrix::fill_interpolation()
+  {
+    // Of velocities it is the mean of an edge's ends; so of unknowns, that between frames and scales.
+    system_.P->clear();
+    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
+    {
+      const NodeIndex k = velocities_.owned()[local];
+      if (k < scene_.mesh.n_nodes())
+      {
+        for (unsigned int i = 0; i < 3; ++i)
+          system_.P->entry(local, i, 0)[i] = 1.;
+        continue;
+      }
+      for (const NodeIndex end : scene_.spaces.edges()->nodes[k - scene_.mesh.n_nodes()])
+      {
+        const unsigned int position = system_.P->pattern().position(local, pressures_.number(end));
+        const Tensor<2, 3> turn     = frames_[k].axes * transpose(frames_[end].axes);
+        for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
+          if (scale_[3 * k + i] >= penalised)
+            for (unsigned int j = frames_[end].n_fixed; j < 3; ++j)
+              system_.P->entry(local, i, position)[j] =
+                0.5 * turn[i][j] * scale_[3 * end + j] / scale_[3 * k + i];
       }
     }
   }

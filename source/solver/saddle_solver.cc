@@ -41,11 +41,13 @@ namespace retroforge
     prm.add_parameter(
       "method",
       method,
-      "auto takes `ilu` on small and `multigrid` on large meshes, and falls back to `direct` when they "
-      "fail. Units: none.",
+      "auto takes `multigrid` on large meshes and for quadratic velocities, else `ilu`, and falls back to "
+      "`direct` when they fail. Units: none.",
       Patterns::Selection("auto|ilu|multigrid|direct"));
     prm.add_parameter(
-      "multigrid from", multigrid_from, "Number of nodes from which `auto` takes multigrid. Units: none.");
+      "multigrid from",
+      multigrid_from,
+      "Number of nodes from which `auto` takes multigrid where velocities are linear. Units: none.");
     prm.add_parameter("max iterations",
                       max_iterations,
                       "Krylov iterations after which the direct solver takes over. Units: none.",
@@ -110,17 +112,17 @@ namespace retroforge
 
   void SaddleSolver::make_preconditioner()
   {
-    const auto timing = timings_.scope("preconditioner");
-    const bool multigrid =
-      parameters_.method == "multigrid" ||
-      (parameters_.method == "auto" && system_.A->pattern().rows().n >= parameters_.multigrid_from);
-    preconditioner_ = std::make_unique<Preconditioner>(system_.matrix.block(0, 0),
+    const auto timing    = timings_.scope("preconditioner");
+    const bool large     = system_.P || system_.A->pattern().rows().n >= parameters_.multigrid_from;
+    const bool multigrid = parameters_.method == "multigrid" || (parameters_.method == "auto" && large);
+    preconditioner_      = std::make_unique<Preconditioner>(system_.matrix.block(0, 0),
                                                        system_.matrix.block(0, 1),
                                                        system_.matrix.block(1, 0),
                                                        system_.schur,
                                                        multigrid,
-                                                       system_.translations);
-    first_rate_     = 0.;
+                                                       system_.translations,
+                                                       system_.P ? &system_.interpolation : nullptr);
+    first_rate_          = 0.;
   }
 
   void SaddleSolver::polish_penalised(const la::BlockVector &b, la::BlockVector &x) const

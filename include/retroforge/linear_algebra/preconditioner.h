@@ -12,18 +12,20 @@
 namespace retroforge
 {
   /// Block triangular preconditioner  [A B; 0 -S]^(-1)  of the saddle system [A B; D C]: A by incomplete
-  /// factorisation or algebraic multigrid, S (positive, nearly D A^(-1) B - C) by incomplete factorisation.
+  /// factorisation or multigrid, S (positive, nearly D A^(-1) B - C) by incomplete factorisation.
   class Preconditioner
   {
   public:
-    /// @param near_kernel  three vectors of A's local rows, one after the other (rigid translations), for
+    /// @param near_kernel    three vectors of A's local rows, one after the other (rigid translations), for
     /// multigrid
+    /// @param interpolation  from linear to quadratic velocities, for multigrid; null where A's are linear
     Preconditioner(const la::SparseMatrix    &A,
                    const la::SparseMatrix    &B,
                    const la::SparseMatrix    &D,
                    const la::SparseMatrix    &S,
                    bool                       multigrid,
-                   const std::vector<double> &near_kernel);
+                   const std::vector<double> &near_kernel,
+                   const la::SparseMatrix    *interpolation);
 
     void vmult(la::BlockVector &z, const la::BlockVector &r) const;
 

@@ -22,6 +22,9 @@ namespace retroforge
     bool                      penalties_couple = false; ///< some of these rows share entries
     /// Rigid translations as vectors of A's local rows, one after the other; zero in penalised rows.
     std::vector<double> translations;
+    /// From linear velocities to those of A; not of penalised rows. P is null where A's are linear.
+    la::SparseMatrix            interpolation;
+    std::unique_ptr<NodeMatrix> P;
   };
 
   /// The Newton matrix of a stage with bubbles condensed, in node frames and scaled: the fields of the
@@ -62,6 +65,7 @@ namespace retroforge
     using Place = std::uint16_t;
 
     void make_patterns();
+    void make_interpolation_pattern(const MeshEdges &edges);
     void make_positions();
     /// Sums over cells; sets pressure_scale_.
     void add_cells(const Stage<double> &stage, const Field<double> &W, Linearisation linearisation);
@@ -75,6 +79,7 @@ namespace retroforge
     void    scale_and_fix(const std::vector<double> &viscous_diagonal);
     /// Penalised rows and translations.
     void describe_rows();
+    void fill_interpolation();
     /// A right-hand side whose bubbles are eliminated; right on owned nodes.
     Field<double> condensed(const Field<double> &rhs) const;
 

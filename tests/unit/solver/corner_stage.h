@@ -27,8 +27,11 @@ namespace retroforge
     Field<double>        W;
     ActiveSet            active;
 
-    CornerStage(Random &random, const double rho, const ElementPair pair = ElementPair::mini)
-        : scene(half_box_mesh(Vec3({10., 8., 6.}), {{4, 6, 4}}), pair, make_dies(), MPI_COMM_WORLD)
+    CornerStage(Random                            &random,
+                const double                       rho,
+                const ElementPair                  pair  = ElementPair::mini,
+                const std::array<unsigned int, 3> &cells = {{4, 6, 4}})
+        : scene(half_box_mesh(Vec3({10., 8., 6.}), cells), pair, make_dies(), MPI_COMM_WORLD)
         , X(scene.mesh.X)
         , W(scene.spaces)
     {
