@@ -16,38 +16,63 @@ namespace retroforge
       T volume, g[4][3], eps[4][6], half[4], rank_one[4];
     };
 
-    void fill(const CellGeometry<double> &geometry,
-              const Vec3                 *V,
-              const Vec3                 &beta,
-              const MaterialLaw<double>  &law,
-              TangentInput<double>       &input)
+    template <typename T>
+    struct CellInput
     {
-      input.volume           = geometry.volume;
-      const double quarter   = 0.25 * geometry.volume;
-      double       linear[6] = {};
-      const auto   add_dyad  = [](const Vec3 &v, const double scale, const Vec3 &g, double *e) {
-        e[0] += scale * v[0] * g[0];
-        e[1] += scale * v[1] * g[1];
-        e[2] += scale * v[2] * g[2];
-        e[3] += 0.5 * scale * (v[1] * g[2] + v[2] * g[1]);
-        e[4] += 0.5 * scale * (v[0] * g[2] + v[2] * g[0]);
-        e[5] += 0.5 * scale * (v[0] * g[1] + v[1] * g[0]);
-      };
+      T volume, g[4][3], V[4][3], beta[3];
+    };
+
+    CellInput<double> input_of(const CellGeometry<double> &geometry, const Four<Vec3> &V, const Vec3 &beta)
+    {
+      CellInput<double> cell;
+      cell.volume = geometry.volume;
+      for (unsigned int i = 0; i < 3; ++i)
+      {
+        for (unsigned int c = 0; c < 4; ++c)
+        {
+          cell.g[c][i] = geometry.g[c][i];
+          cell.V[c][i] = V[c][i];
+        }
+        cell.beta[i] = beta[i];
+      }
+      return cell;
+    }
+
+    template <typename T>
+    RETROFORGE_INLINE void add_dyad(const T (&v)[3], const double scale, const T (&g)[3], T (&e)[6])
+    {
+      e[0] += scale * v[0] * g[0];
+      e[1] += scale * v[1] * g[1];
+      e[2] += scale * v[2] * g[2];
+      e[3] += 0.5 * scale * (v[1] * g[2] + v[2] * g[1]);
+      e[4] += 0.5 * scale * (v[0] * g[2] + v[2] * g[0]);
+      e[5] += 0.5 * scale * (v[0] * g[1] + v[1] * g[0]);
+    }
+
+    template <typename T>
+    RETROFORGE_INLINE void
+    fill(const CellInput<T> &cell, const MaterialLaw<double> &law, TangentInput<T> &input)
+    {
+      input.volume      = cell.volume;
+      const T quarter   = 0.25 * cell.volume;
+      T       linear[6] = {};
       for (unsigned int c = 0; c < 4; ++c)
       {
-        add_dyad(V[c], 1., geometry.g[c], linear);
+        add_dyad(cell.V[c], 1., cell.g[c], linear);
         for (unsigned int i = 0; i < 3; ++i)
-          input.g[c][i] = geometry.g[c][i];
+          input.g[c][i] = cell.g[c][i];
       }
       for (unsigned int a = 0; a < 4; ++a)
       {
-        double *eps = input.eps[a];
-        std::copy(linear, linear + 6, eps);
-        add_dyad(beta, 4., geometry.g[a], eps);
-        const double eps2   = square(input.eps[a]);
-        const double factor = quarter * law(eps2);
-        input.half[a]       = 0.5 * factor;
-        input.rank_one[a]   = 2. * law.slope(eps2) * factor;
+        auto &eps = input.eps[a];
+        for (unsigned int i = 0; i < 6; ++i)
+          eps[i] = linear[i];
+        add_dyad(cell.beta, 4., cell.g[a], eps);
+        T factor, slope;
+        ask_law(law, square(eps), factor, slope);
+        factor            = quarter * factor;
+        input.half[a]     = 0.5 * factor;
+        input.rank_one[a] = 2. * slope * factor;
       }
     }
 
@@ -175,8 +200,13 @@ namespace retroforge
     }
 
     RETROFORGE_ALSO_FOR("fma")
-    void tangent_pack(const TangentInput<Pack> &input, const bool linear, TangentPack &tangent)
+    void tangent_pack(const CellInput<Pack>     &cell,
+                      const MaterialLaw<double> &law,
+                      const bool                 linear,
+                      TangentPack               &tangent)
     {
+      TangentInput<Pack> input;
+      fill(cell, law, input);
       tangent_blocks(input, linear, tangent);
     }
 
@@ -195,7 +225,7 @@ namespace retroforge
                             CellTangent                &tangent)
   {
     TangentInput<double> input;
-    fill(geometry, w.V.data(), w.beta, law, input);
+    fill(input_of(geometry, w.V, w.beta), law, input);
     tangent_blocks(input, law.is_linear(), tangent);
   }
 
@@ -206,14 +236,13 @@ namespace retroforge
                              TangentPack                                            &tangent,
                              const std::array<BubbleElimination<double> *, n_lanes> &elimination)
   {
-    TangentInput<Pack> pack;
+    CellInput<Pack> pack;
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
     {
-      TangentInput<double> input;
-      fill(geometry[lane], w[lane].V.data(), w[lane].beta, law, input);
-      for_each_entry(pack, input, [lane](double &p, const double &x) { (&p)[lane] = x; });
+      CellInput<double> cell = input_of(geometry[lane], w[lane].V, w[lane].beta);
+      for_each_entry(pack, cell, [lane](double &p, const double &x) { (&p)[lane] = x; });
     }
-    tangent_pack(pack, law.is_linear() || linearisation == Linearisation::picard, tangent);
+    tangent_pack(pack, law, law.is_linear() || linearisation == Linearisation::picard, tangent);
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
       for_each_entry(static_cast<BubbleElimination<Pack> &>(tangent),
                      *elimination[lane],
@@ -258,7 +287,7 @@ namespace retroforge
                   const MaterialLaw<double>  &law)
       {
         TangentInput<double> in;
-        fill(geometry, w.V.data(), beta, law, in);
+        fill(input_of(geometry, w.V, beta), law, in);
         residual = 0.25 * geometry.volume * grad_p;
         value    = residual * beta;
         for (unsigned int a = 0; a < 4; ++a)

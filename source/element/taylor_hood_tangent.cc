@@ -14,24 +14,6 @@ namespace retroforge
       T volume, g[4][3], V[10][3];
     };
 
-    /// Stress factor and d log(factor)/d(eps:eps), of one cell or lane by lane.
-    RETROFORGE_INLINE void
-    ask_law(const MaterialLaw<double> &law, const double &eps2, double &factor, double &slope)
-    {
-      factor = law(eps2);
-      slope  = law.slope(eps2);
-    }
-
-    RETROFORGE_INLINE void
-    ask_law(const MaterialLaw<double> &law, const Pack &eps2, Pack &factor, Pack &slope)
-    {
-      for (unsigned int lane = 0; lane < n_lanes; ++lane)
-      {
-        factor[lane] = law(eps2[lane]);
-        slope[lane]  = law.slope(eps2[lane]);
-      }
-    }
-
     RETROFORGE_INLINE constexpr double lambda(const unsigned int c, const unsigned int q)
     {
       return c == q ? point_lambda_own : point_lambda_else;

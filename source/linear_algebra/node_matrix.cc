@@ -112,18 +112,4 @@ namespace retroforge
     begin_          = begin;
     column_indices_ = indices;
   }
-
-  void NodeMatrix::scale(const std::vector<double> &row_factors,
-                         const std::vector<double> &column_factors) const
-  {
-    std::vector<double> of_column(n_columns());
-    for (unsigned int j = 0; j < of_column.size(); ++j)
-      of_column[j] = column_factors[column(j)];
-    for (unsigned int i = 0; i < n_rows(); ++i)
-    {
-      const Row line = row(i);
-      for (unsigned int e = 0; e < line.n; ++e)
-        line.values[e] *= row_factors[i] * of_column[line.columns[e]];
-    }
-  }
 } // namespace retroforge

@@ -37,4 +37,15 @@ namespace retroforge
     ++n_solves;
     return iterations;
   }
+
+  unsigned int
+  LinearSystem::solve_tangent(const Field<double> &rhs, const double tolerance, Field<double> &solution)
+  {
+    la::BlockVector b = matrix_.vector(), x = matrix_.vector();
+    matrix_.load(rhs, b);
+    const unsigned int iterations = solver_.solve_penalised_first(b, tolerance, x);
+    matrix_.unload(x, rhs, solution);
+    ++n_solves;
+    return iterations;
+  }
 } // namespace retroforge

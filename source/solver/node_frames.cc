@@ -22,7 +22,8 @@ namespace retroforge
     }
   } // namespace
 
-  std::vector<NodeFrame> make_frames(const Scene &scene, const ContactSet<double> &contact)
+  std::vector<NodeFrame>
+  make_frames(const Scene &scene, const ContactSet<double> &contact, const ActiveSet &active)
   {
     std::vector<NodeFrame>    frames(scene.spaces.n_velocity_nodes());
     std::vector<unsigned int> n_axes(scene.spaces.n_velocity_nodes(), 0);
@@ -35,12 +36,15 @@ namespace retroforge
         append(k, direction);
       frames[k].n_fixed = n_axes[k];
     }
-    // Nodes come before edges, so that a node that touches has its own normal for an axis.
-    for (const bool of_nodes : {true, false})
-      for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-        if (const ContactPoint &point = contact.pairs[p].point; point.has_own_velocity() == of_nodes)
-          for (unsigned int i = 0; i < point.n_velocity_nodes(); ++i)
-            append(point.velocity_node_at(i), contact.projections[p].n);
+    // Contacts that hold come first, for only their penalties must stand on single axes; nodes come before
+    // edges, so that a node that is held by itself has its own normal for an axis.
+    for (const bool holds : {true, false})
+      for (const bool of_nodes : {true, false})
+        for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+          if (const ContactPoint &point = contact.pairs[p].point;
+              (active[p] != 0) == holds && point.has_own_velocity() == of_nodes)
+            for (unsigned int i = 0; i < point.n_velocity_nodes(); ++i)
+              append(point.velocity_node_at(i), contact.projections[p].n);
     for (NodeIndex k = 0; k < frames.size(); ++k)
       if (n_axes[k] == 0)
         frames[k].axes = dealii::unit_symmetric_tensor<3>();

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/discretization/element_pairs.h>
-#include <retroforge/element/cell_geometry.templates.h>
 #include <retroforge/solver/saddle_matrix.h>
-
-#include <limits>
 
 namespace retroforge
 {
@@ -12,9 +8,6 @@ namespace retroforge
 
   namespace
   {
-    /// Of edge length h, in h^3: a regular tetrahedron has the volume h^3 / (6 sqrt 2).
-    constexpr double regular_tetrahedra = 8.5;
-
     /// The columns that owned row nodes meet in the visited cells.
     /// @param rows, columns  of a cell: (nodes, how many)
     template <typename CellRows, typename CellColumns, typename LocalRow, typename Number>
@@ -42,7 +35,7 @@ namespace retroforge
       return result;
     }
 
-    /// q x, as `to_frame` of a block's rows or columns.
+    /// q x
     void rotate(const NodeFrame &frame, double (&x)[3])
     {
       if (frame.identity)
@@ -53,87 +46,30 @@ namespace retroforge
       std::copy(r, r + 3, x);
     }
 
-    void rotate_rows(const NodeFrame &frame, double (&A)[3][3])
+    /// The entries of a pair of velocities, between their axes.
+    void rotate(const NodeFrame &of_row, const NodeFrame &of_column, double (&A)[3][3])
     {
-      if (frame.identity)
-        return;
-      double R[3][3];
-      for (unsigned int i = 0; i < 3; ++i)
-      {
-        const auto &q = frame.axes[i];
+      if (!of_row.identity)
         for (unsigned int j = 0; j < 3; ++j)
-          R[i][j] = q[0] * A[0][j] + q[1] * A[1][j] + q[2] * A[2][j];
-      }
-      std::copy(&R[0][0], &R[0][0] + 9, &A[0][0]);
+        {
+          double column[3] = {A[0][j], A[1][j], A[2][j]};
+          rotate(of_row, column);
+          for (unsigned int i = 0; i < 3; ++i)
+            A[i][j] = column[i];
+        }
+      for (unsigned int i = 0; i < 3; ++i)
+        rotate(of_column, A[i]);
     }
 
-    void rotate_columns(const NodeFrame &frame, double (&A)[3][3])
+    /// The penalty of a node that one die holds is: the normal is an axis. Where two dies hold it, penalties
+    /// couple its components.
+    bool is_nearly_diagonal(const Tensor<2, 3> &A)
     {
-      if (frame.identity)
-        return;
-      double R[3][3];
-      for (unsigned int j = 0; j < 3; ++j)
-      {
-        const auto &q = frame.axes[j];
-        for (unsigned int i = 0; i < 3; ++i)
-          R[i][j] = A[i][0] * q[0] + A[i][1] * q[1] + A[i][2] * q[2];
-      }
-      std::copy(&R[0][0], &R[0][0] + 9, &A[0][0]);
-    }
-
-    /// Tangents of n_lanes cells of the mini element, with what the elimination of their bubbles needs.
-    struct MiniTangents
-    {
-      static constexpr unsigned int n_nodes = 4;
-
-      TangentPack pack;
-
-      void compute(const std::array<CellGeometry<double>, n_lanes> &geometry,
-                   const std::array<CellValues<double>, n_lanes>   &w,
-                   const MaterialLaw<double>                       &law,
-                   const Linearisation                              linearisation,
-                   const unsigned int                               n,
-                   BubbleElimination<double>                       *elimination)
-      {
-        BubbleElimination<double>                        unused;
-        std::array<BubbleElimination<double> *, n_lanes> of_lanes;
-        for (unsigned int lane = 0; lane < n_lanes; ++lane)
-          of_lanes[lane] = lane < n ? elimination + lane : &unused;
-        compute_cell_tangents(geometry, w, law, linearisation, pack, of_lanes);
-      }
-
-      double C(const unsigned int a, const unsigned int b, const unsigned int lane) const
-      {
-        return pack.C[a][b][lane];
-      }
-    };
-
-    struct TaylorHoodTangents
-    {
-      static constexpr unsigned int n_nodes = 10;
-
-      TaylorHoodPack pack;
-
-      void compute(const std::array<CellGeometry<double>, n_lanes>     &geometry,
-                   const std::array<TaylorHoodValues<double>, n_lanes> &w,
-                   const MaterialLaw<double>                           &law,
-                   const Linearisation                                  linearisation,
-                   unsigned int,
-                   BubbleElimination<double> *)
-      {
-        compute_cell_tangents(geometry, w, law, linearisation, pack);
-      }
-
-      double C(unsigned int, unsigned int, unsigned int) const { return 0.; }
-    };
-
-    MiniTangents tangents_of(MiniPair)
-    {
-      return MiniTangents();
-    }
-    TaylorHoodTangents tangents_of(TaylorHoodPair)
-    {
-      return TaylorHoodTangents();
+      double largest = 0., beside = 0.;
+      for (unsigned int i = 0; i < 3; ++i)
+        for (unsigned int j = 0; j < 3; ++j)
+          (i == j ? largest : beside) = std::max(i == j ? largest : beside, std::abs(A[i][j]));
+      return beside < 1e-3 * largest;
     }
   } // namespace
 
@@ -187,6 +123,14 @@ namespace retroforge
     system_.C = make(matrix.block(1, 1), pp, 1, 1);
     system_.S = make(system_.schur, pp, 1, 1);
     matrix.collect_sizes();
+    for (unsigned int local = 0; local < n_v; ++local)
+      diagonal_.push_back(vv->position(local, v.begin + local));
+    // A numbers its columns by itself: from there back to nodes.
+    std::vector<NodeIndex> node_of_number(v.n);
+    for (NodeIndex k = 0; k < v.n; ++k)
+      node_of_number[velocities_.number(k)] = k;
+    for (const unsigned int number : vv->column_nodes())
+      column_nodes_.push_back(node_of_number[number]);
     if (spaces.edges())
       make_interpolation_pattern(*spaces.edges());
   }
@@ -209,193 +153,119 @@ namespace retroforge
     system_.P = std::make_unique<NodeMatrix>(system_.interpolation, pattern, 3, 3, scene_.partition.comm);
   }
 
-  void SaddleMatrix::make_positions()
+  std::vector<double> SaddleMatrix::viscous_diagonal() const
   {
-    const Partition &partition = scene_.partition;
-    const Spaces    &spaces    = scene_.spaces;
+    std::vector<double> diagonal;
     for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
-      diagonal_.push_back(system_.A->pattern().position(local, velocities_.range().begin + local));
-    const auto place = [](const NodePattern &pattern, const unsigned int local, const unsigned int column) {
-      const unsigned int position = pattern.position(local, column);
-      AssertThrow(position <= std::numeric_limits<Place>::max(),
-                  ExcMessage("A node has too many neighbours."));
-      return static_cast<Place>(position);
-    };
-    const unsigned int n = spaces.pair() == ElementPair::mini ? 4 : 10;
-    places_per_cell_     = n * n + 8 * n + 16;
-    places_.assign(places_per_cell_ * partition.visited_cells.size(), 0);
-    for (unsigned int visited = 0; visited < partition.visited_cells.size(); ++visited)
     {
-      const NodeIndex *nodes  = spaces.velocity_nodes(partition.visited_cells[visited]);
-      Place           *places = &places_[places_per_cell_ * visited];
-      for (unsigned int a = 0; a < n; ++a)
-        if (velocities_.owns(nodes[a]))
-        {
-          const unsigned int local = velocities_.local(nodes[a]);
-          for (unsigned int b = 0; b < n; ++b)
-            places[n * a + b] = place(system_.A->pattern(), local, velocities_.number(nodes[b]));
-          for (unsigned int b = 0; b < 4; ++b)
-            places[n * n + 4 * a + b] = place(system_.B->pattern(), local, pressures_.number(nodes[b]));
-        }
-      for (unsigned int a = 0; a < 4; ++a)
-        if (pressures_.owns(nodes[a]))
-        {
-          const unsigned int local = pressures_.local(nodes[a]);
-          for (unsigned int b = 0; b < n; ++b)
-            places[n * n + 4 * n + n * a + b] =
-              place(system_.D->pattern(), local, velocities_.number(nodes[b]));
-          for (unsigned int b = 0; b < 4; ++b)
-            places[n * n + 8 * n + 4 * a + b] =
-              place(system_.C->pattern(), local, pressures_.number(nodes[b]));
-        }
+      const NodeFrame &frame = frames_[velocities_.owned()[local]];
+      const auto      &block = sums_->row(local)[diagonal_[local]];
+      for (unsigned int i = 0; i < 3; ++i)
+      {
+        Vec3 row = frame.axes[i], column;
+        for (unsigned int j = 0; j < 3; ++j)
+          column[j] = block.rows[j][0] * row[0] + block.rows[j][1] * row[1] + block.rows[j][2] * row[2];
+        diagonal.push_back(row * column);
+      }
     }
+    return diagonal;
   }
 
-  template <typename Tangents>
-  void SaddleMatrix::add_cell(const unsigned int visited, const Tangents &tangents, const unsigned int lane)
+  void SaddleMatrix::write_sums()
   {
-    constexpr unsigned int n     = Tangents::n_nodes;
-    const auto            &t     = tangents.pack;
-    const NodeIndex       *nodes = scene_.spaces.velocity_nodes(scene_.partition.visited_cells[visited]);
-    const Place *of_A = &places_[places_per_cell_ * visited], *of_B = of_A + n * n, *of_D = of_B + 4 * n,
-                *of_C = of_D + 4 * n;
-    for (unsigned int a = 0; a < n; ++a)
+    const NodePattern &pattern    = system_.A->pattern();
+    const unsigned int n_vertices = scene_.mesh.n_nodes();
+    const double       squared    = pressure_scale_ * pressure_scale_;
+    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
     {
-      if (!velocities_.owns(nodes[a]))
-        continue;
-      const unsigned int local   = velocities_.local(nodes[a]);
-      const NodeFrame   &frame_a = frames_[nodes[a]];
-      for (unsigned int b = 0; b < n; ++b)
+      const NodeIndex           k       = velocities_.owned()[local];
+      const double             *scale_k = &unknown_scale_[3 * k];
+      const auto                columns = pattern.row(local);
+      const TangentSums::Block *block   = sums_->row(local);
+      const double             *schur   = sums_->schur_row(local);
+      double                   *A[3], *B[3], *D = nullptr, *C = nullptr, *S = nullptr;
+      for (unsigned int i = 0; i < 3; ++i)
       {
-        double A[3][3];
+        A[i] = system_.A->entry(local, i, 0);
+        B[i] = system_.B->entry(local, i, 0);
+      }
+      // Vertices come first among the velocities, in the order of the pressures.
+      if (k < n_vertices)
+      {
+        D = system_.D->entry(local, 0, 0);
+        C = system_.C->entry(local, 0, 0);
+        S = system_.S->entry(local, 0, 0);
+      }
+      for (unsigned int met = 0; met < columns.size(); ++met, ++block, ++schur)
+      {
+        const NodeIndex b       = column_nodes_[columns[met]];
+        const double   *scale_b = &unknown_scale_[3 * b];
+        double          of_velocities[3][3];
         for (unsigned int i = 0; i < 3; ++i)
           for (unsigned int j = 0; j < 3; ++j)
-            A[i][j] = t.A[a][b][i][j][lane];
-        rotate_rows(frame_a, A);
-        rotate_columns(frames_[nodes[b]], A);
+            of_velocities[i][j] = block->rows[i][j];
+        rotate(frames_[k], frames_[b], of_velocities);
         for (unsigned int i = 0; i < 3; ++i)
-        {
-          double *row = system_.A->entry(local, i, of_A[n * a + b]);
           for (unsigned int j = 0; j < 3; ++j)
-            row[j] += A[i][j];
-        }
-      }
-      for (unsigned int b = 0; b < 4; ++b)
-      {
-        double of_pressure[3] = {t.B[a][b][0][lane], t.B[a][b][1][lane], t.B[a][b][2][lane]};
-        rotate(frame_a, of_pressure);
-        for (unsigned int i = 0; i < 3; ++i)
-          *system_.B->entry(local, i, of_B[4 * a + b]) += of_pressure[i];
-      }
-    }
-    const double mass = t.volume[lane] / 20. / t.viscosity[lane];
-    for (unsigned int a = 0; a < 4; ++a)
-    {
-      if (!pressures_.owns(nodes[a]))
-        continue;
-      const unsigned int local = pressures_.local(nodes[a]);
-      for (unsigned int b = 0; b < n; ++b)
-      {
-        double of_velocity[3] = {t.B[b][a][0][lane], t.B[b][a][1][lane], t.B[b][a][2][lane]};
-        rotate(frames_[nodes[b]], of_velocity);
-        double *row = system_.D->entry(local, 0, of_D[n * a + b]);
-        for (unsigned int i = 0; i < 3; ++i)
-          row[i] += of_velocity[i];
-      }
-      for (unsigned int b = 0; b < 4; ++b)
-      {
-        const double C = tangents.C(a, b, lane);
-        *system_.C->entry(local, 0, of_C[4 * a + b]) += C;
-        *system_.S->entry(local, 0, of_C[4 * a + b]) += (a == b ? 2. : 1.) * mass - C;
-      }
-    }
-  }
-
-  void SaddleMatrix::add_cells(const Stage<double> &stage,
-                               const Field<double> &W,
-                               const Linearisation  linearisation)
-  {
-    const Partition &partition     = scene_.partition;
-    double           log_viscosity = 0., volume = 0.;
-    with_pair(scene_.spaces, [&](const auto pair) {
-      using Values = typename decltype(pair)::template Values<double>;
-      std::array<CellGeometry<double>, n_lanes> geometry;
-      std::array<Values, n_lanes>               w;
-      auto                                      tangents  = tangents_of(pair);
-      const unsigned int                        n_visited = partition.visited_cells.size();
-      for (unsigned int begin = 0; begin < n_visited; begin += n_lanes)
-      {
-        const unsigned int n = std::min(n_lanes, n_visited - begin);
-        for (unsigned int lane = 0; lane < n_lanes; ++lane)
+            *A[i]++ = scale_k[i] * of_velocities[i][j] * scale_b[j];
+        if (b < n_vertices)
         {
-          // Lanes without a cell repeat the last one.
-          const CellIndex c = partition.visited_cells[begin + std::min(lane, n - 1)];
-          geometry[lane]    = geometry_of_cell(scene_.mesh, stage.X, c);
-          w[lane]           = pair.on_cell(scene_.spaces, W, c);
+          double of_pressure[3] = {block->rows[0][3], block->rows[1][3], block->rows[2][3]};
+          rotate(frames_[k], of_pressure);
+          for (unsigned int i = 0; i < 3; ++i)
+            *B[i]++ = scale_k[i] * of_pressure[i] * pressure_scale_;
         }
-        tangents.compute(geometry,
-                         w,
-                         stage.physics.law,
-                         linearisation,
-                         n,
-                         eliminations_.empty() ? nullptr : &eliminations_[begin]);
-        for (unsigned int lane = 0; lane < n; ++lane)
+        if (k < n_vertices)
         {
-          const CellIndex c = partition.visited_cells[begin + lane];
-          add_cell(begin + lane, tangents, lane);
-          if (partition.cells().owns(c))
+          double of_velocity[3] = {block->rows[3][0], block->rows[3][1], block->rows[3][2]};
+          rotate(frames_[b], of_velocity);
+          for (unsigned int j = 0; j < 3; ++j)
+            *D++ = pressure_scale_ * of_velocity[j] * scale_b[j];
+          if (b < n_vertices)
           {
-            log_viscosity += std::log(tangents.pack.viscosity[lane]) * tangents.pack.volume[lane];
-            volume += tangents.pack.volume[lane];
+            *C++ = squared * block->rows[3][3];
+            *S++ = squared * *schur;
           }
         }
       }
-    });
-    volume          = partition.sum(volume);
-    pressure_scale_ = std::exp(partition.sum(log_viscosity) / volume) /
-                      std::cbrt(regular_tetrahedra * volume / scene_.mesh.n_cells());
+    }
   }
 
-  std::vector<double>
-  SaddleMatrix::add_contact(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
+  std::vector<SaddleMatrix::ContactEntries>
+  SaddleMatrix::contact_entries(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
   {
-    const Partition    &partition = scene_.partition;
-    const NodePattern  &pattern   = system_.A->pattern();
-    std::vector<double> added(3 * velocities_.range().n_owned(), 0.);
+    std::vector<ContactEntries> entries;
     system_.penalties_couple = false;
-    const ActiveSet chosen   = active.empty() ? stage.decide_active(W) : active;
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
     {
       const ContactPoint &point = stage.contact.pairs[p].point;
-      if (!partition.sees(point.nodes))
+      if (!scene_.partition.sees(point.nodes))
         continue;
-      system_.penalties_couple |= !point.has_own_velocity();
       const Tensor<2, 3> of_point =
         point.velocity_weight() * point.velocity_weight() *
-        contact_tangent(stage.contact_node(p, W, chosen), stage.physics.law, stage.physics.contact);
+        contact_tangent(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact);
       for (unsigned int a = 0; a < point.n_velocity_nodes(); ++a)
-      {
-        const NodeIndex k = point.velocity_node_at(a);
-        if (!velocities_.owns(k))
-          continue;
-        const unsigned int local = velocities_.local(k);
-        for (unsigned int b = 0; b < point.n_velocity_nodes(); ++b)
-        {
-          const Tensor<2, 3> tangent =
-            frames_[k].axes * of_point * transpose(frames_[point.velocity_node_at(b)].axes);
-          const unsigned int position =
-            a == b ? diagonal_[local]
-                   : pattern.position(local, velocities_.number(point.velocity_node_at(b)));
-          for (unsigned int i = 0; i < 3; ++i)
+        if (const NodeIndex k = point.velocity_node_at(a); velocities_.owns(k))
+          for (unsigned int b = 0; b < point.n_velocity_nodes(); ++b)
           {
-            if (a == b)
-              added[3 * local + i] += tangent[i][i];
-            for (unsigned int j = 0; j < 3; ++j)
-              system_.A->entry(local, i, position)[j] += tangent[i][j];
+            const NodeIndex m = point.velocity_node_at(b);
+            entries.push_back({k, m, frames_[k].axes * of_point * transpose(frames_[m].axes)});
+            system_.penalties_couple |= k != m || !is_nearly_diagonal(entries.back().tangent);
           }
-        }
-      }
     }
-    return added;
+    return entries;
+  }
+
+  void SaddleMatrix::add_contact(const std::vector<ContactEntries> &contact) const
+  {
+    for (const ContactEntries &of : contact)
+    {
+      const unsigned int local    = velocities_.local(of.row);
+      const unsigned int position = system_.A->pattern().position(local, velocities_.number(of.column));
+      for (unsigned int i = 0; i < 3; ++i)
+        for (unsigned int j = 0; j < 3; ++j)
+          system_.A->entry(local, i, position)[j] +=
+            unknown_scale_[3 * of.row + i] * of.tangent[i][j] * unknown_scale_[3 * of.column + j];
+    }
   }
 } // namespace retroforge

@@ -17,9 +17,7 @@ namespace retroforge
       : scene_(scene), velocities_(scene.velocities), pressures_(scene.partition.nodes())
   {
     make_patterns();
-    make_positions();
-    if (scene_.spaces.n_bubbles() > 0)
-      eliminations_.resize(scene.partition.visited_cells.size());
+    sums_ = std::make_unique<TangentSums>(scene, system_.A->pattern());
   }
 
   void SaddleMatrix::assemble(const Stage<double> &stage,
@@ -27,48 +25,43 @@ namespace retroforge
                               const ActiveSet     &active,
                               const Linearisation  linearisation)
   {
-    for (const auto *block : {&system_.A, &system_.B, &system_.D, &system_.C, &system_.S})
-      (*block)->clear();
-    frames_ = make_frames(scene_, stage.contact);
-    add_cells(stage, W, linearisation);
-    std::vector<double> viscous_diagonal(3 * velocities_.range().n_owned());
-    for (unsigned int row = 0; row < viscous_diagonal.size(); ++row)
-      viscous_diagonal[row] = diagonal_entry(row);
-    const std::vector<double> added = add_contact(stage, W, active);
-    scale_.assign(3 * frames_.size(), 1.);
-    for (unsigned int row = 0; row < viscous_diagonal.size(); ++row)
-      scale_[3 * velocities_.owned()[row / 3] + row % 3] =
-        std::sqrt(viscous_diagonal[row] / (viscous_diagonal[row] + added[row]));
-    scene_.exchange.update_components(scale_);
-    scale_and_fix(viscous_diagonal);
+    const ActiveSet chosen = active.empty() ? stage.decide_active(W) : active;
+    frames_                = make_frames(scene_, stage.contact, chosen);
+    sums_->assemble(stage, W, linearisation);
+    pressure_scale_                           = sums_->viscosity_over_edge();
+    const std::vector<double>         viscous = viscous_diagonal();
+    const std::vector<ContactEntries> contact = contact_entries(stage, W, chosen);
+    choose_scales(viscous, contact);
+    write_sums();
+    add_contact(contact);
+    put_diagonals_of_fixed(viscous);
     describe_rows();
     if (system_.P)
       fill_interpolation();
   }
 
-  double &SaddleMatrix::diagonal_entry(const unsigned int row) const
+  void SaddleMatrix::choose_scales(const std::vector<double>         &viscous,
+                                   const std::vector<ContactEntries> &contact)
   {
-    return system_.A->entry(row / 3, row % 3, diagonal_[row / 3])[row % 3];
+    std::vector<double> total = viscous;
+    for (const ContactEntries &of : contact)
+      if (of.row == of.column)
+        for (unsigned int i = 0; i < 3; ++i)
+          total[3 * velocities_.local(of.row) + i] += of.tangent[i][i];
+    scale_.assign(3 * frames_.size(), 1.);
+    for (unsigned int row = 0; row < viscous.size(); ++row)
+      scale_[3 * velocities_.owned()[row / 3] + row % 3] = std::sqrt(viscous[row] / total[row]);
+    scene_.exchange.update_components(scale_);
+    unknown_scale_ = scale_;
+    for (NodeIndex k = 0; k < frames_.size(); ++k)
+      std::fill_n(&unknown_scale_[3 * k], frames_[k].n_fixed, 0.);
   }
 
-  void SaddleMatrix::scale_and_fix(const std::vector<double> &viscous_diagonal)
+  void SaddleMatrix::put_diagonals_of_fixed(const std::vector<double> &viscous) const
   {
-    // A fixed component has scale zero in its row and column, and its diagonal put back afterwards.
-    std::vector<double> of_columns(scale_.size());
-    for (NodeIndex k = 0; k < frames_.size(); ++k)
-      for (unsigned int i = 0, number = velocities_.number(k); i < 3; ++i)
-        of_columns[3 * number + i] = i < frames_[k].n_fixed ? 0. : scale_[3 * k + i];
-    const std::vector<double> of_rows(of_columns.begin() + 3 * velocities_.range().begin,
-                                      of_columns.begin() + 3 * velocities_.range().end);
-    const std::vector<double> of_pressures(pressures_.range().n, pressure_scale_);
-    system_.A->scale(of_rows, of_columns);
-    system_.B->scale(of_rows, of_pressures);
-    system_.D->scale(of_pressures, of_columns);
-    system_.C->scale(of_pressures, of_pressures);
-    system_.S->scale(of_pressures, of_pressures);
-    for (unsigned int row = 0; row < of_rows.size(); ++row)
-      if (of_rows[row] == 0.)
-        diagonal_entry(row) = viscous_diagonal[row];
+    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
+      for (unsigned int i = 0; i < frames_[velocities_.owned()[local]].n_fixed; ++i)
+        system_.A->entry(local, i, diagonal_[local])[i] = viscous[3 * local + i];
   }
 
   void SaddleMatrix::describe_rows()
@@ -136,6 +129,11 @@ namespace retroforge
     return {std::sqrt(scene_.partition.sum(momentum2)), std::sqrt(scene_.partition.sum(continuity2))};
   }
 
+  unsigned int SaddleMatrix::n_eliminated() const
+  {
+    return sums_->eliminations().empty() ? 0 : scene_.partition.visited_cells.size();
+  }
+
   la::BlockVector SaddleMatrix::vector() const
   {
     return la::BlockVector({velocities_.range().dofs(3), pressures_.range().dofs(1)}, scene_.partition.comm);
@@ -145,12 +143,12 @@ namespace retroforge
   {
     const Partition &partition = scene_.partition;
     Field<double>    result    = rhs;
-    for (unsigned int v = 0; v < eliminations_.size(); ++v)
+    for (unsigned int v = 0; v < n_eliminated(); ++v)
     {
       const CellIndex    c    = partition.visited_cells[v];
       CellValues<double> cell = {};
       cell.beta               = rhs.beta[c];
-      eliminations_[v].condense(cell);
+      sums_->eliminations()[v].condense(cell);
       MiniPair::add(scene_.spaces, cell, c, result);
     }
     return result;
@@ -188,11 +186,11 @@ namespace retroforge
     for (unsigned int local = 0; local < pressures_.range().n_owned(); ++local)
       solution.P[pressures_.owned()[local]] = pressure_scale_ * pressure[local];
     scene_.exchange.update(solution);
-    for (unsigned int v = 0; v < eliminations_.size(); ++v)
+    for (unsigned int v = 0; v < n_eliminated(); ++v)
     {
       const CellIndex          c = scene_.partition.visited_cells[v];
       const CellValues<double> w = MiniPair::on_cell(scene_.spaces, solution, c);
-      solution.beta[c]           = eliminations_[v].recover_bubble(rhs.beta[c], w.V, w.P);
+      solution.beta[c]           = sums_->eliminations()[v].recover_bubble(rhs.beta[c], w.V, w.P);
     }
   }
 

@@ -77,6 +77,21 @@ namespace retroforge
     return 0;
   }
 
+  unsigned int
+  SaddleSolver::solve_penalised_first(const la::BlockVector &b, const double tolerance, la::BlockVector &x)
+  {
+    if (!system_.symmetric || parameters_.method == "direct")
+      return solve(b, tolerance, {}, Transposition::plain, x);
+    la::BlockVector first(x), rest(b);
+    first = 0.;
+    polish_penalised(b, first);
+    system_.matrix.residual(rest, first, b);
+    const unsigned int iterations = solve(rest, tolerance, {}, Transposition::plain, x);
+    x += first;
+    polish_penalised(b, x);
+    return iterations;
+  }
+
   double SaddleSolver::start_from(const std::vector<la::BlockVector> &guesses,
                                   const la::BlockVector              &b,
                                   const Transposition                 transposition,

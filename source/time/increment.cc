@@ -452,7 +452,7 @@ namespace retroforge
     for (std::size_t c = 0; c < R.beta.size(); ++c)
       minus_R_dot.beta[c] = -dot_of(R.beta[c]);
     system_.assemble(at.stage, at.W, at.active);
-    system_.solve(minus_R_dot, model_.adjoint_tolerance, W_dot);
+    system_.solve_tangent(minus_R_dot, model_.adjoint_tolerance, W_dot);
     scene_.exchange.gather(W_dot);
     return make_dual(at.W, W_dot);
   }

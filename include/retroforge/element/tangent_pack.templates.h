@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/element/tangent_pack.h>
+#include <retroforge/material/material_law.h>
 
 /// @file
 /// One source for one cell (T = double) and for a pack of cells (T = Pack): what is between them must vanish
@@ -47,5 +48,22 @@ namespace retroforge
   RETROFORGE_INLINE T dot(const T (&a)[3], const T (&b)[3])
   {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+
+  /// Stress factor and d log(factor)/d(eps:eps), of one cell or lane by lane.
+  RETROFORGE_INLINE void
+  ask_law(const MaterialLaw<double> &law, const double &eps2, double &factor, double &slope)
+  {
+    factor = law(eps2);
+    slope  = law.slope(eps2);
+  }
+
+  RETROFORGE_INLINE void ask_law(const MaterialLaw<double> &law, const Pack &eps2, Pack &factor, Pack &slope)
+  {
+    for (unsigned int lane = 0; lane < n_lanes; ++lane)
+    {
+      factor[lane] = law(eps2[lane]);
+      slope[lane]  = law.slope(eps2[lane]);
+    }
   }
 } // namespace retroforge

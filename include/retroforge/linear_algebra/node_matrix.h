@@ -82,9 +82,6 @@ namespace retroforge
 
     void clear() const { std::fill(values_, values_ + begin_[n_rows()], 0.); }
 
-    /// Every entry times the factor of its row, by local number, and of its column, by global number.
-    void scale(const std::vector<double> &row_factors, const std::vector<double> &column_factors) const;
-
   private:
     std::shared_ptr<const NodePattern> pattern_;
     unsigned int                       rows_, columns_;

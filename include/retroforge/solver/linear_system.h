@@ -29,6 +29,10 @@ namespace retroforge
                        const std::vector<Field<double>> &guesses       = {},
                        Transposition                     transposition = Transposition::plain);
 
+    /// As solve, for the derivative of a residual, which a moving die makes large where it pushes
+    /// (SaddleSolver::solve_penalised_first).
+    unsigned int solve_tangent(const Field<double> &rhs, double tolerance, Field<double> &solution);
+
     /// Forget the preconditioner: the next solve makes a new one.
     void reset() { solver_.reset(); }
 

@@ -19,6 +19,9 @@ namespace retroforge
   };
 
   /// Frames of all nodes: symmetry planes fix their normals, a die's normal becomes an axis of its own, so
-  /// that the penalty stands on one diagonal entry whatever the die's orientation.
-  std::vector<NodeFrame> make_frames(const Scene &scene, const ContactSet<double> &contact);
+  /// that the penalty stands on one diagonal entry whatever the die's orientation. Between two dies the first
+  /// axis is that of the one which holds.
+  /// @param active  contacts that hold
+  std::vector<NodeFrame>
+  make_frames(const Scene &scene, const ContactSet<double> &contact, const ActiveSet &active);
 } // namespace retroforge

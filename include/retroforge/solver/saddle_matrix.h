@@ -2,11 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/element/mini_element.h>
-#include <retroforge/linear_algebra/node_matrix.h>
 #include <retroforge/solver/node_frames.h>
-
-#include <cstdint>
+#include <retroforge/solver/tangent_sums.h>
 
 namespace retroforge
 {
@@ -61,39 +58,43 @@ namespace retroforge
     std::pair<double, double> residual_norm(const Field<double> &r) const;
 
   private:
-    /// Where a column node stands in the row of another.
-    using Place = std::uint16_t;
+    /// What contact adds to the entries of a pair of velocities, in their frames.
+    struct ContactEntries
+    {
+      NodeIndex            row, column;
+      dealii::Tensor<2, 3> tangent;
+    };
 
     void make_patterns();
     void make_interpolation_pattern(const MeshEdges &edges);
-    void make_positions();
-    /// Sums over cells; sets pressure_scale_.
-    void add_cells(const Stage<double> &stage, const Field<double> &W, Linearisation linearisation);
-    template <typename Tangents>
-    void add_cell(unsigned int visited, const Tangents &tangents, unsigned int lane);
-    /// @return what it adds to the diagonal of A's local rows
-    std::vector<double>
-    add_contact(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
-    /// Of a local row of A.
-    double &diagonal_entry(unsigned int row) const;
-    void    scale_and_fix(const std::vector<double> &viscous_diagonal);
+    /// Of A's local rows, from cells alone.
+    std::vector<double> viscous_diagonal() const;
+    /// Of owned rows; says whether penalties couple.
+    std::vector<ContactEntries>
+         contact_entries(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
+    void choose_scales(const std::vector<double> &viscous, const std::vector<ContactEntries> &contact);
+    /// The sums over cells, in frames and scaled.
+    void write_sums();
+    void add_contact(const std::vector<ContactEntries> &contact) const;
+    /// Fixed components have scale zero in their rows and columns, and their diagonals afterwards.
+    void put_diagonals_of_fixed(const std::vector<double> &viscous) const;
     /// Penalised rows and translations.
     void describe_rows();
     void fill_interpolation();
+    /// Cells with a bubble to eliminate, among the visited ones.
+    unsigned int n_eliminated() const;
     /// A right-hand side whose bubbles are eliminated; right on owned nodes.
     Field<double> condensed(const Field<double> &rhs) const;
 
-    const Scene                           &scene_;
-    const Ownership                       &velocities_, &pressures_;
-    SaddleSystem                           system_;
-    std::vector<NodeFrame>                 frames_; ///< of each velocity node
-    std::vector<double>                    scale_;  ///< of each velocity component in its frame
-    double                                 pressure_scale_ = 1.;
-    std::vector<BubbleElimination<double>> eliminations_; ///< of the visited cells; empty without bubbles
-    std::vector<unsigned int>              diagonal_;     ///< where an owned node stands in its own row
-    /// Of each visited cell, for n velocity nodes: n x n places in rows of A, n x 4 of B, 4 x n of D, 4 x 4
-    /// of C; zero in rows of other ranks.
-    std::vector<Place> places_;
-    unsigned int       places_per_cell_ = 0;
+    const Scene                 &scene_;
+    const Ownership             &velocities_, &pressures_;
+    SaddleSystem                 system_;
+    std::vector<NodeFrame>       frames_;        ///< of each velocity node
+    std::vector<double>          scale_;         ///< of each velocity component in its frame
+    std::vector<double>          unknown_scale_; ///< the same, zero where it is fixed
+    double                       pressure_scale_ = 1.;
+    std::unique_ptr<TangentSums> sums_;
+    std::vector<NodeIndex>       column_nodes_; ///< of A, by local number
+    std::vector<unsigned int>    diagonal_;     ///< where an owned node stands in its own row
   };
 } // namespace retroforge

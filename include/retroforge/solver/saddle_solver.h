@@ -35,6 +35,11 @@ namespace retroforge
                        Transposition                       transposition,
                        la::BlockVector                    &x);
 
+    /// As solve, for a right-hand side that asks much of penalised components, as the motion of a die does.
+    /// Their rows, which would dwarf the others in the norm, are solved by themselves first; the tolerance is
+    /// relative to what that leaves.
+    unsigned int solve_penalised_first(const la::BlockVector &b, double tolerance, la::BlockVector &x);
+
     /// Forget the preconditioner: the next solve makes a new one.
     void reset() { preconditioner_.reset(); }
 

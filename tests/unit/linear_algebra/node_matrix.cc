@@ -70,7 +70,7 @@ namespace
           for (unsigned int j = 0; j < columns; ++j)
             view.entry(a - row_nodes.begin, i, pattern->position(a - row_nodes.begin, b))[j] =
               value(rows * a + i, columns * b + j);
-    bool found = true, factors_found = true;
+    bool found = true;
     for (unsigned int a = row_nodes.begin; a < row_nodes.end; ++a)
       for (unsigned int i = 0; i < rows; ++i)
       {
@@ -79,24 +79,6 @@ namespace
           for (unsigned int j = 0; j < columns; ++j)
             found = found && matrix.el(rows * a + i, columns * b + j) == value(rows * a + i, columns * b + j);
       }
-    std::vector<double> row_factors(view.n_rows()), column_factors(columns * column_nodes.n);
-    for (unsigned int i = 0; i < row_factors.size(); ++i)
-      row_factors[i] = 2. + i;
-    for (unsigned int j = 0; j < column_factors.size(); ++j)
-      column_factors[j] = 1. / (1. + j);
-    view.scale(row_factors, column_factors);
-    la::Vector ones(column_nodes.dofs(columns), MPI_COMM_WORLD), sums(row_nodes.dofs(rows), MPI_COMM_WORLD);
-    ones = 1.;
-    matrix.vmult(sums, ones);
-    for (unsigned int local = 0; local < view.n_rows(); ++local)
-    {
-      const unsigned int row = rows * row_nodes.begin + local;
-      double             sum = 0.;
-      for (const unsigned int b : meets[local / rows])
-        for (unsigned int j = 0; j < columns; ++j)
-          sum += row_factors[local] * value(row, columns * b + j) * column_factors[columns * b + j];
-      factors_found = factors_found && std::abs(sums[row] - sum) < 1e-12 * sum;
-    }
     const auto &seen    = pattern->column_nodes();
     const auto  others  = seen.begin() + column_nodes.n_owned();
     const bool  ordered = std::is_sorted(seen.begin(), others) && std::is_sorted(others, seen.end()) &&
@@ -112,7 +94,7 @@ namespace
     }
     std::cout << rows << " x " << columns << " to a pair of nodes, " << coarsening
               << " rows' to a column's: entries " << all_ranks(found) << ", order " << all_ranks(ordered)
-              << ", factors " << all_ranks(factors_found) << ", refused " << all_ranks(refused) << "\n";
+              << ", refused " << all_ranks(refused) << "\n";
   }
 } // namespace
 

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/discretization/element_pairs.h>
+#include <retroforge/element/cell_geometry.templates.h>
+#include <retroforge/element/tangent_pack.templates.h>
+#include <retroforge/solver/tangent_sums.h>
+
+namespace retroforge
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /// Of edge length h, in h^3: a regular tetrahedron has the volume h^3 / (6 sqrt 2).
+    constexpr double regular_tetrahedra = 8.5;
+
+    /// Tangents of n_lanes cells of the mini element, with what the elimination of their bubbles needs.
+    struct MiniTangents : TangentPack
+    {
+      using Pair                            = MiniPair;
+      static constexpr unsigned int n_nodes = 4;
+
+      void compute(const std::array<CellGeometry<double>, n_lanes> &geometry,
+                   const std::array<CellValues<double>, n_lanes>   &w,
+                   const MaterialLaw<double>                       &law,
+                   const Linearisation                              linearisation,
+                   BubbleElimination<double>                       *elimination)
+      {
+        std::array<BubbleElimination<double> *, n_lanes> of_lanes;
+        for (unsigned int lane = 0; lane < n_lanes; ++lane)
+          of_lanes[lane] = elimination + lane;
+        compute_cell_tangents(geometry, w, law, linearisation, *this, of_lanes);
+      }
+
+      RETROFORGE_INLINE Pack of_pressures(const unsigned int a, const unsigned int b) const
+      {
+        return C[a][b];
+      }
+    };
+
+    struct TaylorHoodTangents : TaylorHoodPack
+    {
+      using Pair                            = TaylorHoodPair;
+      static constexpr unsigned int n_nodes = 10;
+
+      void compute(const std::array<CellGeometry<double>, n_lanes>     &geometry,
+                   const std::array<TaylorHoodValues<double>, n_lanes> &w,
+                   const MaterialLaw<double>                           &law,
+                   const Linearisation                                  linearisation,
+                   BubbleElimination<double> *)
+      {
+        compute_cell_tangents(geometry, w, law, linearisation, *this);
+      }
+
+      RETROFORGE_INLINE Pack of_pressures(unsigned int, unsigned int) const { return Pack{}; }
+    };
+
+    /// Adds four entries of four cells to row i of the block that each cell has for them.
+    RETROFORGE_INLINE void add_row(const Pack          first,
+                                   const Pack          second,
+                                   const Pack          third,
+                                   const Pack          fourth,
+                                   const unsigned int *pairs,
+                                   const unsigned int  i,
+                                   TangentSums::Block *blocks)
+    {
+      // The transpose of a matrix whose rows are the four packs.
+      const Pack even_low = __builtin_shufflevector(first, second, 0, 4, 2, 6),
+                 odd_low  = __builtin_shufflevector(first, second, 1, 5, 3, 7),
+                 even_up  = __builtin_shufflevector(third, fourth, 0, 4, 2, 6),
+                 odd_up   = __builtin_shufflevector(third, fourth, 1, 5, 3, 7);
+      blocks[pairs[0]].rows[i] += __builtin_shufflevector(even_low, even_up, 0, 1, 4, 5);
+      blocks[pairs[1]].rows[i] += __builtin_shufflevector(odd_low, odd_up, 0, 1, 4, 5);
+      blocks[pairs[2]].rows[i] += __builtin_shufflevector(even_low, even_up, 2, 3, 6, 7);
+      blocks[pairs[3]].rows[i] += __builtin_shufflevector(odd_low, odd_up, 2, 3, 6, 7);
+    }
+
+    template <typename Tangents>
+    RETROFORGE_INLINE void
+    add_tangents(const Tangents &t, const unsigned int *pairs, TangentSums::Block *blocks, double *schur)
+    {
+      const Pack mass = t.volume / 20. / t.viscosity;
+      for (unsigned int a = 0; a < Tangents::n_nodes; ++a)
+        for (unsigned int b = 0; b < Tangents::n_nodes; ++b, pairs += n_lanes)
+        {
+          for (unsigned int i = 0; i < 3; ++i)
+            add_row(t.A[a][b][i][0],
+                    t.A[a][b][i][1],
+                    t.A[a][b][i][2],
+                    b < 4 ? t.B[a][b][i] : Pack{},
+                    pairs,
+                    i,
+                    blocks);
+          if (a >= 4)
+            continue;
+          const Pack C = b < 4 ? t.of_pressures(a, b) : Pack{};
+          add_row(t.B[b][a][0], t.B[b][a][1], t.B[b][a][2], C, pairs, 3, blocks);
+          if (b < 4)
+          {
+            const Pack S = (a == b ? 2. : 1.) * mass - C;
+            for (unsigned int lane = 0; lane < n_lanes; ++lane)
+              schur[pairs[lane]] += S[lane];
+          }
+        }
+    }
+
+    RETROFORGE_ALSO_FOR("fma")
+    void add_pack(const MiniTangents &t, const unsigned int *pairs, TangentSums::Block *blocks, double *schur)
+    {
+      add_tangents(t, pairs, blocks, schur);
+    }
+
+    RETROFORGE_ALSO_FOR("fma")
+    void add_pack(const TaylorHoodTangents &t,
+                  const unsigned int       *pairs,
+                  TangentSums::Block       *blocks,
+                  double                   *schur)
+    {
+      add_tangents(t, pairs, blocks, schur);
+    }
+
+    unsigned int n_packs(const Partition &partition)
+    {
+      return (partition.visited_cells.size() + n_lanes - 1) / n_lanes;
+    }
+  } // namespace
+
+  TangentSums::TangentSums(const Scene &scene, const NodePattern &met) : scene_(scene), begin_(1, 0)
+  {
+    const Ownership   &velocities = scene.velocities;
+    const auto        &visited    = scene.partition.visited_cells;
+    const unsigned int n          = scene.spaces.n_nodes_per_cell();
+    for (unsigned int local = 0; local < velocities.range().n_owned(); ++local)
+      begin_.push_back(begin_.back() + met.row(local).size());
+    const unsigned int of_nobody = begin_.back();
+    blocks_.resize(of_nobody + 1);
+    schur_.resize(of_nobody + 1);
+    if (scene.spaces.n_bubbles() > 0)
+      eliminations_.resize(n_lanes * n_packs(scene.partition));
+    pairs_.assign(n * n * n_lanes * n_packs(scene.partition), of_nobody);
+    for (unsigned int v = 0; v < visited.size(); ++v)
+    {
+      const NodeIndex *nodes = scene.spaces.velocity_nodes(visited[v]);
+      unsigned int    *pairs = &pairs_[n * n * n_lanes * (v / n_lanes) + v % n_lanes];
+      for (unsigned int a = 0; a < n; ++a)
+        if (velocities.owns(nodes[a]))
+        {
+          const unsigned int local = velocities.local(nodes[a]);
+          for (unsigned int b = 0; b < n; ++b)
+            pairs[n_lanes * (n * a + b)] = begin_[local] + met.position(local, velocities.number(nodes[b]));
+        }
+    }
+  }
+
+  template <typename Tangents>
+  void TangentSums::add_cells(const Stage<double> &stage,
+                              const Field<double> &W,
+                              const Linearisation  linearisation)
+  {
+    using Pair                       = typename Tangents::Pair;
+    const Partition   &partition     = scene_.partition;
+    const auto        &visited       = partition.visited_cells;
+    const unsigned int pack_width    = Tangents::n_nodes * Tangents::n_nodes * n_lanes;
+    double             log_viscosity = 0., volume = 0.;
+
+    std::array<CellGeometry<double>, n_lanes>                   geometry;
+    std::array<typename Pair::template Values<double>, n_lanes> w;
+    Tangents                                                    tangents;
+    for (unsigned int pack = 0; pack < n_packs(partition); ++pack)
+    {
+      const unsigned int begin = n_lanes * pack, n = std::min<unsigned int>(n_lanes, visited.size() - begin);
+      for (unsigned int lane = 0; lane < n_lanes; ++lane)
+      {
+        // Lanes without a cell repeat the last one.
+        const CellIndex c = visited[begin + std::min(lane, n - 1)];
+        geometry[lane]    = geometry_of_cell(scene_.mesh, stage.X, c);
+        w[lane]           = Pair::on_cell(scene_.spaces, W, c);
+      }
+      tangents.compute(geometry,
+                       w,
+                       stage.physics.law,
+                       linearisation,
+                       eliminations_.empty() ? nullptr : &eliminations_[begin]);
+      add_pack(tangents, &pairs_[pack_width * pack], blocks_.data(), schur_.data());
+      for (unsigned int lane = 0; lane < n; ++lane)
+        if (partition.cells().owns(visited[begin + lane]))
+        {
+          log_viscosity += std::log(tangents.viscosity[lane]) * tangents.volume[lane];
+          volume += tangents.volume[lane];
+        }
+    }
+    volume               = partition.sum(volume);
+    viscosity_over_edge_ = std::exp(partition.sum(log_viscosity) / volume) /
+                           std::cbrt(regular_tetrahedra * volume / scene_.mesh.n_cells());
+  }
+
+  void
+  TangentSums::assemble(const Stage<double> &stage, const Field<double> &W, const Linearisation linearisation)
+  {
+    std::fill(blocks_.begin(), blocks_.end(), Block{});
+    std::fill(schur_.begin(), schur_.end(), 0.);
+    if (scene_.spaces.pair() == ElementPair::mini)
+      add_cells<MiniTangents>(stage, W, linearisation);
+    else
+      add_cells<TaylorHoodTangents>(stage, W, linearisation);
+  }
+} // namespace retroforge
