@@ -19,6 +19,9 @@ namespace retroforge
 {
   namespace
   {
+    /// Lists are taken apart in a time that grows with the square of their length.
+    constexpr std::size_t longest_line = 100000;
+
     using Names = std::vector<std::string>;
 
     /// Blanks and tabs at the ends removed, those inside made single.
@@ -93,7 +96,7 @@ namespace retroforge
         const unsigned int outer_file  = std::exchange(file_, ++n_files_);
         std::string        line;
         unsigned int       number = 0;
-        while (next_line(in, line, number))
+        while (next_line(file, in, line, number))
           interpret(file, number, line, outer_depth);
         if (open_sections_.size() > outer_depth)
           throw Error(open_sections_.back().where,
@@ -122,7 +125,8 @@ namespace retroforge
 
       /// The next line that says something: continued lines joined, comments removed. `number` is that of its
       /// end.
-      static bool next_line(std::istream &in, std::string &line, unsigned int &number)
+      static bool
+      next_line(const std::string &file, std::istream &in, std::string &line, unsigned int &number)
       {
         std::string part;
         line.clear();
@@ -135,6 +139,12 @@ namespace retroforge
           if (continued)
             part.erase(part.find_last_not_of(" \t"));
           line += part;
+          if (line.size() > longest_line)
+            throw Error(file + ", line " + std::to_string(number),
+                        "is too long",
+                        "a line, with those that continue it, has at most " + std::to_string(longest_line) +
+                          " characters",
+                        "see that this is a file of parameters, and which lines end with '\\'");
           if (continued)
             continue;
           line = single_spaced(line);

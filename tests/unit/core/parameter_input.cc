@@ -127,6 +127,11 @@ void wrong_structure()
   show(friction("set alpha = 3\nset coefficient = 4")); // two names of one parameter
   show("include nowhere.prm");
   show("include case.prm");
+  std::string endless = "subsection Upper die\nset velocity = \\\n";
+  for (unsigned int i = 0; i < 40000; ++i)
+    endless += "0, 0, \\\n";
+  show(endless);
+  show("set steps = " + std::string(200000, '3'));
 }
 
 void unreadable_files()
