@@ -37,6 +37,12 @@ namespace retroforge
     /// Values are passed on to formats that know no other text.
     void check_text(const std::string &where, const std::string &text)
     {
+      if (text.size() > longest_line)
+        throw Error(where,
+                    "is too long",
+                    "a line, with those that continue it, has at most " + std::to_string(longest_line) +
+                      " characters",
+                    "see that this is a file of parameters, and which lines end with '\\'");
       if (!is_plain_text(text))
         throw Error(where,
                     "'" + legible(text) + "' holds bytes that are no text",
@@ -96,7 +102,7 @@ namespace retroforge
         const unsigned int outer_file  = std::exchange(file_, ++n_files_);
         std::string        line;
         unsigned int       number = 0;
-        while (next_line(file, in, line, number))
+        while (next_line(in, line, number))
           interpret(file, number, line, outer_depth);
         if (open_sections_.size() > outer_depth)
           throw Error(open_sections_.back().where,
@@ -125,8 +131,7 @@ namespace retroforge
 
       /// The next line that says something: continued lines joined, comments removed. `number` is that of its
       /// end.
-      static bool
-      next_line(const std::string &file, std::istream &in, std::string &line, unsigned int &number)
+      static bool next_line(std::istream &in, std::string &line, unsigned int &number)
       {
         std::string part;
         line.clear();
@@ -139,12 +144,6 @@ namespace retroforge
           if (continued)
             part.erase(part.find_last_not_of(" \t"));
           line += part;
-          if (line.size() > longest_line)
-            throw Error(file + ", line " + std::to_string(number),
-                        "is too long",
-                        "a line, with those that continue it, has at most " + std::to_string(longest_line) +
-                          " characters",
-                        "see that this is a file of parameters, and which lines end with '\\'");
           if (continued)
             continue;
           line = single_spaced(line);

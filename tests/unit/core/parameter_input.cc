@@ -132,6 +132,7 @@ void wrong_structure()
     endless += "0, 0, \\\n";
   show(endless);
   show("set steps = " + std::string(200000, '3'));
+  show("", {{"steps", std::string(200000, '3')}});
 }
 
 void unreadable_files()
