@@ -21,6 +21,8 @@ namespace retroforge
   {
     /// Lists are taken apart in a time that grows with the square of their length.
     constexpr std::size_t longest_line = 100000;
+    /// Of subsections, and of files that include each other.
+    constexpr unsigned int deepest = 20;
 
     using Names = std::vector<std::string>;
 
@@ -196,6 +198,11 @@ namespace retroforge
       {
         if (name.empty())
           throw Error(where, "'subsection' has no name", "it must read 'subsection NAME'", "add the name");
+        if (open_sections_.size() == deepest)
+          throw Error(where,
+                      "subsections nest more than " + std::to_string(deepest) + " deep",
+                      "each 'subsection' needs its 'end'",
+                      "add what is missing before this line");
         open_sections_.push_back({name, where});
         lines.push_back({where, parameter_path(sections()), {}, file_, number});
       }
@@ -219,9 +226,11 @@ namespace retroforge
                       "'" + included.string() + "' is not a file",
                       "'include' is followed by the name of a parameter file",
                       "give its name relative to the file that includes it");
-        if (++include_depth_ > 20)
-          throw Error(
-            where, "include files nest more than 20 deep", "no file may include itself", "remove the cycle");
+        if (++include_depth_ > deepest)
+          throw Error(where,
+                      "include files nest more than " + std::to_string(deepest) + " deep",
+                      "no file may include itself",
+                      "remove the cycle");
         read(included.string());
         --include_depth_;
       }

@@ -127,6 +127,10 @@ void wrong_structure()
   show(friction("set alpha = 3\nset coefficient = 4")); // two names of one parameter
   show("include nowhere.prm");
   show("include case.prm");
+  std::string deep;
+  for (unsigned int i = 0; i < 21; ++i)
+    deep += "subsection Contact\n";
+  show(deep);
   std::string endless = "subsection Upper die\nset velocity = \\\n";
   for (unsigned int i = 0; i < 40000; ++i)
     endless += "0, 0, \\\n";
