@@ -13,10 +13,14 @@ namespace retroforge
     {
       if (n == 3)
         return 3;
-      for (unsigned int i = 0; i < n; ++i)
-        direction -= (axes[i] * direction) * axes[i];
-      if (direction.norm() < 1e-3)
-        return n;
+      // Twice, for what is left of a direction close to the span is as inexact as it is short.
+      for (const bool again : {false, true})
+      {
+        for (unsigned int i = 0; i < n; ++i)
+          direction -= (axes[i] * direction) * axes[i];
+        if (!again && direction.norm() < 1e-3)
+          return n;
+      }
       axes[n] = direction / direction.norm();
       return n + 1;
     }
