@@ -44,7 +44,7 @@ namespace retroforge
                     "is too long",
                     "a line, with those that continue it, has at most " + std::to_string(longest_line) +
                       " characters",
-                    "see that this is a file of parameters, and which lines end with '\\'");
+                    "write a shorter value; in a file, see which lines end with '\\'");
       if (!is_plain_text(text))
         throw Error(where,
                     "'" + legible(text) + "' holds bytes that are no text",

@@ -24,7 +24,7 @@ namespace retroforge
       Pack rows[4];
     };
 
-    /// @param met  nodes that meet, of all velocities; pairs are counted row by row. Must live as long.
+    /// @param met  nodes that meet, of all velocities; pairs are counted row by row.
     TangentSums(const Scene &scene, const NodePattern &met);
 
     void assemble(const Stage<double> &stage, const Field<double> &W, Linearisation linearisation);
