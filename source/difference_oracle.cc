@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/difference_oracle.h>
+#include <retroforge/trial.h>
 
 #include <utility>
 
@@ -50,39 +51,6 @@ namespace retroforge
       x.fastAccessDx(0) += direction;
       return x;
     }
-
-    /// Objectives of a run that decides everything anew, dies of other shape included.
-    std::vector<double>
-    forge_anew(const Case &at, const Process<double> &process, const NodalVectors<double> &X_0)
-    {
-      ForgingModel    model   = at.model;
-      Process<double> at_dies = process;
-      for (std::size_t d = 0; d < model.dies.size(); ++d)
-        if (auto vertices = std::exchange(at_dies.dies[d].vertices, {}); !vertices.empty())
-          model.dies[d] = model.dies[d].moved(std::move(vertices));
-      Timings          timings;
-      const Objectives objectives = at.parameters.make_objectives(model.dies, at.billet);
-      ObjectiveTrace   trace(objectives, model, at_dies);
-      ForgingState     state;
-      for (std::size_t s = 0; s < at.stretches.size(); ++s)
-      {
-        const Parameters &numerics = at.stretches[s].parameters;
-        PressParameters   press    = numerics.press;
-        if (s + 1 < at.stretches.size())
-          press.stroke = at.stretches[s + 1].input.stroke;
-        model.step              = numerics.step_model();
-        model.newton            = numerics.newton;
-        model.linear_solver     = numerics.linear_solver;
-        const Remesher remesher = at.remesher(numerics, model.dies);
-        const Forging  forging(model, press, remesher, timings);
-        if (s == 0)
-          state = forging.start(std::make_shared<Leg>(at.billet, model, timings), X_0);
-        else
-          Forging::change_numerics("", state);
-        forging.run(at_dies, state, [&](const IncrementEvent &event) { trace.add(event); });
-      }
-      return at.combine(trace.values(state, true));
-    }
   } // namespace
 
   ObjectiveOracle make_oracle(const Case &at, const Forging &forging, const RecordedForging &recorded)
@@ -94,7 +62,9 @@ namespace retroforge
       return process;
     };
     oracle.free = [&at, process_at](const std::vector<double> &mu, const FreeForm &shift) {
-      return forge_anew(at, process_at(mu, shift), sum(at.design.positions(mu), shift.X_0));
+      Trial trial(at, process_at(mu, shift), sum(at.design.positions(mu), shift.X_0), Trial::Keep::nothing);
+      trial.forge();
+      return at.combine(trial.values());
     };
     oracle.replayed = [&at, &forging, recorded, process_at](const std::vector<double> &mu,
                                                             const FreeForm            &shift) {

@@ -225,6 +225,7 @@ namespace retroforge
     design.add_parameters(prm);
     check.add_parameters(prm);
     scan.add_parameters(prm);
+    optimisation.add_parameters(prm);
     output.add_parameters(prm);
   }
 
@@ -395,6 +396,7 @@ end
     contact.check();
     remeshing.check();
     scan.check();
+    optimisation.check();
     if (dies.empty())
       throw Error(
         "Dies/names", "names no die", "a billet is forged by at least one die", "set names = lower, upper");

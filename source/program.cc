@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/exception_message.h>
 #include <retroforge/core/version.h>
+#include <retroforge/optimize.h>
 #include <retroforge/program.h>
 #include <retroforge/scan.h>
 #include <retroforge/simulation.h>
@@ -35,6 +36,8 @@ namespace retroforge
         return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0 ? answer(command) : 0;
       if (command.command == "scan")
         return Scan(command, environment, MPI_COMM_WORLD).run();
+      if (command.command == "optimize")
+        return Optimize(command, MPI_COMM_WORLD).run();
       return Simulation(command, MPI_COMM_WORLD).run();
     }
     catch (...)

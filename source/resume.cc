@@ -38,7 +38,8 @@ namespace retroforge
     {
       if (path == "Design/at" || path == "Press/leading die" || path == "Remeshing/first mesh")
         return Kind::scene;
-      if (begins_with(path, {"Adjoint/", "Check/", "Design/", "Objective", "Output/", "Scan/"}))
+      if (begins_with(path,
+                      {"Adjoint/", "Check/", "Design/", "Objective", "Optimisation/", "Output/", "Scan/"}))
         return Kind::after;
       const bool is_numerics = begins_with(path,
                                            {"Press/",
@@ -197,11 +198,11 @@ namespace retroforge
 
   bool make_same_results(const std::string &parameters, const std::string &others)
   {
-    return are_same_but_for({"Check/", "Output/", "Scan/"}, parameters, others);
+    return are_same_but_for({"Check/", "Optimisation/", "Output/", "Scan/"}, parameters, others);
   }
 
   bool make_same_check(const std::string &parameters, const std::string &others)
   {
-    return are_same_but_for({"Output/", "Scan/"}, parameters, others);
+    return are_same_but_for({"Optimisation/", "Output/", "Scan/"}, parameters, others);
   }
 } // namespace retroforge

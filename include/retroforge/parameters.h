@@ -8,6 +8,7 @@
 #include <retroforge/discretization/discretization_parameters.h>
 #include <retroforge/material/material_parameters.h>
 #include <retroforge/objective/objective_parameters.h>
+#include <retroforge/optimisation/optimisation_parameters.h>
 #include <retroforge/scan/scan_parameters.h>
 #include <retroforge/time/forging.h>
 
@@ -94,6 +95,7 @@ namespace retroforge
     DesignParameters           design;
     CheckParameters            check;
     ScanParameters             scan;
+    OptimisationParameters     optimisation;
     OutputParameters           output;
     AdjointParameters          adjoint;
     RemesherParameters         remeshing;

@@ -13,8 +13,8 @@ namespace retroforge
   };
 
   /// What may differ between a record and the run that goes on from it: numerics, that is how the equations
-  /// are solved and cut into increments and meshes. Adjoint, Check, Design, Objective, Output and Scan do not
-  /// change the forging at all, and are not told.
+  /// are solved and cut into increments and meshes. Adjoint, Check, Design, Objective, Optimisation, Output
+  /// and Scan do not change the forging at all, and are not told.
   ///
   /// Numerics are Press but for the leading die (the stroke may not end before the record does), Newton,
   /// Linear solver, Remeshing but for the first mesh, and of Contact what is measured in increments or
@@ -54,10 +54,10 @@ namespace retroforge
   std::vector<std::uint64_t> fingerprints(const std::vector<Die> &dies);
 
   /// Whether two complete inputs give the same results, gradients included: all of them is equal but for the
-  /// sections Check, Output and Scan.
+  /// sections Check, Optimisation, Output and Scan.
   bool make_same_results(const std::string &parameters, const std::string &others);
 
   /// Whether a check of the same record gives the same numbers with both: all is equal but for the sections
-  /// Output and Scan.
+  /// Optimisation, Output and Scan.
   bool make_same_check(const std::string &parameters, const std::string &others);
 } // namespace retroforge

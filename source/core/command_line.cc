@@ -180,7 +180,7 @@ namespace retroforge
 
   const std::vector<std::string> &known_commands()
   {
-    static const std::vector<std::string> commands = {"simulate", "gradient", "check", "scan"};
+    static const std::vector<std::string> commands = {"simulate", "gradient", "check", "scan", "optimize"};
     return commands;
   }
 
@@ -230,6 +230,8 @@ Commands:
   check      compare these gradients with the tangent method and with finite differences
   scan       vary one design parameter after the other (section Scan), a run for each value, as many at a time as
              there are cores: how smooth the objectives are, and how true their local gradients
+  optimize   forge one design after the other, each better by the gradient, within bounds and limits (section
+             Optimisation)
 
 Options:
   --set Section/name=value   replace a parameter of the case; may be repeated, the last one counts
@@ -238,7 +240,8 @@ Options:
   --output DIR               folder of the results (default: CASE-results in the current folder)
   --resume                   go on with the run in that folder, to the same bits as if it had not been stopped,
                              or with other numerics (--set Press/increments=80, --set Remeshing/when=quality);
-                             of a check, keep the directions that are done; of a scan, the points that are finished
+                             of a check, keep the directions that are done; of a scan or an optimisation, what is
+                             forged
   --overwrite                replace the results that are in that folder; without it they are left alone, and the
                              command is refused
   --print-parameters         write all parameters with their meaning; a case to start from

@@ -236,6 +236,12 @@ namespace retroforge
     return mu;
   }
 
+  void Design::check_values(const std::vector<double> &mu) const
+  {
+    for (unsigned int j = 0; j < parameters_.size(); ++j)
+      check_value(parameters_[j], mu[j]);
+  }
+
   template <typename Number>
   std::vector<Number> Design::shape_of(const std::vector<Number> &mu) const
   {

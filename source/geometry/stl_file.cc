@@ -329,6 +329,14 @@ namespace retroforge
 
   void write_stl(const std::string &file_name, const TriangleSurface &surface, const StlFormat format)
   {
+    write_stl(file_name, surface.vertices(), surface.triangles(), format);
+  }
+
+  void write_stl(const std::string           &file_name,
+                 const NodalVectors<double>  &vertices,
+                 const std::vector<Triangle> &triangles,
+                 const StlFormat              format)
+  {
     std::string bytes;
     char        line[160];
     if (format == StlFormat::ascii)
@@ -336,13 +344,12 @@ namespace retroforge
     else
     {
       bytes.assign(header_bytes, ' ');
-      pack(surface.n_facets(), bytes);
+      pack(triangles.size(), bytes);
     }
-    for (const Triangle &t : surface.triangles())
+    for (const Triangle &t : triangles)
     {
-      const std::array<Vec3, 3> x{
-        {surface.vertices()[t[0]], surface.vertices()[t[1]], surface.vertices()[t[2]]}};
-      const Vec3 v = facet_vector(x[0], x[1], x[2]), normal = v / v.norm();
+      const std::array<Vec3, 3> x{{vertices[t[0]], vertices[t[1]], vertices[t[2]]}};
+      const Vec3                v = facet_vector(x[0], x[1], x[2]), normal = v / v.norm();
       if (format == StlFormat::ascii)
       {
         const auto add = [&](const char *words, const Vec3 &y) {

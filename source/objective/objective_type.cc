@@ -10,6 +10,7 @@
 #include <retroforge/objective/filling.h>
 #include <retroforge/objective/fold.h>
 #include <retroforge/objective/objective_type.h>
+#include <retroforge/objective/radius.h>
 #include <retroforge/objective/shape_distance.h>
 #include <retroforge/objective/smooth_maximum.h>
 #include <retroforge/objective/smooth_region.h>
@@ -419,7 +420,8 @@ namespace retroforge
       }
     };
 
-    struct CylinderDistanceType : ObjectiveType
+    template <RadiusStatistic statistic>
+    struct RadiusType : ObjectiveType
     {
       std::vector<std::string> patches;
       Vec3                     axis_point, axis = Vec3({0., 0., 1.});
@@ -429,10 +431,10 @@ namespace retroforge
         prm.add_parameter(
           "patches",
           patches,
-          "Of the billet, compared with a cylinder: `side' of a cylinder, `side outer' of a ring or profile. "
-          "Units: none.");
-        prm.add_parameter("axis point", axis_point, "Of the cylinder. Units: mm.");
-        prm.add_parameter("axis", axis, "Direction of the cylinder. Units: none.");
+          "Of the billet, whose radius is measured: `side' of a cylinder, `side outer' and `side inner' of a "
+          "ring or profile. Units: none.");
+        prm.add_parameter("axis point", axis_point, "On the axis that the radius is from. Units: mm.");
+        prm.add_parameter("axis", axis, "Its direction. Units: none.");
       }
 
       static std::vector<std::string> known(const ObjectiveContext &context)
@@ -462,9 +464,9 @@ namespace retroforge
         if (patches.empty())
           throw Error(where + "/patches",
                       "names no patch",
-                      "a part of the surface must be compared",
+                      "a part of the surface must be measured",
                       "name the free side; the patches of this billet are: " + join(known(context)));
-        objective.at_end = std::make_unique<CylinderDistance>(patches, axis_point, axis);
+        objective.at_end = std::make_unique<RadiusObjective>(statistic, patches, axis_point, axis);
       }
     };
 
@@ -512,7 +514,8 @@ namespace retroforge
       {"filling", Types::make<FillingType>},
       {"unfilled volume", Types::make<UnfilledVolumeType>},
       {"shape distance", Types::make<ShapeDistanceType>},
-      {"cylinder distance", Types::make<CylinderDistanceType>},
+      {"cylinder distance", Types::make<RadiusType<RadiusStatistic::variance>>},
+      {"mean radius", Types::make<RadiusType<RadiusStatistic::mean>>},
       {"mean strain", Types::make<StrainType<StrainStatistic::mean>>},
       {"strain variance", Types::make<StrainType<StrainStatistic::variance>>},
       {"maximum strain", Types::make<MaximumStrainType>},

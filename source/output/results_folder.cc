@@ -18,6 +18,7 @@ namespace retroforge
     const std::regex
       file_names("parameters\\.prm|summary\\.json|check\\.json|(history|objectives|scan)\\.csv|scan\\.json|"
                  "fields\\.pvd|fields_[0-9]{6,}\\.vtu|failed\\.vtu|failure\\.txt|"
+                 "(journal|confirmation)\\.jsonl|optimisation\\.(csv|json)|best\\.prm|"
                  "sensitivity(_die_.*)?\\.vtu|die_.*\\.(stl|vtu)|record\\.h5|report\\.html");
 
     bool is_result(const fs::path &path)
@@ -26,6 +27,9 @@ namespace retroforge
       const std::string name = path.filename().string();
       if (!fs::is_directory(path, ignored))
         return std::regex_match(name, file_names);
+      // Of an optimisation, which goes where its journal does.
+      if (name == "designs")
+        return fs::exists(path / "start_billet.msh", ignored) || fs::is_empty(path, ignored);
       return (name == "record" && (fs::exists(path / "header.h5", ignored) ||
                                    fs::exists(path / "increment_000000.h5", ignored))) ||
              (name == "pictures" && fs::exists(path.parent_path() / "report.html", ignored));

@@ -12,8 +12,8 @@ namespace retroforge
   /// [--at NAME=VALUE]... [--resume | --overwrite]`.
   struct CommandLine
   {
-    std::string
-      command; ///< simulate, gradient, check or scan; empty only with one of the three questions below
+    std::string command; ///< simulate, gradient, check, scan or optimize; empty only with one of the three
+                         ///< questions below
     std::string case_file;
 
     /// Folder of the results. Without --output: the name of the case followed by `-results`, in the

@@ -58,7 +58,9 @@ namespace retroforge
     /// The nominal values but for those given by name, which are among parameters().
     /// @throws Error  for values that no process has, as a negative friction
     std::vector<double> at(const std::multimap<std::string, double> &values) const;
-    const std::string  &die_name(const unsigned int d) const { return dies_[d].name; }
+    /// @throws Error  as at()
+    void               check_values(const std::vector<double> &mu) const;
+    const std::string &die_name(const unsigned int d) const { return dies_[d].name; }
 
     template <typename Number>
     NodalVectors<Number> positions(const std::vector<Number> &mu) const;

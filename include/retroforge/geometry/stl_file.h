@@ -23,4 +23,8 @@ namespace retroforge
   /// Binary files hold single precision: their corners are rounded to 6e-8 of their size. ASCII files keep
   /// all digits.
   void write_stl(const std::string &file_name, const TriangleSurface &surface, StlFormat format);
+  void write_stl(const std::string           &file_name,
+                 const NodalVectors<double>  &vertices,
+                 const std::vector<Triangle> &triangles,
+                 StlFormat                    format);
 } // namespace retroforge

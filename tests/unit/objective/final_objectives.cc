@@ -18,6 +18,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/objective/filling.h>
 #include <retroforge/objective/path_objective.h>
+#include <retroforge/objective/radius.h>
 #include <retroforge/objective/shape_distance.h>
 #include <retroforge/objective/strain_statistics.h>
 #include <retroforge/objective/unfilled_volume.h>
@@ -238,8 +239,8 @@ void check_cylinder(Errors &errors)
   parameters.radius       = 5.;
   parameters.height       = 8.;
   parameters.element_size = 3.;
-  FinalProblem     problem(make_billet(parameters, MPI_COMM_WORLD), {});
-  CylinderDistance distance({"side"}, Vec3({0., 0., 3.}), Vec3({0., 0., 2.}));
+  FinalProblem    problem(make_billet(parameters, MPI_COMM_WORLD), {});
+  RadiusObjective distance(RadiusStatistic::variance, {"side"}, Vec3({0., 0., 3.}), Vec3({0., 0., 2.}));
   for (Vec3 &x : problem.at.X)
     x = Vec3({1.2 * x[0], 1.2 * x[1], x[2]});
   errors.compare("cylinder", problem.value(distance), 0.);
@@ -249,6 +250,8 @@ void check_cylinder(Errors &errors)
     x *= 1. + change;
   errors.compare("larger cylinder", problem.value(distance), 0.);
   errors.compare("larger radius", distance.radius(problem.integrals(distance, problem.at)), 6.6);
+  RadiusObjective mean(RadiusStatistic::mean, {"side"}, Vec3({0., 0., 3.}), Vec3({0., 0., 2.}));
+  errors.compare("its mean radius", problem.value(mean), 6.6);
 }
 
 double check_all_derivatives()
@@ -292,7 +295,10 @@ double check_all_derivatives()
   ShapeDistance    die_distance(TargetSurface(die, 0, low)), closed_distance{TargetSurface(bumpy)};
   UnfilledVolume   die_unfilled(TargetSurface(die, 0, low), Cavity::in_front, 30, 4.);
   UnfilledVolume   closed_unfilled(TargetSurface(bumpy), Cavity::within, 24, 4.);
-  CylinderDistance side({"side +x", "side +y"}, Vec3({-3., 0., 0.}), Vec3({0.1, 0.2, 1.}));
+  const std::vector<std::string> sides = {"side +x", "side +y"};
+  const Vec3                     foot({-3., 0., 0.}), axis({0.1, 0.2, 1.});
+  RadiusObjective                side(RadiusStatistic::variance, sides, foot, axis);
+  RadiusObjective                bore(RadiusStatistic::mean, sides, foot, axis);
   check("volume", volume, inside);
   check("mean strain", mean, inside);
   check("variance of the strain", variance, inside);
@@ -305,6 +311,7 @@ double check_all_derivatives()
   check("distance from a die", die_distance, under_die);
   check("distance from a closed shape", closed_distance, inside);
   check("distance from a cylinder", side, inside);
+  check("mean radius", bore, inside);
   unsigned int on_edges = 0;
   for (const auto &seen : closed_filling.decisions().by_workpiece)
     on_edges += seen.feature.kind > 0;
@@ -341,7 +348,7 @@ int main(int argc, char **argv)
     const auto open = scaled(sheet(2, [](double, double) { return 0.; }), 1., Vec3());
     UnfilledVolume(TargetSurface(open), Cavity::within, 50);
   });
-  refused([] { CylinderDistance({}, Vec3(), Vec3({0., 0., 1.})); });
-  refused([] { CylinderDistance({"side"}, Vec3(), Vec3()); });
+  refused([] { RadiusObjective(RadiusStatistic::mean, {}, Vec3(), Vec3({0., 0., 1.})); });
+  refused([] { RadiusObjective(RadiusStatistic::mean, {"side"}, Vec3(), Vec3()); });
   std::cout << "FIGURE final_objective_derivative_error " << worst << std::endl;
 }

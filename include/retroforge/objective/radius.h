@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/geometry/triangle_surface.h>
+#include <retroforge/objective/final_objective.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace retroforge
+{
+  enum class RadiusStatistic
+  {
+    mean,    ///< sum_k S_k r_k / sum_k S_k  [mm]: of a bore or a bulged side, as a gauge finds it
+    variance ///< min_R sum_k S_k (r_k - R)^2 / sum_k S_k  [mm^2]: the distance from a straight cylinder
+  };
+
+  /// The radius of named patches: r_k the distance of node k from an axis, S_k a third of the areas of the
+  /// patches' faces at it. Of the variance, the radius R of the cylinder that fits best is the mean: what
+  /// barrels least has the least of it.
+  class RadiusObjective : public FinalObjectiveOf<RadiusObjective>
+  {
+  public:
+    /// @param patches  of the workpiece     @param axis  direction, of any length
+    /// @throws Error  for no axis or no patches
+    RadiusObjective(RadiusStatistic          statistic,
+                    std::vector<std::string> patches,
+                    const Vec3              &point,
+                    const Vec3              &axis);
+
+    std::string name() const override
+    {
+      return statistic_ == RadiusStatistic::mean ? "mean radius" : "cylinder distance";
+    }
+    std::string unit() const override { return statistic_ == RadiusStatistic::mean ? "mm" : "mm^2"; }
+
+    /// The radius from which others are measured, to keep digits: Phi does not depend on it.
+    void decide(const FinalView<double> &view) override;
+
+    std::map<std::string, double> details(const std::vector<double> &integrals) const override
+    {
+      return {{"radius [mm]", radius(integrals)}};
+    }
+
+    /// The mean radius [mm].
+    double radius(const std::vector<double> &integrals) const
+    {
+      return reference_ + integrals[1] / integrals[0];
+    }
+
+    void reverse_integrals(const FinalView<double>   &view,
+                           const std::vector<double> &weights,
+                           FinalBar                  &bar) const override;
+
+    template <typename Number>
+    std::vector<Number> compute_integrals(const FinalView<Number> &view) const;
+
+    template <typename Number>
+    Number combine(const std::vector<Number> &b) const
+    {
+      const Number mean = b[1] / b[0];
+      return statistic_ == RadiusStatistic::mean ? Number(reference_ + mean)
+                                                 : Number(b[2] / b[0] - mean * mean);
+    }
+
+  private:
+    std::vector<Triangle> triangles(const TetMesh &mesh) const;
+    template <typename Number>
+    Vector3<Number> from_axis(const Vector3<Number> &x) const;
+
+    RadiusStatistic          statistic_;
+    std::vector<std::string> patches_;
+    Vec3                     point_, axis_;
+    double                   reference_ = 0.;
+  };
+} // namespace retroforge

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace retroforge
+{
+  /// A design that was forged: what came of it.
+  struct Evaluation
+  {
+    std::vector<double> mu;      ///< values of the design parameters
+    std::vector<double> values;  ///< of the objectives; empty where the forging failed
+    std::string         failure; ///< why, or empty
+    unsigned int        increments = 0;
+    double              seconds    = 0.;
+    /// Of each objective by the parameters; empty where nobody has asked.
+    std::vector<std::vector<double>> gradients;
+
+    bool failed() const { return values.empty(); }
+  };
+
+  /// The forgings of an optimisation, kept as they are done: one line of JSON for each, and one for its
+  /// gradients, with numbers as they are, bit for bit. An optimiser that begins again with the same case asks
+  /// for the same designs in the same order, and gets them from here, until it comes to those that are still
+  /// to be forged.
+  class Journal
+  {
+  public:
+    /// Of the case and the program that forge.
+    struct Header
+    {
+      std::string program, parameters;
+    };
+
+    /// Reads what is there; a line that was cut short by the program's end does not count.
+    /// @throws Error  for what is no journal
+    static Journal read(const std::string &file);
+
+    /// An empty one.
+    explicit Journal(Header header) : header_(std::move(header)) {}
+
+    const Header     &header() const { return header_; }
+    std::size_t       size() const { return evaluations_.size(); }
+    const Evaluation *find(const std::vector<double> &mu) const;
+    const Evaluation &operator[](const std::size_t i) const { return evaluations_[i]; }
+
+    /// From here on what is added is written to `file`, too, which is made anew with what is here.
+    /// @throws Error  if it cannot be written
+    void write_to(const std::string &file);
+
+    /// @return its number   @throws Error  if it cannot be written
+    std::size_t add(Evaluation evaluation);
+    void        add_gradients(std::size_t i, std::vector<std::vector<double>> gradients);
+
+  private:
+    void append(const std::string &line) const;
+
+    Header                  header_;
+    std::vector<Evaluation> evaluations_;
+    std::string             file_; ///< empty: not written
+  };
+} // namespace retroforge

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace retroforge
+{
+  /// A function of a few scaled variables between bounds, known by its values and its gradients.
+  struct BoundedProblem
+  {
+    using Vector = std::vector<double>;
+
+    Vector start, lower, upper; ///< bounds may be infinite
+
+    /// +infinity where there is none: never NaN, and nothing is thrown.
+    std::function<double(const Vector &x)> value;
+    /// At a point whose value was finite.
+    std::function<Vector(const Vector &x)> gradient;
+    /// Hessian times v, at the point whose gradient was asked for last; null where it is not known.
+    std::function<Vector(const Vector &v)> hessian;
+    /// A point that was tried becomes the next one, or is refused: called after its value.
+    std::function<void(const Vector &x, bool accepted)> decided;
+  };
+
+  /// How far a minimisation has come.
+  struct MinimiserState
+  {
+    unsigned int iteration = 0; ///< points tried
+    double       value     = 0.;
+    double       gradient  = 0.; ///< length of  P(x - g) - x,  with P onto the bounds
+    double       radius    = 0.; ///< of the trust region
+  };
+
+  struct MinimiserSettings
+  {
+    double first_radius   = 1.;
+    double largest_radius = 4.;
+    double noise          = 0.; ///< of the values: what is added to both reductions before they are compared
+    /// Asked before each iteration; the minimisation ends where it says false.
+    std::function<bool(const MinimiserState &)> go_on;
+  };
+
+  /// Trust region by Lin and Moré, with limited-memory BFGS for a Hessian that is not known, from ROL of
+  /// Trilinos: each iteration takes one value, and each that is accepted one gradient. A trust region refuses
+  /// a point of infinite value, and goes on with a quarter of the step.
+  /// @return the last point that was accepted
+  BoundedProblem::Vector minimise(const BoundedProblem &problem, const MinimiserSettings &settings);
+} // namespace retroforge

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/optimisation/journal.h>
+#include <retroforge/output/safe_file.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+
+namespace retroforge
+{
+  namespace
+  {
+    using Json = nlohmann::json;
+
+    /// Hexadecimal: all bits, whatever the library.
+    Json exact(const std::vector<double> &values)
+    {
+      Json json = Json::array();
+      for (const double x : values)
+      {
+        char text[40];
+        std::snprintf(text, sizeof text, "%a", x);
+        json.push_back(text);
+      }
+      return json;
+    }
+
+    std::vector<double> numbers(const Json &json)
+    {
+      std::vector<double> values;
+      for (const Json &entry : json)
+      {
+        const std::string text = entry.get<std::string>();
+        char             *end  = nullptr;
+        values.push_back(std::strtod(text.c_str(), &end));
+        if (text.empty() || *end != '\0' || !std::isfinite(values.back()))
+          throw std::runtime_error("'" + text + "' is no number");
+      }
+      return values;
+    }
+
+    std::string line_of(const Journal::Header &header)
+    {
+      return Json{{"retroforge", header.program}, {"parameters", header.parameters}}.dump();
+    }
+
+    std::string line_of(const Evaluation &evaluation)
+    {
+      Json json = {
+        {"mu", exact(evaluation.mu)}, {"increments", evaluation.increments}, {"seconds", evaluation.seconds}};
+      if (evaluation.failed())
+        json["failure"] = legible(evaluation.failure);
+      else
+        json["values"] = exact(evaluation.values);
+      return json.dump();
+    }
+
+    std::string line_of(const std::size_t i, const std::vector<std::vector<double>> &gradients)
+    {
+      Json all = Json::array();
+      for (const auto &gradient : gradients)
+        all.push_back(exact(gradient));
+      return Json{{"of", i}, {"gradients", all}}.dump();
+    }
+
+    Evaluation evaluation_of(const Json &json)
+    {
+      Evaluation evaluation;
+      evaluation.mu         = numbers(json.at("mu"));
+      evaluation.increments = json.at("increments");
+      evaluation.seconds    = json.at("seconds");
+      if (json.contains("failure"))
+        evaluation.failure = json.at("failure");
+      else
+        evaluation.values = numbers(json.at("values"));
+      return evaluation;
+    }
+
+    void read_gradients(const Json &json, std::vector<Evaluation> &evaluations)
+    {
+      std::vector<std::vector<double>> gradients;
+      for (const Json &gradient : json.at("gradients"))
+        gradients.push_back(numbers(gradient));
+      evaluations.at(json.at("of").get<std::size_t>()).gradients = gradients;
+    }
+  } // namespace
+
+  Journal Journal::read(const std::string &file)
+  {
+    const std::string  contents = read_file(file);
+    std::istringstream text(contents.substr(0, contents.rfind('\n') + 1));
+    Journal            journal{Header()};
+    std::string        line;
+    unsigned int       n = 0;
+    try
+    {
+      while (std::getline(text, line))
+      {
+        const Json json = Json::parse(line);
+        if (++n == 1)
+          journal.header_ = {json.at("retroforge"), json.at("parameters")};
+        else if (json.contains("gradients"))
+          read_gradients(json, journal.evaluations_);
+        else
+          journal.evaluations_.push_back(evaluation_of(json));
+      }
+    }
+    catch (const std::exception &problem)
+    {
+      throw Error(file + ", line " + std::to_string(std::max(n, 1u)),
+                  std::string("is not of a journal: ") + problem.what(),
+                  "it holds one line of JSON for each forging, as optimize wrote them",
+                  "restore the file, or begin anew with --overwrite");
+    }
+    if (n == 0)
+      throw Error(
+        file, "is empty", "the first line of a journal tells its case", "begin anew with --overwrite");
+    return journal;
+  }
+
+  const Evaluation *Journal::find(const std::vector<double> &mu) const
+  {
+    for (const Evaluation &evaluation : evaluations_)
+      if (evaluation.mu == mu)
+        return &evaluation;
+    return nullptr;
+  }
+
+  void Journal::write_to(const std::string &file)
+  {
+    std::string text = line_of(header_) + "\n";
+    for (std::size_t i = 0; i < evaluations_.size(); ++i)
+    {
+      text += line_of(evaluations_[i]) + "\n";
+      if (!evaluations_[i].gradients.empty())
+        text += line_of(i, evaluations_[i].gradients) + "\n";
+    }
+    write_file(file, text);
+    file_ = file;
+  }
+
+  std::size_t Journal::add(Evaluation evaluation)
+  {
+    append(line_of(evaluation));
+    evaluations_.push_back(std::move(evaluation));
+    return evaluations_.size() - 1;
+  }
+
+  void Journal::add_gradients(const std::size_t i, std::vector<std::vector<double>> gradients)
+  {
+    append(line_of(i, gradients));
+    evaluations_[i].gradients = std::move(gradients);
+  }
+
+  void Journal::append(const std::string &line) const
+  {
+    if (file_.empty())
+      return;
+    std::FILE *stream = std::fopen(file_.c_str(), "ab");
+    if (stream == nullptr)
+      throw_write_error(file_, errno);
+    const std::string text  = line + "\n";
+    int               error = std::fwrite(text.data(), 1, text.size(), stream) == text.size() ? 0 : errno;
+    if (std::fclose(stream) != 0 && error == 0)
+      error = errno;
+    if (error != 0)
+      throw_write_error(file_, error);
+  }
+} // namespace retroforge

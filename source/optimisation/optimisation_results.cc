@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/version.h>
+#include <retroforge/optimisation/optimisation_results.h>
+#include <retroforge/output/safe_file.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <iomanip>
+#include <ostream>
+#include <sstream>
+
+namespace retroforge
+{
+  namespace
+  {
+    using Json = nlohmann::ordered_json;
+    using At   = DesignSpace::At;
+    using Stop = OptimisationResults::Stop;
+
+    Json number(const double x)
+    {
+      return std::isfinite(x) ? Json(x) : Json();
+    }
+
+    std::string quoted(const std::string &text)
+    {
+      std::string result = "\"";
+      for (const char c : text)
+        result += c == '"' ? std::string("\"\"") : std::string(1, c);
+      return result + '"';
+    }
+
+    const char *in_words(const At at)
+    {
+      switch (at)
+      {
+        case At::fixed:
+          return "not varied";
+        case At::lower:
+          return "at its lower bound";
+        case At::upper:
+          return "at its upper bound";
+        default:
+          return "";
+      }
+    }
+
+    Json as_json(const OptimisationResults &results)
+    {
+      const Confidence &confidence = *results.confidence;
+      Json              data = Json::array(), names = Json::array(), deviations = Json::array();
+      for (const Datum &datum : results.criteria.data)
+        data.push_back({{"objective", results.objectives[datum.objective]},
+                        {"unit", results.units[datum.objective]},
+                        {"measured", number(datum.value)},
+                        {"deviation", number(datum.deviation)},
+                        {"best", number(results.best.values[datum.objective])}});
+      for (const unsigned int j : confidence.parameters)
+        names.push_back(results.space.parameters()[j].name);
+      for (const double deviation : confidence.deviations)
+        deviations.push_back(number(deviation));
+      return {{"data", data},
+              {"misfit", number(confidence.misfit)},
+              {"freedom", confidence.freedom},
+              {"parameters", names},
+              {"deviations", deviations},
+              {"correlations", confidence.correlations},
+              {"unseen", confidence.unseen}};
+    }
+
+    void print_confidence(const OptimisationResults &results, std::ostream &out)
+    {
+      const Confidence &confidence = *results.confidence;
+      out << "\n  " << std::left << std::setw(28) << "data" << std::right << std::setw(14) << "measured"
+          << std::setw(14) << "deviation" << std::setw(14) << "best" << '\n';
+      for (const Datum &datum : results.criteria.data)
+        out << "  " << std::left << std::setw(28) << results.objectives[datum.objective] << std::right
+            << std::setw(14) << datum.value << std::setw(14) << datum.deviation << std::setw(14)
+            << results.best.values[datum.objective] << ' ' << results.units[datum.objective] << '\n';
+      out << "  sum of squares in deviations: " << std::setprecision(4) << confidence.misfit << ", about "
+          << confidence.freedom << " where model and deviations are right\n";
+      if (!confidence.unseen.empty())
+      {
+        out << "  the data do not see this change of the parameters:";
+        for (std::size_t a = 0; a < confidence.unseen.size(); ++a)
+          out << (a == 0 ? " " : ", ") << results.space.parameters()[confidence.parameters[a]].name << ' '
+              << std::showpos << confidence.unseen[a] * results.space.scales()[confidence.parameters[a]]
+              << std::noshowpos;
+        out << '\n';
+        return;
+      }
+      for (std::size_t a = 0; a < confidence.deviations.size(); ++a)
+      {
+        const unsigned int j = confidence.parameters[a];
+        out << "  " << results.space.parameters()[j].name << " = " << std::setprecision(6)
+            << results.best.mu[j] << " +- " << std::setprecision(3)
+            << Confidence::half_width_95 * confidence.deviations[a] << ' '
+            << results.space.parameters()[j].unit << " (95 %)\n";
+      }
+      for (std::size_t a = 0; a < confidence.deviations.size(); ++a)
+        for (std::size_t b = 0; b < a; ++b)
+          out << "  correlation of " << results.space.parameters()[confidence.parameters[b]].name << " and "
+              << results.space.parameters()[confidence.parameters[a]].name << ": " << std::setprecision(3)
+              << confidence.correlations[a][b] << '\n';
+    }
+
+    Json values_by_name(const std::vector<std::string> &names, const std::vector<double> &values)
+    {
+      Json json = Json::object();
+      for (std::size_t i = 0; i < values.size(); ++i)
+        json[names[i]] = number(values[i]);
+      return json;
+    }
+  } // namespace
+
+  std::string in_words(const Stop stop)
+  {
+    switch (stop)
+    {
+      case Stop::gradient:
+        return "the gradient has vanished, but for what bounds and limits hold";
+      case Stop::noise:
+        return "no step promises more than the noise";
+      case Stop::step:
+        return "steps have become too short to matter";
+      case Stop::iterations:
+        return "as many steps were tried as Optimisation/iterations allows";
+      case Stop::simulations:
+        return "as many designs were forged as Optimisation/simulations allows";
+      default:
+        return "it is not finished";
+    }
+  }
+
+  std::string in_words(const TrialRow::Decision decision, const bool failed)
+  {
+    switch (decision)
+    {
+      case TrialRow::Decision::start:
+        return "start";
+      case TrialRow::Decision::noise:
+        return failed ? "failed" : "noise";
+      case TrialRow::Decision::accepted:
+        return "accepted";
+      default:
+        return failed ? "failed" : "refused";
+    }
+  }
+
+  double OptimisationResults::by_relaxing(const std::size_t limit) const
+  {
+    const double multiplier = limit < multipliers.size() ? multipliers[limit] : 0.;
+    return multiplier == 0. ? 0. : -multiplier / criteria.limits[limit].size;
+  }
+
+  void OptimisationResults::write_csv(const std::string &file) const
+  {
+    std::ostringstream out;
+    out << std::setprecision(17) << "trial,decision,merit,radius";
+    for (std::size_t o = 0; o < objectives.size(); ++o)
+      out << ',' << quoted(objectives[o] + " [" + units[o] + "]");
+    for (const DesignParameter &parameter : space.parameters())
+      out << ',' << quoted(parameter.name + " [" + parameter.unit + "]");
+    out << ",increments,seconds,failure\n";
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+      const TrialRow   &row        = rows[i];
+      const Evaluation &evaluation = row.evaluation;
+      out << i << ',' << in_words(row.decision, evaluation.failed()) << ',';
+      if (std::isfinite(row.merit))
+        out << row.merit;
+      out << ',' << row.radius;
+      for (std::size_t o = 0; o < objectives.size(); ++o)
+      {
+        out << ',';
+        if (!evaluation.failed())
+          out << evaluation.values[o];
+      }
+      for (const double x : evaluation.mu)
+        out << ',' << x;
+      out << ',' << evaluation.increments << ',' << evaluation.seconds << ','
+          << (evaluation.failed() ? quoted(evaluation.failure) : "") << '\n';
+    }
+    write_file(file, out.str());
+  }
+
+  void OptimisationResults::write_json(const std::string &file) const
+  {
+    Json                      parameters = Json::array(), limits = Json::array(), trials = Json::array();
+    const std::vector<double> gradient =
+      best.gradients.empty() ? std::vector<double>(space.size(), NAN) : [&] {
+        const std::vector<double> slopes = criteria.slopes(best.values);
+        std::vector<double>       sum(space.size(), 0.);
+        for (std::size_t o = 0; o < best.gradients.size(); ++o)
+          for (std::size_t j = 0; j < sum.size(); ++j)
+            sum[j] += slopes[o] * best.gradients[o][j];
+        return sum;
+      }();
+    for (std::size_t j = 0; j < space.size(); ++j)
+      parameters.push_back({{"name", space.parameters()[j].name},
+                            {"unit", space.parameters()[j].unit},
+                            {"start", number(start.mu[j])},
+                            {"best", number(best.mu[j])},
+                            {"lower", number(space.lower()[j])},
+                            {"upper", number(space.upper()[j])},
+                            {"scale", number(space.scales()[j])},
+                            {"at", in_words(space.at(best.mu, j))},
+                            {"gradient", number(gradient[j])}});
+    for (std::size_t i = 0; i < criteria.limits.size(); ++i)
+    {
+      const Limit &limit = criteria.limits[i];
+      limits.push_back({{"objective", objectives[limit.objective]},
+                        {"kind", limit.at_least ? "at least" : "at most"},
+                        {"bound", number(limit.bound)},
+                        {"start", number(start.values[limit.objective])},
+                        {"best", number(best.values[limit.objective])},
+                        {"by_relaxing", number(by_relaxing(i))}});
+    }
+    for (const TrialRow &row : rows)
+      trials.push_back({{"decision", in_words(row.decision, row.evaluation.failed())},
+                        {"merit", number(row.merit)},
+                        {"radius", number(row.radius)},
+                        {"values", values_by_name(objectives, row.evaluation.values)},
+                        {"failure", row.evaluation.failure},
+                        {"increments", row.evaluation.increments},
+                        {"seconds", row.evaluation.seconds}});
+    Json json = {{"schema", 1},
+                 {"command", "optimize"},
+                 {"version", version},
+                 {"commit", commit},
+                 {"objective",
+                  {{"name", criteria.objective.name},
+                   {"unit", criteria.objective.unit},
+                   {"start", number(value(start))},
+                   {"best", number(value(best))},
+                   {"noise", number(noise)}}},
+                 {"limits", limits},
+                 {"parameters", parameters},
+                 {"stop", in_words(stop)},
+                 {"finished", stop != Stop::running},
+                 {"simulations", n_simulations},
+                 {"sweeps", n_sweeps},
+                 {"failed", n_failed},
+                 {"trials", trials}};
+    if (confidence)
+      json["identification"] = as_json(*this);
+    if (confirmation)
+      json["confirmation"] = {
+        {"nodes", confirmation->n_nodes},
+        {"increments", confirmation->n_increments},
+        {"start", confirmation->start.failed() ? Json() : number(value(confirmation->start))},
+        {"best", confirmation->best.failed() ? Json() : number(value(confirmation->best))},
+        {"failure", confirmation->start.failure + confirmation->best.failure}};
+    write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  }
+
+  void OptimisationResults::print(std::ostream &out) const
+  {
+    const std::string unit = criteria.objective.unit.empty() ? "" : " " + criteria.objective.unit;
+    out << std::setprecision(7) << "\n  " << criteria.objective.name << ": " << value(start) << unit << " -> "
+        << value(best) << unit;
+    if (value(start) != 0.)
+      out << std::setprecision(4) << " (" << std::showpos << 100. * (value(best) / value(start) - 1.)
+          << std::noshowpos << " %)";
+    out << "\n  stopped: " << in_words(stop) << "\n  " << n_simulations << " designs forged, " << n_failed
+        << " of which failed; " << n_sweeps << " swept back\n";
+    if (noise > 0.)
+      out << std::setprecision(3) << "  noise of the objective: " << noise << unit << '\n';
+    out << "\n  " << std::left << std::setw(28) << "parameter" << std::right << std::setw(14) << "start"
+        << std::setw(14) << "best" << '\n';
+    for (std::size_t j = 0; j < space.size(); ++j)
+      out << "  " << std::left << std::setw(28) << space.parameters()[j].name << std::right
+          << std::setprecision(7) << std::setw(14) << start.mu[j] << std::setw(14) << best.mu[j] << ' '
+          << std::left << std::setw(8) << space.parameters()[j].unit << std::right
+          << in_words(space.at(best.mu, j)) << '\n';
+    if (!criteria.limits.empty())
+      out << "\n  " << std::left << std::setw(28) << "limit" << std::right << std::setw(14) << "bound"
+          << std::setw(14) << "start" << std::setw(14) << "best"
+          << "  objective by relaxing it by 1\n";
+    for (std::size_t i = 0; i < criteria.limits.size(); ++i)
+    {
+      const Limit &limit = criteria.limits[i];
+      out << "  " << std::left << std::setw(28)
+          << objectives[limit.objective] + (limit.at_least ? " at least" : " at most") << std::right
+          << std::setw(14) << limit.bound << std::setw(14) << start.values[limit.objective] << std::setw(14)
+          << best.values[limit.objective] << "  " << by_relaxing(i) << '\n';
+    }
+    if (confidence)
+      print_confidence(*this, out);
+    if (confirmation)
+    {
+      out << "\n  on a mesh of " << confirmation->n_nodes << " nodes, in " << confirmation->n_increments
+          << " increments: ";
+      if (confirmation->start.failed() || confirmation->best.failed())
+        out << "failed: " << confirmation->start.failure + confirmation->best.failure << '\n';
+      else
+        out << value(confirmation->start) << unit << " -> " << value(confirmation->best) << unit << '\n';
+    }
+  }
+} // namespace retroforge

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
+#include <retroforge/optimisation/scatter.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace retroforge
+{
+  Scatter::Scatter(const std::vector<DesignParameter> &parameters,
+                   const OptimisationParameters       &optimisation,
+                   std::vector<bool>                   from_below)
+      : name_(optimisation.scattered)
+      , from_below_(std::move(from_below))
+      , deviations_(optimisation.deviations)
+  {
+    if (name_.empty())
+      return;
+    std::vector<std::string> known;
+    for (const DesignParameter &parameter : parameters)
+      known.push_back(parameter.name);
+    parameter_ = std::find(known.begin(), known.end(), name_) - known.begin();
+    if (parameter_ == known.size())
+      throw Error("Optimisation/scattered",
+                  "'" + name_ + "' is not among the parameters of the design",
+                  "those are, by Design/parameters: " + join(known),
+                  "add it there");
+    const dealii::QGauss<1> quadrature(optimisation.samples);
+    const double            from = optimisation.scatter_range[0], to = optimisation.scatter_range[1];
+    for (unsigned int q = 0; q < quadrature.size(); ++q)
+    {
+      values_.push_back(from + (to - from) * quadrature.point(q)(0));
+      weights_.push_back(quadrature.weight(q));
+    }
+  }
+
+  std::vector<double> Scatter::sample(std::vector<double> mu, const std::size_t i) const
+  {
+    if (!empty())
+      mu[parameter_] = values_[i];
+    return mu;
+  }
+
+  Evaluation Scatter::combined(const std::vector<double> &mu, const std::vector<Evaluation> &samples) const
+  {
+    if (empty())
+      return samples.front();
+    Evaluation all;
+    all.mu = mu;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+    {
+      all.seconds += samples[i].seconds;
+      all.increments = samples[i].increments;
+      if (samples[i].failed())
+      {
+        all.failure = "with " + name_ + " = " + as_text(values_[i]) + ": " + samples[i].failure;
+        return all;
+      }
+    }
+    combine_values(samples, all);
+    combine_gradients(samples, all);
+    return all;
+  }
+
+  namespace
+  {
+    /// Mean and standard deviation of one objective.
+    std::pair<double, double>
+    moments(const std::vector<Evaluation> &samples, const std::vector<double> &weights, const std::size_t o)
+    {
+      double mean = 0., variance = 0.;
+      for (std::size_t i = 0; i < samples.size(); ++i)
+        mean += weights[i] * samples[i].values[o];
+      for (std::size_t i = 0; i < samples.size(); ++i)
+        variance += weights[i] * std::pow(samples[i].values[o] - mean, 2);
+      return {mean, std::sqrt(variance)};
+    }
+  } // namespace
+
+  void Scatter::combine_values(const std::vector<Evaluation> &samples, Evaluation &all) const
+  {
+    for (std::size_t o = 0; o < samples.front().values.size(); ++o)
+    {
+      const auto [mean, sigma] = moments(samples, weights_, o);
+      all.values.push_back(mean + (from_below_[o] ? -deviations_ : deviations_) * sigma);
+    }
+  }
+
+  void Scatter::combine_gradients(const std::vector<Evaluation> &samples, Evaluation &all) const
+  {
+    if (std::any_of(samples.begin(), samples.end(), [](const Evaluation &e) { return e.gradients.empty(); }))
+      return;
+    for (std::size_t o = 0; o < all.values.size(); ++o)
+    {
+      const auto [mean, sigma] = moments(samples, weights_, o);
+      const double        sign = from_below_[o] ? -deviations_ : deviations_;
+      std::vector<double> gradient(all.mu.size(), 0.);
+      for (std::size_t i = 0; i < samples.size(); ++i)
+      {
+        // d(sigma)/d(value_i) = w_i (value_i - mean) / sigma
+        const double weight =
+          weights_[i] * (1. + (sigma > 0. ? sign * (samples[i].values[o] - mean) / sigma : 0.));
+        for (std::size_t j = 0; j < gradient.size(); ++j)
+          gradient[j] += weight * samples[i].gradients[o][j];
+      }
+      all.gradients.push_back(std::move(gradient));
+    }
+  }
+} // namespace retroforge

@@ -1,0 +1,571 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/core/stop_notice.h>
+#include <retroforge/core/version.h>
+#include <retroforge/geometry/stl_file.h>
+#include <retroforge/optimize.h>
+#include <retroforge/output/mesh_files.h>
+#include <retroforge/output/results_folder.h>
+#include <retroforge/output/safe_file.h>
+#include <retroforge/resume.h>
+#include <retroforge/run_messages.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <random>
+#include <set>
+
+namespace retroforge
+{
+  namespace
+  {
+    using Decision = TrialRow::Decision;
+    using Stop     = OptimisationResults::Stop;
+
+    const std::string program = std::string(version) + " " + commit;
+
+    std::vector<std::string> names_of(const Objectives &objectives)
+    {
+      std::vector<std::string> names;
+      for (const NamedObjective &objective : objectives)
+        names.push_back(objective.name);
+      return names;
+    }
+
+    std::vector<std::string> units_of(const Objectives &objectives)
+    {
+      std::vector<std::string> units;
+      for (const NamedObjective &objective : objectives)
+        units.push_back(objective.unit());
+      return units;
+    }
+
+    std::string exact(const double x)
+    {
+      char text[32];
+      std::snprintf(text, sizeof text, "%.17g", x);
+      return text;
+    }
+
+    std::string values_by_name(const std::vector<DesignParameter> &parameters, const std::vector<double> &mu)
+    {
+      std::string text;
+      for (std::size_t j = 0; j < mu.size(); ++j)
+        text += (j == 0 ? "" : ", ") + parameters[j].name + ": " + exact(mu[j]);
+      return text;
+    }
+
+    std::vector<std::string> varied(const Parameters &parameters)
+    {
+      std::vector<std::string> names;
+      for (const std::string &name : parameters.design.names)
+        if (name != parameters.optimisation.scattered)
+          names.push_back(name);
+      return names;
+    }
+
+    /// Objectives that may not be smaller than a limit.
+    std::vector<bool> from_below(const Case &at, const Criteria &criteria)
+    {
+      std::vector<bool> below(at.objectives.size(), false);
+      for (const Limit &limit : criteria.limits)
+        if (limit.at_least)
+          below[limit.objective] = true;
+      return below;
+    }
+
+    double length(const std::vector<double> &x)
+    {
+      double sum = 0.;
+      for (const double entry : x)
+        sum += entry * entry;
+      return std::sqrt(sum);
+    }
+  } // namespace
+
+  Optimize::Optimize(const CommandLine &command, MPI_Comm comm)
+      : resume_(command.resume)
+      , case_(
+          [&] {
+            // A journal, not a record, is what it goes on with.
+            CommandLine anew = command;
+            anew.resume      = false;
+            return anew;
+          }(),
+          timings_,
+          comm)
+      , root_(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
+      , space_(case_.design.parameters(), varied(case_.parameters), case_.mu, case_.parameters.optimisation)
+      , criteria_(case_.objectives, case_.parameters.optimisation)
+      , scatter_(case_.design.parameters(), case_.parameters.optimisation, from_below(case_, criteria_))
+      , journal_(make_journal("journal.jsonl", case_.echo))
+      , trials_(case_, journal_, scatter_)
+      , results_{space_, criteria_, names_of(case_.objectives), units_of(case_.objectives)}
+  {
+    // A start of which nothing can come is refused before anything is written.
+    Trial(case_, case_.process, case_.X_0, Trial::Keep::nothing).check();
+  }
+
+  Journal Optimize::make_journal(const std::string &file, const std::string &parameters) const
+  {
+    if (!resume_ || !std::filesystem::exists(path_of(file)))
+    {
+      if (resume_ && file == "journal.jsonl")
+        throw Error(case_.command.output_directory,
+                    "holds no journal of an optimisation",
+                    "--resume goes on with one",
+                    "leave --resume out to begin, or name the folder with --output DIR");
+      return Journal({program, parameters});
+    }
+    Journal journal = Journal::read(path_of(file));
+    if (journal.header().program != program)
+      throw Error(path_of(file),
+                  "was written by Retroforge " + journal.header().program + ", and this is " + program,
+                  "another version may give other values for the same design",
+                  "go on with that version, or begin anew with --overwrite");
+    if (!make_same_results(journal.header().parameters, parameters))
+      throw Error(
+        path_of(file),
+        "belongs to a case with other parameters",
+        "an optimisation goes on with the case it began with; only the sections Optimisation, Check, "
+        "Output and Scan may differ",
+        "restore the parameters (" + path_of("parameters.prm") +
+          " has them), or begin anew with --overwrite");
+    return journal;
+  }
+
+  void Optimize::prepare_folder()
+  {
+    MPI_Barrier(case_.comm); // all have read the journal before anything changes
+    if (!root_)
+      return;
+    const std::string &folder = case_.command.output_directory;
+    if (!resume_)
+      make_results_folder(folder, case_.command.overwrite);
+    make_directory(folder + "/designs");
+    for (const char *file : {"parameters.prm", "optimisation.csv", "optimisation.json", "best.prm"})
+      check_writable(path_of(file));
+    write_file(path_of("parameters.prm"), case_.echo);
+    journal_.write_to(path_of("journal.jsonl"));
+  }
+
+  int Optimize::run()
+  {
+    prepare_folder();
+    if (root_)
+    {
+      print_begin(case_);
+      print_search();
+      say_when_stopped("stopped; the same command with --resume goes on with the designs that are forged");
+    }
+    begin();
+    measure_noise();
+    search();
+    report_best();
+    confirm();
+    if (root_)
+    {
+      write_results();
+      results_.print(std::cout);
+      std::cout << "  results in " << case_.command.output_directory << std::endl;
+    }
+    return 0;
+  }
+
+  void Optimize::print_search() const
+  {
+    std::printf("optimisation of %s by %zu parameter(s), %zu limit(s)\n",
+                criteria_.objective.name.c_str(),
+                varied(case_.parameters).size(),
+                criteria_.limits.size());
+    if (!scatter_.empty())
+      std::printf("  each design is forged %zu times, with %s from %.6g to %.6g\n",
+                  scatter_.n_samples(),
+                  case_.parameters.optimisation.scattered.c_str(),
+                  case_.parameters.optimisation.scatter_range[0],
+                  case_.parameters.optimisation.scatter_range[1]);
+    if (journal_.size() > 0)
+      std::printf("  %zu designs are forged already, and taken from the journal\n", journal_.size());
+    for (const std::string &name : results_.objectives)
+      if (const auto o = static_cast<std::size_t>(&name - results_.objectives.data());
+          criteria_.objective.weights[o] == 0. && !criteria_.uses(o))
+        std::printf("  note: %s is only watched\n", name.c_str());
+    std::fflush(stdout);
+  }
+
+  void Optimize::begin()
+  {
+    const Evaluation start = trials_.evaluate(case_.mu);
+    if (start.failed())
+      throw Error("optimize",
+                  "cannot forge the design it begins with, in increment " +
+                    std::to_string(start.increments + 1) + ": " + start.failure,
+                  "the first design must succeed",
+                  "begin elsewhere with --at, or cure what the message says");
+    now_ = trials_.differentiate(case_.mu);
+    criteria_.set_sizes(now_.values);
+    results_.start = results_.best = now_;
+    merit_                         = {&criteria_, criteria_.value(now_.values), 1., {}, 0.};
+    // A unit of merit is what the first step promises where nothing bends: so the first guess of the Hessian,
+    // which is one, is of the right size.
+    const OptimisationParameters &parameters = case_.parameters.optimisation;
+    const double slope = length(space_.pull_back(merit_.gradient(now_.values, now_.gradients)));
+    merit_.size        = slope > 0. ? slope / parameters.first_step : 1.;
+    merit_.multipliers.assign(criteria_.limits.size(), 0.);
+    double steepest = 0.;
+    for (const Limit &limit : criteria_.limits)
+      steepest = std::max(
+        steepest, std::abs(limit.slope()) * length(space_.pull_back(now_.gradients[limit.objective])));
+    constexpr double curvature = 10.; // of the penalty, in that of the first guess of the Hessian
+    merit_.penalty             = steepest > 0. ? curvature / (steepest * steepest) : 1.;
+    merit_.multipliers         = fitted_multipliers();
+    radius_                    = parameters.first_step;
+    add_row({Decision::start, now_, merit_.value(now_.values), radius_});
+    write_shapes(now_, "start");
+  }
+
+  void Optimize::measure_noise()
+  {
+    const unsigned int n = case_.parameters.optimisation.noise_runs;
+    if (n == 0)
+      return;
+    constexpr double part = 1e-3; // of the scales: what bends over it is no noise
+    std::mt19937     generator(1);
+    double           sum      = 0.;
+    unsigned int     n_values = 0;
+    for (unsigned int i = 0; i < n; ++i)
+    {
+      std::vector<double> x(space_.size());
+      for (double &entry : x)
+        entry = part * (2. * (generator() / 4294967295.) - 1.);
+      const std::vector<double> mu         = space_.values(x);
+      const Evaluation          evaluation = trials_.evaluate(mu);
+      add_row({Decision::noise,
+               evaluation,
+               evaluation.failed() ? INFINITY : merit_.value(evaluation.values),
+               part});
+      if (evaluation.failed())
+        continue;
+      double                    predicted = criteria_.value(now_.values);
+      const std::vector<double> slopes    = criteria_.slopes(now_.values);
+      for (std::size_t o = 0; o < now_.gradients.size(); ++o)
+        for (std::size_t j = 0; j < mu.size(); ++j)
+          predicted += slopes[o] * now_.gradients[o][j] * (mu[j] - now_.mu[j]);
+      sum += std::pow(criteria_.value(evaluation.values) - predicted, 2);
+      ++n_values;
+    }
+    results_.noise = n_values > 0 ? std::sqrt(sum / n_values) : 0.;
+    if (root_)
+      std::printf("  noise: %.3g%s%s, %.2g of the value\n",
+                  results_.noise,
+                  criteria_.objective.unit.empty() ? "" : " ",
+                  criteria_.objective.unit.c_str(),
+                  results_.noise / std::abs(criteria_.value(now_.values)));
+  }
+
+  void Optimize::search()
+  {
+    if (criteria_.limits.empty())
+    {
+      minimise_merit();
+      results_.best = best_so_far();
+      return;
+    }
+    constexpr unsigned int most_rounds = 20;
+    double                 excess      = criteria_.largest_excess(now_.values);
+    for (unsigned int round = 0; round < most_rounds; ++round)
+    {
+      results_.stop = Stop::running;
+      minimise_merit();
+      if (results_.stop == Stop::iterations || results_.stop == Stop::simulations)
+        break;
+      const std::vector<double> multipliers = fitted_multipliers();
+      const bool                settled     = limits_are_settled(multipliers);
+      merit_.multipliers                    = multipliers;
+      if (settled)
+      {
+        results_.best = now_;
+        return;
+      }
+      const double excess_now = criteria_.largest_excess(now_.values);
+      if (excess_now > 0.25 * excess && excess_now > case_.parameters.optimisation.limit_tolerance)
+        merit_.penalty *= 4.;
+      excess = excess_now;
+      if (root_)
+      {
+        std::printf("  limits exceeded by %.2g at most; multipliers renewed:", excess);
+        for (const double multiplier : merit_.multipliers)
+          std::printf(" %.4g", multiplier * merit_.size);
+        std::printf("\n");
+      }
+    }
+    results_.best = best_so_far();
+  }
+
+  void Optimize::minimise_merit()
+  {
+    BoundedProblem problem;
+    problem.start    = space_.scaled(now_.mu);
+    problem.lower    = space_.scaled_lower();
+    problem.upper    = space_.scaled_upper();
+    problem.value    = [&](const std::vector<double> &x) { return value_at(x); };
+    problem.gradient = [&](const std::vector<double> &x) {
+      now_ = trials_.differentiate(space_.values(x));
+      return space_.pull_back(merit_.gradient(now_.values, now_.gradients));
+    };
+    if (!criteria_.data.empty())
+      problem.hessian = [&](const std::vector<double> &v) { return misfit_hessian(v); };
+    problem.decided = [&](const std::vector<double> &x, const bool accepted) { decided(x, accepted); };
+    const OptimisationParameters &parameters = case_.parameters.optimisation;
+    // A round before may have ended with steps as short as its noise.
+    const double radius = std::clamp(radius_, 0.25 * parameters.first_step, parameters.largest_step);
+    minimise(
+      problem,
+      {radius, parameters.largest_step, results_.noise / merit_.size, [&](const MinimiserState &state) {
+         return go_on(state);
+       }});
+  }
+
+  std::vector<double> Optimize::misfit_hessian(const std::vector<double> &v) const
+  {
+    std::vector<double> product(v.size(), 0.);
+    for (const Datum &datum : criteria_.data)
+    {
+      const std::vector<double> row = space_.pull_back(now_.gradients[datum.objective]);
+      double                    sum = 0.;
+      for (std::size_t j = 0; j < v.size(); ++j)
+        sum += row[j] * v[j];
+      sum /= datum.deviation * datum.deviation * merit_.size;
+      for (std::size_t j = 0; j < v.size(); ++j)
+        product[j] += sum * row[j];
+    }
+    return product;
+  }
+
+  bool Optimize::go_on(const MinimiserState &state)
+  {
+    const OptimisationParameters &parameters = case_.parameters.optimisation;
+    radius_                                  = state.radius;
+    constexpr double shortest                = 1e-5;
+    const double     noise                   = results_.noise / merit_.size;
+    if (state.gradient <= parameters.gradient_tolerance * parameters.first_step)
+      results_.stop = Stop::gradient;
+    else if (state.gradient * state.radius <= noise)
+      results_.stop = Stop::noise;
+    else if (state.radius < shortest * parameters.first_step)
+      results_.stop = Stop::step;
+    else if (iterations_ >= parameters.iterations)
+      results_.stop = Stop::iterations;
+    else if (trials_.n_asked() >= parameters.simulations)
+      results_.stop = Stop::simulations;
+    if (results_.stop == Stop::running)
+      ++iterations_;
+    return results_.stop == Stop::running;
+  }
+
+  double Optimize::value_at(const std::vector<double> &x)
+  {
+    const Evaluation evaluation = trials_.evaluate(space_.values(x));
+    return evaluation.failed() ? INFINITY : merit_.value(evaluation.values);
+  }
+
+  void Optimize::decided(const std::vector<double> &x, const bool accepted)
+  {
+    const Evaluation evaluation = trials_.evaluate(space_.values(x));
+    if (accepted)
+      write_shapes(evaluation, "trial_" + std::to_string(results_.rows.size()));
+    add_row({accepted ? Decision::accepted : Decision::refused,
+             evaluation,
+             evaluation.failed() ? INFINITY : merit_.value(evaluation.values),
+             radius_});
+  }
+
+  std::vector<double> Optimize::fitted_multipliers() const
+  {
+    std::vector<unsigned int> free, pressing;
+    for (unsigned int j = 0; j < space_.size(); ++j)
+      if (space_.at(now_.mu, j) == DesignSpace::At::inside)
+        free.push_back(j);
+    for (unsigned int i = 0; i < criteria_.limits.size(); ++i)
+      if (merit_.multipliers[i] + merit_.penalty * criteria_.limits[i].excess(now_.values) > 0.)
+        pressing.push_back(i);
+    const auto over_free = [&](const std::vector<double> &by_mu, const double factor) {
+      const std::vector<double> by_x = space_.pull_back(by_mu);
+      std::vector<double>       part;
+      for (const unsigned int j : free)
+        part.push_back(factor * by_x[j]);
+      return part;
+    };
+    Merit plain = merit_;
+    plain.multipliers.clear();
+    const std::vector<double>        g = over_free(plain.gradient(now_.values, now_.gradients), 1.);
+    std::vector<std::vector<double>> columns;
+    for (const unsigned int i : pressing)
+      columns.push_back(
+        over_free(now_.gradients[criteria_.limits[i].objective], criteria_.limits[i].slope()));
+    const std::vector<double> fitted = least_squares_multipliers(g, columns);
+    std::vector<double>       multipliers(criteria_.limits.size(), 0.);
+    for (std::size_t k = 0; k < pressing.size(); ++k)
+      multipliers[pressing[k]] = fitted[k];
+    return multipliers;
+  }
+
+  bool Optimize::limits_are_settled(const std::vector<double> &multipliers) const
+  {
+    const OptimisationParameters &parameters = case_.parameters.optimisation;
+    Merit                         lagrangian = merit_;
+    lagrangian.multipliers.clear();
+    std::vector<double> gradient = lagrangian.gradient(now_.values, now_.gradients);
+    for (std::size_t i = 0; i < multipliers.size(); ++i)
+    {
+      const Limit &limit  = criteria_.limits[i];
+      const double excess = limit.excess(now_.values);
+      if (excess > parameters.limit_tolerance ||
+          (multipliers[i] > 0. && excess < -parameters.limit_tolerance))
+        return false;
+      for (std::size_t j = 0; j < gradient.size(); ++j)
+        gradient[j] += multipliers[i] * limit.slope() * now_.gradients[limit.objective][j];
+    }
+    constexpr double looser = 10.; // than what each round is asked for
+    return results_.stop == Stop::noise || results_.stop == Stop::step ||
+           space_.projected_length(now_.mu, gradient) <=
+             looser * parameters.gradient_tolerance * parameters.first_step;
+  }
+
+  Evaluation Optimize::best_so_far() const
+  {
+    const double tolerance = case_.parameters.optimisation.limit_tolerance;
+    const auto   is_better = [&](const Evaluation &a, const Evaluation &b) {
+      const double excess_a = std::max(tolerance, criteria_.largest_excess(a.values)),
+                   excess_b = std::max(tolerance, criteria_.largest_excess(b.values));
+      return excess_a < excess_b || (excess_a == excess_b && results_.value(a) < results_.value(b));
+    };
+    Evaluation best = results_.start;
+    for (const TrialRow &row : results_.rows)
+      if (row.decision == Decision::accepted && is_better(row.evaluation, best))
+        best = row.evaluation;
+    return best;
+  }
+
+  void Optimize::report_best()
+  {
+    results_.best = trials_.differentiate(results_.best.mu);
+    // Multipliers are those of the design accepted last, which the rounds ended with.
+    results_.multipliers = merit_.multipliers;
+    for (double &multiplier : results_.multipliers)
+      multiplier *= merit_.size;
+    if (!criteria_.data.empty())
+      results_.confidence = confidence_of(criteria_, space_, results_.best);
+    write_shapes(results_.best, "best");
+    results_.n_simulations = trials_.n_asked();
+    results_.n_sweeps      = 0;
+    for (std::size_t i = 0; i < journal_.size(); ++i)
+      results_.n_sweeps += journal_[i].gradients.empty() ? 0 : 1;
+  }
+
+  void Optimize::confirm()
+  {
+    const double part = case_.parameters.optimisation.confirmation;
+    if (part == 0.)
+      return;
+    if (case_.parameters.billet.shape == "file")
+    {
+      if (root_)
+        std::printf("  not confirmed: a billet from a file has no finer mesh\n");
+      return;
+    }
+    CommandLine finer = case_.command;
+    const auto  set   = [&](const std::string &path, const double value) {
+      finer.overrides.emplace_back(path, exact(value));
+    };
+    set("Billet/element size", part * case_.parameters.billet.element_size);
+    if (case_.parameters.remeshing.element_size > 0.)
+      set("Remeshing/element size", part * case_.parameters.remeshing.element_size);
+    set("Press/increments", std::ceil(case_.parameters.press.increments / part - 1e-9));
+    if (root_)
+      std::printf("  confirming with elements and increments %.3g times as large ...\n", part);
+    std::fflush(stdout);
+    Timings    timings;
+    const Case fine(finer, timings, case_.comm);
+    Journal    journal = make_journal("confirmation.jsonl", fine.echo);
+    MPI_Barrier(case_.comm);
+    if (root_)
+      journal.write_to(path_of("confirmation.jsonl"));
+    Trials trials(fine, journal, scatter_);
+    results_.confirmation = Confirmation{trials.evaluate(results_.start.mu),
+                                         trials.evaluate(results_.best.mu),
+                                         fine.billet.n_nodes(),
+                                         fine.parameters.press.increments};
+  }
+
+  void Optimize::add_row(TrialRow row)
+  {
+    results_.n_failed += row.evaluation.failed() ? 1 : 0;
+    results_.rows.push_back(std::move(row));
+    if (results_.stop == Stop::running)
+      results_.best = best_so_far();
+    results_.n_simulations = trials_.n_asked();
+    if (!root_)
+      return;
+    print_row(results_.rows.back());
+    write_results();
+  }
+
+  void Optimize::print_row(const TrialRow &row) const
+  {
+    const Evaluation &evaluation = row.evaluation;
+    std::printf("%5zu  %-9s", results_.rows.size() - 1, in_words(row.decision, evaluation.failed()).c_str());
+    if (evaluation.failed())
+      std::printf("in increment %u: %s", evaluation.increments + 1, evaluation.failure.c_str());
+    else
+    {
+      std::printf("%.7g %s", results_.value(evaluation), criteria_.objective.unit.c_str());
+      for (const Limit &limit : criteria_.limits)
+        std::printf(", %s %.6g (%s %.6g)",
+                    results_.objectives[limit.objective].c_str(),
+                    evaluation.values[limit.objective],
+                    limit.at_least ? "at least" : "at most",
+                    limit.bound);
+    }
+    if (row.decision == Decision::accepted || row.decision == Decision::refused)
+      std::printf("  step %.3g", row.radius);
+    const unsigned int most = case_.parameters.optimisation.simulations;
+    std::printf("  %.1f s, at most %.0f s left\n",
+                evaluation.seconds,
+                trials_.seconds_each() * (most > trials_.n_asked() ? most - trials_.n_asked() : 0));
+    std::fflush(stdout);
+  }
+
+  void Optimize::write_shapes(const Evaluation &evaluation, const std::string &name)
+  {
+    const std::string base  = path_of("designs/" + name);
+    const bool        there = dealii::Utilities::MPI::broadcast(
+      case_.comm, root_ && name != "best" && std::filesystem::exists(base + "_forged.stl"), 0);
+    if (there)
+      return;
+    const Trial &trial = trials_.forged(evaluation.mu);
+    if (!root_)
+      return;
+    write_msh(base + "_billet.msh", case_.billet, trial.X_0());
+    write_boundary_stl(base + "_billet.stl", case_.billet, trial.X_0());
+    write_boundary_stl(base + "_forged.stl", trial.end().leg->scene.mesh, trial.end().X);
+    for (const Die &die : trial.dies())
+      if (die.surface())
+        write_stl(base + "_die_" + die.name + ".stl", *die.surface(), StlFormat::binary);
+  }
+
+  void Optimize::write_results() const
+  {
+    results_.write_csv(path_of("optimisation.csv"));
+    results_.write_json(path_of("optimisation.json"));
+    CommandLine best = case_.command;
+    best.at.clear();
+    best.overrides.emplace_back("Design/at", values_by_name(space_.parameters(), results_.best.mu));
+    std::string parameters;
+    Parameters::read(best.case_file, best.overrides, parameters);
+    write_file(path_of("best.prm"), parameters);
+  }
+} // namespace retroforge

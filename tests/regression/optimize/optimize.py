@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""An optimisation: the contour of a billet that ends with a straight side, free and with limits and bounds; its results are
+those of runs a user would make by hand; killed and resumed it is the same; failing designs are refused and told.
+Usage: optimize.py RETROFORGE"""
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from whole_runs import ENVIRONMENT, ROOT, changed, command, judge, main, prm, run, start, summary_of, text_of, write  # noqa: E402
+
+SCENE = {
+    "Billet": {"shape": "profile", "control points": "10, 0; 10, 5; 10, 10; 10, 15", "element size": 5,
+               "symmetry planes": "-1, 0, 0; 0, -1, 0; 0, 0, -1", "volume held by": "control point 4 r"},
+    "Dies": {"names": "upper"},
+    "Die upper": {"point": "0, 0, 15", "facing": "0, 0, -1", "velocity": "0, 0, -100", "friction": 0.3},
+    "Press": {"stroke": 5, "increments": 10},
+    "Objectives": {"names": "barrel, energy"},
+    "Objective barrel": {"type": "cylinder distance", "patches": "side outer"},
+    "Design": {"parameters": "billet/control point 1 r, billet/control point 2 r"},
+    "Optimisation": {"objective": "barrel", "noise runs": 2, "confirmation": 0},
+    "Output": {"fields every": 0}}
+
+
+def optimize(output, *more, **where):
+    done = run("optimize", output, *more, **where)
+    if done.returncode:
+        sys.exit(done.stdout + done.stderr)
+    return found_in(output), done.stdout
+
+
+def found_in(output):
+    return json.loads(text_of(output, "optimisation.json"))
+
+
+def rows_of(output):
+    """Without what differs from run to run: the seconds."""
+    return [{name: text for name, text in row.items() if name != "seconds"}
+            for row in csv.DictReader(text_of(output, "optimisation.csv").splitlines())]
+
+
+def best_of(found):
+    return [parameter["best"] for parameter in found["parameters"]]
+
+
+def whole():
+    found, printed = optimize("whole")
+    objective, rows = found["objective"], rows_of("whole")
+    judge("the side is straight", objective["best"] < 0.1 * objective["start"], objective)
+    judge("the gradient has vanished", "gradient" in found["stop"] and found["finished"])
+    decisions = [row["decision"] for row in rows]
+    judge("rows", decisions[:3] == ["start", "noise", "noise"] and set(decisions[3:]) <= {"accepted", "refused"}, decisions)
+    judge("few designs", found["simulations"] == len(rows) < 15, len(rows))
+    judge("noise is small", 0 <= objective["noise"] < 1e-4 * objective["start"], objective["noise"])
+    judge("it says so", "gradient has vanished" in printed and "results in whole" in printed)
+
+
+def by_hand():
+    """The best design forged as any other, from its parameters and from its mesh."""
+    found = found_in("whole")
+    done = run("gradient", "hand", case="whole/best.prm")
+    judge("its parameters", done.returncode == 0 and summary_of("hand")["objectives"][0]["value"] == found["objective"]["best"], done.stderr)
+    for parameter, of_run in zip(found["parameters"], summary_of("hand")["parameters"]):
+        judge(f"gradient by {parameter['name']}", parameter["gradient"] == of_run["gradient"]["barrel"], of_run["gradient"])
+    billet = changed(SCENE, {"Billet": {"shape": "file", "file name": "whole/designs/best_billet.msh"},
+                             "Press": {"max cuts": 8}, "Design": {"parameters": "material/K"}})
+    for setting in ("control points", "volume held by", "element size", "symmetry planes"):
+        del billet["Billet"][setting]
+    billet["Billet"]["symmetry patches"] = ", ".join(SYMMETRY)
+    write("mesh.prm", prm(billet))
+    done = run("simulate", "mesh", case="mesh.prm")
+    value = summary_of("mesh")["objectives"][0]["value"] if done.returncode == 0 else float("nan")
+    judge("its mesh", abs(value / found["objective"]["best"] - 1) < 1e-6, f"{value} {done.stderr}")
+
+
+SYMMETRY = ("symmetry 1", "symmetry 2", "symmetry 3")
+
+
+def killed():
+    """At any moment: once it has so many lines in its journal, and a little later."""
+    reference, expected = rows_of("whole"), found_in("whole")
+    n_lines = len(text_of("whole", "journal.jsonl").splitlines())
+    for lines, sign in ((1, signal.SIGKILL), (4, signal.SIGTERM), (n_lines // 2, signal.SIGKILL), (n_lines - 2, signal.SIGINT)):
+        with subprocess.Popen(command("optimize", "killed", "--overwrite"), env=ENVIRONMENT, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL) as running:
+            while running.poll() is None and lines_of("killed") < lines:
+                time.sleep(0.002)
+            time.sleep(0.03)
+            running.send_signal(sign)
+        found, printed = optimize("killed", "--resume")
+        judge(f"killed after {lines} lines: the same rows", rows_of("killed") == reference)
+        judge("and the same optimum", best_of(found) == best_of(expected) and found["limits"] == expected["limits"])
+    judge("it says what it takes from the journal", "taken from the journal" in printed)
+
+
+def lines_of(output):
+    try:
+        return len(text_of(output, "journal.jsonl").splitlines())
+    except OSError:
+        return 0
+
+
+def limited():
+    """With less energy than the best design needs; what relaxing the limit gives is foretold."""
+    settings = ("Optimisation/gradient tolerance=1e-5", "Optimisation/limit tolerance=1e-6", "Optimisation/noise runs=0")
+    found, _ = optimize("limited", "Optimisation/at most=energy: 2077", *settings)
+    limit = found["limits"][0]
+    judge("the limit is met", abs(limit["best"] / 2077 - 1) < 1e-6 and limit["start"] < 2077, limit)
+    relaxed, _ = optimize("relaxed", "Optimisation/at most=energy: 2077.1", *settings)
+    change = (relaxed["objective"]["best"] - found["objective"]["best"]) / 0.1
+    judge("its multiplier", abs(change / limit["by_relaxing"] - 1) < 0.05, f"{change} {limit['by_relaxing']}")
+    tight = changed(SCENE, {"Optimisation": {"objective": "energy", "at most": "barrel: 0.05", "noise runs": 0}})
+    write("tight.prm", prm(tight))
+    found, _ = optimize("tight", case="tight.prm")
+    judge("from a start beyond the limit", found["limits"][0]["start"] > 0.05 and found["limits"][0]["best"] < 0.05 * 1.0001, found["limits"])
+
+
+def bounded():
+    found, _ = optimize("bounded", "Optimisation/lower bounds=billet/control point 1 r: 9.7")
+    first = found["parameters"][0]
+    judge("at its bound", first["best"] == 9.7 and first["at"] == "at its lower bound" and first["gradient"] > 0, first)
+    judge("which costs", found["objective"]["best"] > found_in("whole")["objective"]["best"])
+
+
+def failing():
+    """A first step so long that the contour crosses the axis, where no mesh is."""
+    found, printed = optimize("failing", "Optimisation/first step=400", "Optimisation/largest step=400")
+    rows = [row for row in rows_of("failing") if row["decision"] == "failed"]
+    judge("failures are refused", rows and found["failed"] == len(rows) and found["objective"]["best"] < 0.1 * found["objective"]["start"])
+    judge("and say why", all(row["failure"] for row in rows) and rows[0]["failure"] in printed, rows[:1])
+    done = run("optimize", "first", "Press/max cuts=0", "Press/largest move=0.001")
+    judge("the first must succeed", done.returncode == 1 and "in increment 1" in done.stderr, done.stderr)
+
+
+def from_elsewhere():
+    found, _ = optimize("elsewhere", ("billet/control point 1 r", 9.0), ("material/K", 2))
+    at_nominal = best_of(found_in("whole"))
+    judge("from another start the same optimum", all(abs(a - b) < 0.02 for a, b in zip(best_of(found), at_nominal)), best_of(found))
+    judge("what is not varied stays", found["parameters"][-1]["best"] == 2 and found["parameters"][-1]["at"] == "not varied")
+
+
+def identified():
+    """Friction and consistency from the energy and two radii of a forging whose parameters are known."""
+    scene = changed(SCENE, {"Objectives": {"names": "energy, top, side"}, "Objective top": {"type": "mean radius", "patches": "top"},
+                            "Objective side": {"type": "mean radius", "patches": "side outer"},
+                            "Design": {"parameters": "dies/friction, material/K"}})
+    scene["Optimisation"] = {"noise runs": 0, "confirmation": 0, "gradient tolerance": 1e-7}
+    del scene["Objective barrel"]
+    write("known.prm", prm(scene))
+    done = run("simulate", "known", ("dies/friction", 0.21), ("material/K", 1.5), case="known.prm")
+    judge("known", done.returncode == 0, done.stderr)
+    values = {objective["name"]: objective["value"] for objective in summary_of("known")["objectives"]}
+    spread = {"energy": 1e-3 * values["energy"], "top": 0.01, "side": 0.01}
+    listed = {kind: ", ".join(f"{name}: {number!r}" for name, number in numbers.items())
+              for kind, numbers in (("data", values), ("uncertainties", spread))}
+    found, printed = optimize("found", *(f"Optimisation/{kind}={text}" for kind, text in listed.items()), case="known.prm")
+    friction, consistency = best_of(found)
+    judge("friction", abs(friction / 0.21 - 1) < 1e-4, friction)
+    judge("consistency", abs(consistency / 1.5 - 1) < 1e-4, consistency)
+    judge("few forgings", found["simulations"] <= 10, found["simulations"])
+    identification = found["identification"]
+    judge("all agree", identification["misfit"] < 1e-4 and identification["freedom"] == 1, identification)
+    # By hand: the covariance is the inverse of J^T J of the run's own gradients.
+    done = run("gradient", "at", case="found/best.prm")
+    jacobian = np.array([[of["gradient"][name] / spread[name] for of in summary_of("at")["parameters"]] for name in values])
+    covariance = np.linalg.inv(jacobian.T @ jacobian)
+    deviations = np.sqrt(np.diag(covariance))
+    error = np.abs(np.array(identification["deviations"]) / deviations - 1).max()
+    judge("deviations", error < 1e-8, error)
+    correlation = covariance[0, 1] / deviations.prod()
+    judge("correlation", abs(identification["correlations"][0][1] - correlation) < 1e-8, correlation)
+    judge("intervals are told", "(95 %)" in printed)
+    one = {kind: text.split(", ")[0] for kind, text in listed.items()}
+    found, printed = optimize("blind", *(f"Optimisation/{kind}={text}" for kind, text in one.items()), case="known.prm")
+    judge("one number for two parameters", len(found["identification"]["unseen"]) == 2 and "do not see" in printed)
+
+
+def scattered():
+    """Mean and deviation of the energy over three frictions, and what is robust against them."""
+    settings = ("Design/parameters=billet/control point 1 r, dies/friction", "Optimisation/scattered=dies/friction",
+                "Optimisation/scatter range=0.2, 0.6", "Optimisation/deviations=2")
+    found, printed = optimize("scattered", *settings)
+    judge("it says so", "each design is forged 3 times" in printed)
+    points = 0.4 + 0.2 * np.sqrt(0.6) * np.array([-1, 0, 1])
+    values = []
+    for i, friction in enumerate(points):
+        run("simulate", f"sample{i}", ("dies/friction", float(friction)))
+        values.append(summary_of(f"sample{i}")["objectives"][0]["value"])
+    weights, values = np.array([5, 8, 5]) / 18, np.array(values)
+    mean = weights @ values
+    expected = mean + 2 * np.sqrt(weights @ (values - mean)**2)
+    judge("the start", abs(found["objective"]["start"] / expected - 1) < 1e-9, f"{found['objective']['start']} {expected}")
+    judge("the best", found["objective"]["best"] < 0.5 * found["objective"]["start"], found["objective"])
+    judge("the scattered parameter stays", found["parameters"][1]["at"] == "not varied")
+
+
+def on_two_ranks():
+    done = start(["mpirun", "-np", "2", *command("optimize", "ranks")])
+    judge("two ranks", done.returncode == 0, done.stderr)
+    difference = max(abs(a - b) for a, b in zip(best_of(found_in("ranks")), best_of(found_in("whole"))))
+    judge("the same path", len(rows_of("ranks")) == len(rows_of("whole")) and difference < 1e-8 * 10, difference)
+
+
+def refused():
+    before = text_of("whole", "journal.jsonl")
+    for what, settings, expected in (
+            ("unknown objective", ["Optimisation/objective=barel"], "did you mean 'barrel'"),
+            ("nothing to make small", ["Optimisation/objective=", "Optimisation/at most=barrel: 1, energy: 1"], "nothing to be made small"),
+            ("unknown limit", ["Optimisation/at least=fold: 1"], "not an objective"),
+            ("unknown bound", ["Optimisation/upper bounds=billet/control point 9 r: 1"], "did you mean"),
+            ("data without deviations", ["Optimisation/objective=", "Optimisation/data=barrel: 0"], "has none for 'barrel'"),
+            ("a scattered parameter that is not there", ["Optimisation/scattered=die upper/friction", "Optimisation/scatter range=0, 1"],
+             "add it there"),
+            ("start outside", ["Optimisation/upper bounds=billet/control point 1 r: 9"], "begins at 10 mm"),
+            ("a die in the billet", ["Die upper/point=0, 0, 13"], "inside it")):
+        done = run("optimize", "wrong", *settings)
+        judge(what, done.returncode == 1 and expected in done.stderr and not os.path.exists("wrong"), done.stderr.strip())
+    for what, output, settings, expected in (
+            ("results are there", "whole", [], "holds results already"),
+            ("nothing to resume", "nowhere", ["--resume"], "no journal"),
+            ("another case", "whole", ["--resume", "Die upper/friction=0.2"], "other parameters")):
+        done = run("optimize", output, *settings)
+        judge(what, done.returncode == 1 and expected in done.stderr, done.stderr.strip())
+    judge("nothing was touched", text_of("whole", "journal.jsonl") == before)
+    found, printed = optimize("whole", "--resume", "Optimisation/gradient tolerance=1e-4")
+    judge("resumed with another tolerance", "taken from the journal" in printed and found["simulations"] >= len(before.splitlines()) // 3)
+
+
+main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, bounded, failing, from_elsewhere, identified, scattered, on_two_ranks, refused))

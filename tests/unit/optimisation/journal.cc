@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// A journal gives back what was written, bit for bit, with failures and gradients; a line that the program's
+// end cut short does not count, and is overwritten; what is no journal is refused.
+
+#include <retroforge/core/error.h>
+#include <retroforge/optimisation/journal.h>
+#include <retroforge/output/safe_file.h>
+
+#include <cstdio>
+#include <iostream>
+
+using namespace retroforge;
+
+namespace
+{
+  const char *answer(const bool yes)
+  {
+    return yes ? "yes" : "NO";
+  }
+
+  void refuse(const std::string &what, const std::string &text)
+  {
+    write_file("wrong.jsonl", text);
+    try
+    {
+      Journal::read("wrong.jsonl");
+      std::cout << what << ": NOT REFUSED\n";
+    }
+    catch (const Error &error)
+    {
+      const std::string message = error.what();
+      std::cout << what << ": refused, "
+                << (message.find("line") != std::string::npos ? "with its line" : "as a whole") << "\n";
+    }
+    std::remove("wrong.jsonl");
+  }
+} // namespace
+
+int main()
+{
+  const double third = 1. / 3.;
+  Journal      journal({"1.0 abc", "subsection A\nend\n"});
+  journal.write_to("journal.jsonl");
+  journal.add({{third, -0.}, {1e-300, third * 7.}, "", 12, 0.5, {}});
+  journal.add({{2., 3.}, {}, "Increment 3: is \"too\" \\ long", 3, 0.1, {}});
+  journal.add_gradients(0, {{third, 1.}, {-third, 5e-324}});
+
+  const Journal again = Journal::read("journal.jsonl");
+  std::cout << "header: "
+            << answer(again.header().program == "1.0 abc" &&
+                      again.header().parameters == "subsection A\nend\n")
+            << "\n";
+  const Evaluation *first = again.find({third, 0.}), *second = again.find({2., 3.});
+  std::cout << "values: "
+            << answer(first != nullptr && first->values == std::vector<double>({1e-300, third * 7.}) &&
+                      first->increments == 12)
+            << "\ngradients: " << answer(first != nullptr && first->gradients == journal[0].gradients)
+            << "\nfailure: "
+            << answer(second != nullptr && second->failed() &&
+                      second->failure == "Increment 3: is \"too\" \\ long")
+            << "\nother designs: " << answer(again.find({third}) == nullptr) << "\n";
+
+  const std::string whole = read_file("journal.jsonl");
+  write_file("journal.jsonl", whole.substr(0, whole.size() - 10));
+  Journal cut = Journal::read("journal.jsonl");
+  std::cout << "cut short: " << answer(cut.size() == 2 && cut[0].gradients.empty()) << "\n";
+  cut.write_to("journal.jsonl");
+  cut.add_gradients(0, journal[0].gradients);
+  std::cout << "and completed: "
+            << answer(Journal::read("journal.jsonl")[0].gradients == journal[0].gradients) << "\n";
+  std::remove("journal.jsonl");
+
+  refuse("empty", "");
+  refuse("other text", "subsection A\n");
+  refuse("a number that is none", R"({"retroforge":"1","parameters":""}
+{"mu":["0x1p+0"],"increments":1,"seconds":1,"values":["nan"]}
+)");
+  refuse("gradients of what is not there", R"({"retroforge":"1","parameters":""}
+{"of":0,"gradients":[]}
+)");
+}

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// The minimiser on functions whose minima are known: Rosenbrock's valley, free and with a bound that holds
+// its minimum back; one that has no value in a part of the plane, which must be walked around; one that is
+// rough, where steps within the noise are taken and the search ends when asked; and one whose start is its
+// minimum.
+
+#include <retroforge/optimisation/minimise.h>
+
+#include <cmath>
+#include <iostream>
+#include <limits>
+
+using namespace retroforge;
+
+namespace
+{
+  using Vector = BoundedProblem::Vector;
+
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  const char *answer(const bool yes)
+  {
+    return yes ? "yes" : "NO";
+  }
+
+  double rosenbrock(const Vector &x)
+  {
+    return 10. * std::pow(x[1] - x[0] * x[0], 2) + std::pow(1. - x[0], 2);
+  }
+
+  Vector rosenbrock_gradient(const Vector &x)
+  {
+    const double bend = x[1] - x[0] * x[0];
+    return {-40. * x[0] * bend - 2. * (1. - x[0]), 20. * bend};
+  }
+
+  /// Counts what is asked, and whether it is asked as promised.
+  struct Counted
+  {
+    BoundedProblem problem;
+    unsigned int   values = 0, gradients = 0, refused = 0;
+    bool           decided_in_turn = true;
+    double         last            = infinity;
+
+    Counted(const Vector &start, const Vector &lower, const Vector &upper)
+    {
+      problem.start = start;
+      problem.lower = lower;
+      problem.upper = upper;
+      problem.value = [this](const Vector &x) {
+        ++values;
+        return last = value(x);
+      };
+      problem.gradient = [this](const Vector &x) {
+        ++gradients;
+        return rosenbrock_gradient(x);
+      };
+      problem.decided = [this](const Vector &x, const bool accepted) {
+        refused += accepted ? 0 : 1;
+        decided_in_turn &= value(x) == last && !(accepted && std::isinf(last));
+      };
+    }
+    Counted(const Counted &) = delete;
+
+    std::function<double(const Vector &)> value = rosenbrock;
+  };
+
+  MinimiserSettings until(const double gradient, const unsigned int iterations)
+  {
+    MinimiserSettings settings;
+    settings.first_radius = 0.5;
+    settings.go_on        = [=](const MinimiserState &state) {
+      return state.gradient > gradient && state.iteration < iterations;
+    };
+    return settings;
+  }
+
+  void report(const std::string &what, const Vector &x, const Vector &expected, const Counted &counted)
+  {
+    const double error = std::max(std::abs(x[0] - expected[0]), std::abs(x[1] - expected[1]));
+    std::cout << what << ": found to 1e-5: " << answer(error < 1e-5)
+              << "; in less than 60 values: " << answer(counted.values < 60)
+              << "; one gradient for each accepted: "
+              << answer(counted.gradients == counted.values - counted.refused)
+              << "; decided in turn: " << answer(counted.decided_in_turn) << "\n";
+  }
+} // namespace
+
+int main()
+{
+  {
+    Counted      counted({-1., 1.}, {-infinity, -infinity}, {infinity, infinity});
+    const Vector x = minimise(counted.problem, until(1e-7, 200));
+    report("free", x, {1., 1.}, counted);
+  }
+  {
+    Counted      counted({-1., 1.}, {-2., -infinity}, {0.5, infinity});
+    const Vector x = minimise(counted.problem, until(1e-7, 200));
+    report("bounded", x, {0.5, 0.25}, counted);
+  }
+  {
+    // A hole in its way down the valley.
+    Counted counted({-1., 1.}, {-infinity, -infinity}, {infinity, infinity});
+    counted.value = [](const Vector &x) {
+      return std::pow(x[0] + 0.2, 2) + std::pow(x[1] - 0.3, 2) < 0.04 ? infinity : rosenbrock(x);
+    };
+    const Vector x = minimise(counted.problem, until(1e-7, 200));
+    report("with a hole", x, {1., 1.}, counted);
+    std::cout << "points in the hole were refused: " << answer(counted.refused > 0) << "\n";
+  }
+  {
+    constexpr double noise = 1e-3;
+    Counted          counted({-1., 1.}, {-infinity, -infinity}, {infinity, infinity});
+    counted.value = [](const Vector &x) {
+      return rosenbrock(x) + noise * std::sin(1e5 * x[0]) * std::cos(1e5 * x[1]);
+    };
+    MinimiserSettings settings = until(1e-3, 200);
+    settings.noise             = 2. * noise;
+    const Vector x             = minimise(counted.problem, settings);
+    std::cout << "rough: within the noise of the minimum: " << answer(rosenbrock(x) < noise)
+              << "; in less than 60 values: " << answer(counted.values < 60) << "\n";
+  }
+  {
+    Counted counted({1., 1.}, {-infinity, -infinity}, {infinity, infinity});
+    minimise(counted.problem, until(1e-7, 200));
+    std::cout << "begins at its minimum: one value: " << answer(counted.values == 1) << "\n";
+  }
+}
