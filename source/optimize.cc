@@ -316,33 +316,44 @@ namespace retroforge
       now_ = trials_.differentiate(space_.values(x));
       return space_.pull_back(merit_.gradient(now_.values, now_.gradients));
     };
-    if (!criteria_.data.empty())
-      problem.hessian = [&](const std::vector<double> &v) { return misfit_hessian(v); };
-    problem.decided = [&](const std::vector<double> &x, const bool accepted) { decided(x, accepted); };
+    problem.known_hessian = [&](const std::vector<double> &v) { return known_hessian(v); };
+    problem.known_is_all  = !criteria_.data.empty();
+    problem.decided       = [&](const std::vector<double> &x, const bool accepted) { decided(x, accepted); };
     const OptimisationParameters &parameters = case_.parameters.optimisation;
     // A round before may have ended with steps as short as its noise.
     const double radius = std::clamp(radius_, 0.25 * parameters.first_step, parameters.largest_step);
-    minimise(
+    minimiser_.minimise(
       problem,
       {radius, parameters.largest_step, results_.noise / merit_.size, [&](const MinimiserState &state) {
          return go_on(state);
        }});
   }
 
-  std::vector<double> Optimize::misfit_hessian(const std::vector<double> &v) const
+  std::vector<double> Optimize::known_hessian(const std::vector<double> &v) const
   {
     std::vector<double> product(v.size(), 0.);
-    for (const Datum &datum : criteria_.data)
-    {
-      const std::vector<double> row = space_.pull_back(now_.gradients[datum.objective]);
+    const auto          add = [&](const unsigned int objective, const double factor) {
+      const std::vector<double> row = space_.pull_back(now_.gradients[objective]);
       double                    sum = 0.;
       for (std::size_t j = 0; j < v.size(); ++j)
         sum += row[j] * v[j];
-      sum /= datum.deviation * datum.deviation * merit_.size;
       for (std::size_t j = 0; j < v.size(); ++j)
-        product[j] += sum * row[j];
-    }
+        product[j] += factor * sum * row[j];
+    };
+    for (const Datum &datum : criteria_.data)
+      add(datum.objective, 1. / (datum.deviation * datum.deviation * merit_.size));
+    for (const unsigned int i : pressing())
+      add(criteria_.limits[i].objective, merit_.penalty * std::pow(criteria_.limits[i].slope(), 2));
     return product;
+  }
+
+  std::vector<unsigned int> Optimize::pressing() const
+  {
+    std::vector<unsigned int> limits;
+    for (unsigned int i = 0; i < criteria_.limits.size(); ++i)
+      if (merit_.multipliers[i] + merit_.penalty * criteria_.limits[i].excess(now_.values) > 0.)
+        limits.push_back(i);
+    return limits;
   }
 
   bool Optimize::go_on(const MinimiserState &state)
@@ -385,13 +396,10 @@ namespace retroforge
 
   std::vector<double> Optimize::fitted_multipliers() const
   {
-    std::vector<unsigned int> free, pressing;
+    std::vector<unsigned int> free;
     for (unsigned int j = 0; j < space_.size(); ++j)
       if (space_.at(now_.mu, j) == DesignSpace::At::inside)
         free.push_back(j);
-    for (unsigned int i = 0; i < criteria_.limits.size(); ++i)
-      if (merit_.multipliers[i] + merit_.penalty * criteria_.limits[i].excess(now_.values) > 0.)
-        pressing.push_back(i);
     const auto over_free = [&](const std::vector<double> &by_mu, const double factor) {
       const std::vector<double> by_x = space_.pull_back(by_mu);
       std::vector<double>       part;
@@ -403,13 +411,14 @@ namespace retroforge
     plain.multipliers.clear();
     const std::vector<double>        g = over_free(plain.gradient(now_.values, now_.gradients), 1.);
     std::vector<std::vector<double>> columns;
-    for (const unsigned int i : pressing)
+    const std::vector<unsigned int>  pressed = pressing();
+    for (const unsigned int i : pressed)
       columns.push_back(
         over_free(now_.gradients[criteria_.limits[i].objective], criteria_.limits[i].slope()));
     const std::vector<double> fitted = least_squares_multipliers(g, columns);
     std::vector<double>       multipliers(criteria_.limits.size(), 0.);
-    for (std::size_t k = 0; k < pressing.size(); ++k)
-      multipliers[pressing[k]] = fitted[k];
+    for (std::size_t k = 0; k < pressed.size(); ++k)
+      multipliers[pressed[k]] = fitted[k];
     return multipliers;
   }
 

@@ -35,8 +35,11 @@ namespace retroforge
     /// One minimisation with the multipliers there are; from the best design, to the last accepted one.
     void minimise_merit();
     bool go_on(const MinimiserState &state);
-    /// J^T J v / size: that of the misfit of data where they agree with the forging.
-    std::vector<double> misfit_hessian(const std::vector<double> &v) const;
+    /// J^T J v: of the misfit of data, its Hessian where they agree with the forging; of the penalty of
+    /// limits, what does not come from their curvature.
+    std::vector<double> known_hessian(const std::vector<double> &v) const;
+    /// Limits whose penalty is felt at the present design.
+    std::vector<unsigned int> pressing() const;
     /// Multipliers that fit the gradients at the present design.
     std::vector<double> fitted_multipliers() const;
     bool                limits_are_settled(const std::vector<double> &multipliers) const;
@@ -68,6 +71,7 @@ namespace retroforge
     Trials      trials_;
 
     Merit               merit_;
+    Minimiser           minimiser_;
     Evaluation          now_; ///< the design accepted last, with gradients
     double              radius_     = 0.;
     unsigned int        iterations_ = 0;

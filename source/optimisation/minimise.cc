@@ -10,6 +10,7 @@
 #include <ROL_StdVector.hpp>
 #include <ROL_Stream.hpp>
 #include <ROL_TypeB_LinMoreAlgorithm.hpp>
+#include <ROL_lBFGS.hpp>
 
 #include <limits>
 
@@ -24,10 +25,31 @@ namespace retroforge
       return *dynamic_cast<const ROL::StdVector<double> &>(x).getVector();
     }
 
+    Vector &numbers(ROL::Vector<double> &x)
+    {
+      return *dynamic_cast<ROL::StdVector<double> &>(x).getVector();
+    }
+
+    ROL::Ptr<ROL::StdVector<double>> rol_vector(const Vector &x)
+    {
+      return ROL::makePtr<ROL::StdVector<double>>(ROL::makePtr<Vector>(x));
+    }
+  } // namespace
+
+  struct Minimiser::Learned
+  {
+    ROL::lBFGS<double> hessian{10};
+    int                n_pairs = 0;
+  };
+
+  namespace
+  {
+    /// @param Learned  that of Minimiser
+    template <typename Learned>
     class ProblemForRol : public ROL::Objective<double>
     {
     public:
-      explicit ProblemForRol(const BoundedProblem &problem) : problem_(problem) {}
+      ProblemForRol(const BoundedProblem &problem, Learned &learned) : problem_(problem), learned_(learned) {}
 
       void update(const ROL::Vector<double> &x, const ROL::UpdateType type, const int /*iteration*/) override
       {
@@ -44,7 +66,11 @@ namespace retroforge
 
       void gradient(ROL::Vector<double> &g, const ROL::Vector<double> &x, double & /*tolerance*/) override
       {
-        *dynamic_cast<ROL::StdVector<double> &>(g).getVector() = problem_.gradient(numbers(x));
+        numbers(g) = problem_.gradient(numbers(x));
+        if (!at_.empty() && !problem_.known_is_all)
+          learn(numbers(x), numbers(g));
+        at_       = numbers(x);
+        gradient_ = numbers(g);
       }
 
       void hessVec(ROL::Vector<double>       &hv,
@@ -52,12 +78,47 @@ namespace retroforge
                    const ROL::Vector<double> & /*x*/,
                    double & /*tolerance*/) override
       {
-        *dynamic_cast<ROL::StdVector<double> &>(hv).getVector() = problem_.hessian(numbers(v));
+        hv.zero();
+        if (!problem_.known_is_all)
+          learned_.hessian.applyB(hv, v);
+        if (problem_.known_hessian)
+          hv.plus(*rol_vector(problem_.known_hessian(numbers(v))));
       }
 
     private:
+      /// Of the change of the gradient over the last step, what the known part does not explain.
+      void learn(const Vector &x, const Vector &g)
+      {
+        const auto step = rol_vector(x), change = rol_vector(g), none = rol_vector(x);
+        step->axpy(-1., *rol_vector(at_));
+        change->axpy(-1., *rol_vector(gradient_));
+        if (problem_.known_hessian)
+          change->axpy(-1., *rol_vector(problem_.known_hessian(*step->getVector())));
+        none->zero();
+        damp(*step, *change);
+        if (step->norm() > 0.)
+          learned_.hessian.updateStorage(
+            *rol_vector(x), *change, *none, *step, step->norm(), ++learned_.n_pairs);
+      }
+
+      /// Powell's: the rest may bend downwards, and BFGS cannot; what nearly does would else be learned as the
+      /// steepest of walls. @cite Nocedal and Wright 2006, procedure 18.2
+      void damp(const ROL::StdVector<double> &step, ROL::StdVector<double> &change) const
+      {
+        const auto bent = rol_vector(*step.getVector());
+        learned_.hessian.applyB(*bent, step);
+        constexpr double least = 0.2;
+        const double     sbs = step.dot(*bent), sy = step.dot(change);
+        if (sy >= least * sbs)
+          return;
+        const double part = (1. - least) * sbs / (sbs - sy);
+        change.scale(part);
+        change.axpy(1. - part, *bent);
+      }
+
       const BoundedProblem &problem_;
-      Vector                tried_;
+      Learned              &learned_;
+      Vector                tried_, at_, gradient_;
     };
 
     class AskedStatus : public ROL::StatusTest<double>
@@ -79,12 +140,7 @@ namespace retroforge
       const MinimiserSettings &settings_;
     };
 
-    ROL::Ptr<ROL::StdVector<double>> rol_vector(const Vector &x)
-    {
-      return ROL::makePtr<ROL::StdVector<double>>(ROL::makePtr<Vector>(x));
-    }
-
-    ROL::ParameterList rol_parameters(const MinimiserSettings &settings, const bool knows_hessian)
+    ROL::ParameterList rol_parameters(const MinimiserSettings &settings)
     {
       ROL::ParameterList list;
       auto              &region = list.sublist("Step").sublist("Trust Region");
@@ -97,20 +153,21 @@ namespace retroforge
       auto &general = list.sublist("General");
       general.set("Output Level", 0);
       general.sublist("Krylov").set("Iteration Limit", 10);
-      general.sublist("Secant").set("Type", "Limited-Memory BFGS");
-      general.sublist("Secant").set("Maximum Storage", 10);
-      general.sublist("Secant").set("Use as Hessian", !knows_hessian);
       return list;
     }
   } // namespace
 
-  Vector minimise(const BoundedProblem &problem, const MinimiserSettings &settings)
+  Minimiser::Minimiser() : learned_(std::make_unique<Learned>()) {}
+
+  Minimiser::~Minimiser() = default;
+
+  Vector Minimiser::minimise(const BoundedProblem &problem, const MinimiserSettings &settings)
   {
-    ROL::ParameterList                   list = rol_parameters(settings, problem.hessian != nullptr);
+    ROL::ParameterList                   list = rol_parameters(settings);
     ROL::TypeB::LinMoreAlgorithm<double> algorithm(list);
     algorithm.setStatusTest(ROL::makePtr<AskedStatus>(list, settings));
     const auto          x = rol_vector(problem.start);
-    ProblemForRol       objective(problem);
+    ProblemForRol       objective(problem, *learned_);
     ROL::Bounds<double> bounds(rol_vector(problem.lower), rol_vector(problem.upper));
     ROL::nullstream     silence;
     algorithm.run(*x, objective, bounds, silence);

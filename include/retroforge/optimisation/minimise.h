@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,9 @@ namespace retroforge
     std::function<double(const Vector &x)> value;
     /// At a point whose value was finite.
     std::function<Vector(const Vector &x)> gradient;
-    /// Hessian times v, at the point whose gradient was asked for last; null where it is not known.
-    std::function<Vector(const Vector &v)> hessian;
+    /// What is known of the Hessian, times v, at the point whose gradient was asked for last; null: nothing.
+    std::function<Vector(const Vector &v)> known_hessian;
+    bool                                   known_is_all = false; ///< else the rest is learned
     /// A point that was tried becomes the next one, or is refused: called after its value.
     std::function<void(const Vector &x, bool accepted)> decided;
   };
@@ -43,9 +45,21 @@ namespace retroforge
     std::function<bool(const MinimiserState &)> go_on;
   };
 
-  /// Trust region by Lin and Moré, with limited-memory BFGS for a Hessian that is not known, from ROL of
-  /// Trilinos: each iteration takes one value, and each that is accepted one gradient. A trust region refuses
-  /// a point of infinite value, and goes on with a quarter of the step.
-  /// @return the last point that was accepted
-  BoundedProblem::Vector minimise(const BoundedProblem &problem, const MinimiserSettings &settings);
+  /// Trust region by Lin and Moré, from ROL of Trilinos: each iteration takes one value, and each that is
+  /// accepted one gradient. A trust region refuses a point of infinite value, and goes on with a quarter of
+  /// the step. What of the Hessian is not known is learned from gradients, by limited-memory BFGS of ten
+  /// pairs, and kept from one minimisation to the next: functions may differ by their known parts.
+  class Minimiser
+  {
+  public:
+    Minimiser();
+    ~Minimiser();
+
+    /// @return the last point that was accepted
+    BoundedProblem::Vector minimise(const BoundedProblem &problem, const MinimiserSettings &settings);
+
+  private:
+    struct Learned;
+    const std::unique_ptr<Learned> learned_;
+  };
 } // namespace retroforge

@@ -92,12 +92,12 @@ int main()
 {
   {
     Counted      counted({-1., 1.}, {-infinity, -infinity}, {infinity, infinity});
-    const Vector x = minimise(counted.problem, until(1e-7, 200));
+    const Vector x = Minimiser().minimise(counted.problem, until(1e-7, 200));
     report("free", x, {1., 1.}, counted);
   }
   {
     Counted      counted({-1., 1.}, {-2., -infinity}, {0.5, infinity});
-    const Vector x = minimise(counted.problem, until(1e-7, 200));
+    const Vector x = Minimiser().minimise(counted.problem, until(1e-7, 200));
     report("bounded", x, {0.5, 0.25}, counted);
   }
   {
@@ -106,7 +106,7 @@ int main()
     counted.value = [](const Vector &x) {
       return std::pow(x[0] + 0.2, 2) + std::pow(x[1] - 0.3, 2) < 0.04 ? infinity : rosenbrock(x);
     };
-    const Vector x = minimise(counted.problem, until(1e-7, 200));
+    const Vector x = Minimiser().minimise(counted.problem, until(1e-7, 200));
     report("with a hole", x, {1., 1.}, counted);
     std::cout << "points in the hole were refused: " << answer(counted.refused > 0) << "\n";
   }
@@ -118,13 +118,34 @@ int main()
     };
     MinimiserSettings settings = until(1e-3, 200);
     settings.noise             = 2. * noise;
-    const Vector x             = minimise(counted.problem, settings);
+    const Vector x             = Minimiser().minimise(counted.problem, settings);
     std::cout << "rough: within the noise of the minimum: " << answer(rosenbrock(x) < noise)
               << "; in less than 60 values: " << answer(counted.values < 60) << "\n";
   }
   {
     Counted counted({1., 1.}, {-infinity, -infinity}, {infinity, infinity});
-    minimise(counted.problem, until(1e-7, 200));
+    Minimiser().minimise(counted.problem, until(1e-7, 200));
     std::cout << "begins at its minimum: one value: " << answer(counted.values == 1) << "\n";
+  }
+  {
+    // Gauss and Newton's Hessian of its two squares: all that is known, and all but what is learned.
+    for (const bool is_all : {true, false})
+    {
+      Counted counted({-1., 1.}, {-infinity, -infinity}, {infinity, infinity});
+      Vector  at;
+      counted.problem.gradient = [&](const Vector &x) {
+        ++counted.gradients;
+        at = x;
+        return rosenbrock_gradient(x);
+      };
+      counted.problem.known_hessian = [&](const Vector &v) {
+        const double first = -2. * at[0] * v[0] + v[1];
+        return Vector{20. * first * -2. * at[0] + 2. * v[0], 20. * first};
+      };
+      counted.problem.known_is_all = is_all;
+      const Vector x               = Minimiser().minimise(counted.problem, until(1e-7, 200));
+      report(is_all ? "by squares" : "by squares and what they leave", x, {1., 1.}, counted);
+      std::cout << "in less than 30 values: " << answer(counted.values < 30) << "\n";
+    }
   }
 }
