@@ -208,6 +208,13 @@ def on_two_ranks():
     judge("the same path", len(rows_of("ranks")) == len(rows_of("whole")) and difference < 1e-8 * 10, difference)
 
 
+def reported():
+    for folder, expected in (("whole", "start and best"), ("failing", "Designs that failed"), ("found", "95 %"), ("limited", "Limits")):
+        done = start([str(ROOT / "contrib/report"), "--no-vtk", folder])
+        judge(f"report of {folder}", done.returncode == 0 and expected in text_of(folder, "report.html"), done.stderr)
+    judge("its pictures", text_of("whole", "report.html").count("data:image/png;base64") == 2)
+
+
 def refused():
     before = text_of("whole", "journal.jsonl")
     for what, settings, expected in (
@@ -233,4 +240,4 @@ def refused():
     judge("resumed with another tolerance", "taken from the journal" in printed and found["simulations"] >= len(before.splitlines()) // 3)
 
 
-main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, bounded, failing, from_elsewhere, identified, scattered, on_two_ranks, refused))
+main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, bounded, failing, from_elsewhere, identified, scattered, on_two_ranks, reported, refused))
