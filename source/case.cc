@@ -74,9 +74,14 @@ namespace retroforge
 
     std::vector<Stretch> make_stretches(const Case &made)
     {
-      if (!made.resumption)
-        return {{{0, 0., made.echo}, made.parameters}};
       std::vector<Stretch> stretches;
+      if (!made.resumption)
+      {
+        stretches.emplace_back();
+        stretches.back().input.parameters = made.echo;
+        stretches.back().parameters       = made.parameters;
+        return stretches;
+      }
       for (const RecordedInput &input : made.resumption->inputs)
       {
         stretches.push_back({input, as_solved(Parameters::of_record(input.parameters), made.command)});

@@ -162,6 +162,8 @@ namespace retroforge
       say_when_stopped("stopped; the same command with --resume goes on with the designs that are forged");
     }
     begin();
+    if (case_.command.check)
+      check();
     measure_noise();
     search();
     report_best();
@@ -225,6 +227,32 @@ namespace retroforge
     radius_                    = parameters.first_step;
     add_row({Decision::start, now_, merit_.value(now_.values), radius_});
     write_shapes(now_, "start");
+  }
+
+  void Optimize::check()
+  {
+    const BoundedProblem asked = problem();
+    std::mt19937         generator(2);
+    std::vector<double>  direction(space_.size());
+    for (std::size_t j = 0; j < direction.size(); ++j)
+    {
+      // Both ways must be free.
+      const double sign = generator() % 2 == 0 ? 1. : -1.;
+      direction[j]      = space_.at(now_.mu, j) == DesignSpace::At::inside ? sign : 0.;
+    }
+    const std::vector<double> steps = {1e-1, 1e-2, 1e-3};
+    const auto                rows  = check_derivative(asked, direction, steps);
+    if (!root_)
+      return;
+    std::printf("  gradient along a direction, against differences of forgings that decide everything anew:\n"
+                "  step [scales]    derivative    difference    relative error\n");
+    for (const DifferenceCheck &row : rows)
+      std::printf("  %-12.3g %14.7g %13.7g %12.2g\n",
+                  row.step,
+                  row.derivative,
+                  row.difference,
+                  row.error / std::abs(row.derivative));
+    std::fflush(stdout);
   }
 
   void Optimize::measure_noise()
@@ -305,7 +333,7 @@ namespace retroforge
     results_.best = best_so_far();
   }
 
-  void Optimize::minimise_merit()
+  BoundedProblem Optimize::problem()
   {
     BoundedProblem problem;
     problem.start    = space_.scaled(now_.mu);
@@ -319,11 +347,16 @@ namespace retroforge
     problem.known_hessian = [&](const std::vector<double> &v) { return known_hessian(v); };
     problem.known_is_all  = !criteria_.data.empty();
     problem.decided       = [&](const std::vector<double> &x, const bool accepted) { decided(x, accepted); };
+    return problem;
+  }
+
+  void Optimize::minimise_merit()
+  {
     const OptimisationParameters &parameters = case_.parameters.optimisation;
     // A round before may have ended with steps as short as its noise.
     const double radius = std::clamp(radius_, 0.25 * parameters.first_step, parameters.largest_step);
     minimiser_.minimise(
-      problem,
+      problem(),
       {radius, parameters.largest_step, results_.noise / merit_.size, [&](const MinimiserState &state) {
          return go_on(state);
        }});

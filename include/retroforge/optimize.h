@@ -30,8 +30,12 @@ namespace retroforge
     Journal make_journal(const std::string &file, const std::string &parameters) const;
 
     void begin();
+    /// The gradient at the start by differences, for a user who asks.
+    void check();
     void measure_noise();
     void search();
+    /// The merit over scaled variables, from the present design.
+    BoundedProblem problem();
     /// One minimisation with the multipliers there are; from the best design, to the last accepted one.
     void minimise_merit();
     bool go_on(const MinimiserState &state);

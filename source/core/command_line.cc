@@ -15,8 +15,15 @@ namespace retroforge
 {
   namespace
   {
-    const std::vector<std::string> known_options =
-      {"--set", "--at", "--output", "--resume", "--overwrite", "--print-parameters", "--version", "--help"};
+    const std::vector<std::string> known_options = {"--set",
+                                                    "--at",
+                                                    "--output",
+                                                    "--resume",
+                                                    "--overwrite",
+                                                    "--check",
+                                                    "--print-parameters",
+                                                    "--version",
+                                                    "--help"};
 
     const std::string where = "command line";
     const std::string usage = "retroforge --help shows the usage";
@@ -123,6 +130,8 @@ namespace retroforge
         line.resume = true;
       else if (option == "--overwrite")
         line.overwrite = true;
+      else if (option == "--check")
+        line.check = true;
       else if (option == "--print-parameters")
         line.print_parameters = true;
       else if (option == "--version")
@@ -170,6 +179,11 @@ namespace retroforge
                     "'" + line.command + "' needs a parameter file",
                     "write retroforge " + line.command +
                       " CASE.prm; retroforge --print-parameters writes a template");
+      if (line.check && line.command != "optimize")
+        throw Error(where,
+                    "holds --check with '" + line.command + "'",
+                    "it is an option of optimize; gradients of a case are checked by the command check",
+                    "leave it out, or write retroforge check " + line.case_file);
       if (line.resume && line.overwrite)
         throw Error(where,
                     "holds --resume and --overwrite",
@@ -220,7 +234,7 @@ namespace retroforge
     return R"(Retroforge simulates hot metal forging in 3D and computes exact gradients of its results.
 
 Usage:
-  retroforge COMMAND CASE.prm [--set Section/name=value]... [--at NAME=VALUE]... [--output DIR] [--resume | --overwrite]
+  retroforge COMMAND CASE.prm [--set Section/name=value]... [--at NAME=VALUE]... [--output DIR] [--resume | --overwrite] [--check]
   mpirun -np N retroforge COMMAND CASE.prm ...    (not for scan)
   retroforge --print-parameters | --version | --help
 
@@ -244,6 +258,7 @@ Options:
                              forged
   --overwrite                replace the results that are in that folder; without it they are left alone, and the
                              command is refused
+  --check                    of optimize: first compare the gradient with central differences along one direction
   --print-parameters         write all parameters with their meaning; a case to start from
   --version                  write version and commit
   --help                     write this text

@@ -101,8 +101,8 @@ namespace retroforge
             *rol_vector(x), *change, *none, *step, step->norm(), ++learned_.n_pairs);
       }
 
-      /// Powell's: the rest may bend downwards, and BFGS cannot; what nearly does would else be learned as the
-      /// steepest of walls. @cite Nocedal and Wright 2006, procedure 18.2
+      /// Powell's: the rest may bend downwards, and BFGS cannot; what nearly does would else be learned as
+      /// the steepest of walls. @cite Nocedal and Wright 2006, procedure 18.2
       void damp(const ROL::StdVector<double> &step, ROL::StdVector<double> &change) const
       {
         const auto bent = rol_vector(*step.getVector());
@@ -140,6 +140,13 @@ namespace retroforge
       const MinimiserSettings &settings_;
     };
 
+    /// For problems that are only looked at.
+    struct NothingLearned
+    {
+      ROL::lBFGS<double> hessian{1};
+      int                n_pairs = 0;
+    };
+
     ROL::ParameterList rol_parameters(const MinimiserSettings &settings)
     {
       ROL::ParameterList list;
@@ -172,5 +179,19 @@ namespace retroforge
     ROL::nullstream     silence;
     algorithm.run(*x, objective, bounds, silence);
     return *x->getVector();
+  }
+
+  std::vector<DifferenceCheck>
+  check_derivative(const BoundedProblem &problem, const Vector &direction, const std::vector<double> &steps)
+  {
+    NothingLearned               nothing;
+    ProblemForRol                objective(problem, nothing);
+    ROL::nullstream              silence;
+    constexpr int                central = 2;
+    std::vector<DifferenceCheck> rows;
+    for (const std::vector<double> &row : objective.checkGradient(
+           *rol_vector(problem.start), *rol_vector(direction), steps, false, silence, central))
+      rows.push_back({row[0], row[1], row[2], row[3]});
+    return rows;
   }
 } // namespace retroforge

@@ -31,6 +31,7 @@ namespace retroforge
 
     bool resume    = false; ///< asked to go on with what is in output_directory
     bool overwrite = false; ///< asked to replace what is there
+    bool check     = false; ///< asked to compare the gradient with differences before it is used; of optimize
 
     bool print_parameters = false; ///< write the annotated parameters and stop
     bool version          = false; ///< write version and commit and stop

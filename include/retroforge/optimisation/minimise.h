@@ -27,6 +27,17 @@ namespace retroforge
     std::function<void(const Vector &x, bool accepted)> decided;
   };
 
+  /// A derivative along a direction, and its central difference.
+  struct DifferenceCheck
+  {
+    double step, derivative, difference, error; ///< of the two, absolute
+  };
+
+  /// At the start of a problem, by ROL's check of objectives.
+  std::vector<DifferenceCheck> check_derivative(const BoundedProblem         &problem,
+                                                const BoundedProblem::Vector &direction,
+                                                const std::vector<double>    &steps);
+
   /// How far a minimisation has come.
   struct MinimiserState
   {

@@ -122,6 +122,15 @@ def limited():
     judge("from a start beyond the limit", found["limits"][0]["start"] > 0.05 and found["limits"][0]["best"] < 0.05 * 1.0001, found["limits"])
 
 
+def checked():
+    found, printed = optimize("checked", "--check")
+    errors = [float(line.split()[3]) for line in printed.splitlines() if line.startswith(("  0.1 ", "  0.01 ", "  0.001 "))]
+    judge("differences agree", len(errors) == 3 and min(errors) < 1e-4, printed)
+    judge("the search is the same", best_of(found) == best_of(found_in("whole")))
+    done = run("gradient", "wrong", "--check")
+    judge("--check of another command", done.returncode == 1 and "option of optimize" in done.stderr, done.stderr)
+
+
 def bounded():
     found, _ = optimize("bounded", "Optimisation/lower bounds=billet/control point 1 r: 9.7")
     first = found["parameters"][0]
@@ -240,4 +249,4 @@ def refused():
     judge("resumed with another tolerance", "taken from the journal" in printed and found["simulations"] >= len(before.splitlines()) // 3)
 
 
-main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, bounded, failing, from_elsewhere, identified, scattered, on_two_ranks, reported, refused))
+main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, bounded, failing, from_elsewhere, identified, scattered, on_two_ranks, reported, refused))
