@@ -332,6 +332,7 @@ namespace retroforge
       for (const auto &die : sweep.of[j].process.dies)
         judged_[j].shape.dies.push_back(die.vertices);
     }
+    const auto timing = timings_.scope("sensitivity");
     if (root_)
       write_sensitivity(case_.command.output_directory, case_.billet, case_.X_0, case_.model.dies, judged_);
   }
