@@ -58,11 +58,11 @@ namespace retroforge
       return text;
     }
 
-    std::vector<std::string> varied(const Parameters &parameters)
+    std::vector<std::string> varied(const Case &at)
     {
       std::vector<std::string> names;
-      for (const std::string &name : parameters.design.names)
-        if (name != parameters.optimisation.scattered)
+      for (const std::string &name : at.design.expanded(at.parameters.design.names))
+        if (name != at.parameters.optimisation.scattered)
           names.push_back(name);
       return names;
     }
@@ -98,7 +98,7 @@ namespace retroforge
           timings_,
           comm)
       , root_(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
-      , space_(case_.design.parameters(), varied(case_.parameters), case_.mu, case_.parameters.optimisation)
+      , space_(case_.design.parameters(), varied(case_), case_.mu, case_.parameters.optimisation)
       , criteria_(case_.objectives, case_.parameters.optimisation)
       , scatter_(case_.design.parameters(), case_.parameters.optimisation, from_below(case_, criteria_))
       , journal_(make_journal("journal.jsonl", case_.echo))
@@ -181,7 +181,7 @@ namespace retroforge
   {
     std::printf("optimisation of %s by %zu parameter(s), %zu limit(s)\n",
                 criteria_.objective.name.c_str(),
-                varied(case_.parameters).size(),
+                varied(case_).size(),
                 criteria_.limits.size());
     if (!scatter_.empty())
       std::printf("  each design is forged %zu times, with %s from %.6g to %.6g\n",

@@ -96,9 +96,9 @@ namespace retroforge
       names.push_back(chosen);
     const Design design(
       names, parameters_.billet, parameters_.dies, scene.nominal, scene.billet, parameters_.press.stroke);
-    const std::vector<double> mu     = design.at(parameters_.design.at);
-    const auto               &listed = parameters_.design.names;
-    std::set<std::string>     folders;
+    const std::vector<double>      mu     = design.at(parameters_.design.at);
+    const std::vector<std::string> listed = design.expanded(parameters_.design.names);
+    std::set<std::string>          folders;
     for (std::size_t j = 0; j < mu.size(); ++j)
     {
       const DesignParameter &parameter = design.parameters()[j];

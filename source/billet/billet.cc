@@ -425,6 +425,21 @@ namespace retroforge
                       Double(-360, 360));
     prm.add_parameter(
       "translation", translation, "Displacement of the finished mesh, after the rotation. Units: mm.");
+    prm.add_parameter("free form modes",
+                      free_form.modes,
+                      "How many smooth moves of patches along their normals become parameters of the shape, "
+                      "`billet/free form 1' and so on, from the smoothest on; `billet/free form' in "
+                      "Design/parameters stands for all. 0 for none. Units: none.",
+                      Integer(0, 4000));
+    prm.add_parameter("free form patches",
+                      free_form.patches,
+                      "The patches that move. Others that are plane stay so, and their nodes slide; the rest "
+                      "stays. Units: none.");
+    prm.add_parameter("free form length",
+                      free_form.length,
+                      "Moves that change over less than this count more: the length of their Sobolev norm; "
+                      "0 for a quarter of the root of the patches' area. Units: mm.",
+                      Double(0.));
     prm.add_parameter("volume held by",
                       volume_held_by,
                       "Parameter of the shape that is no design parameter but follows from the others, so "

@@ -5,6 +5,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/design/billet_map.h>
+#include <retroforge/design/free_form.h>
 #include <retroforge/element/mini_element.h>
 #include <retroforge/mesh/mesh_quality.h>
 
@@ -138,13 +139,17 @@ namespace retroforge
       , volume_(volume_along(mesh.cells, mesh.X, NodalVectors<double>(mesh.n_nodes())).val())
       , shapes_(shapes_of(billet, in_own_axes(billet, mesh.X)))
   {
+    n_of_kind_                        = shapes_.parameters.size();
     const auto               rotation = rotation_of(billet);
     std::vector<std::string> names;
-    for (unsigned int j = 0; j < shapes_.parameters.size(); ++j)
-    {
-      ShapeParameter &parameter = shapes_.parameters[j];
+    for (ShapeParameter &parameter : shapes_.parameters)
       for (Vec3 &d : parameter.direction)
         d = rotation * d;
+    for (ShapeParameter &parameter : free_form_shapes(billet.free_form, mesh))
+      shapes_.parameters.push_back(std::move(parameter));
+    for (unsigned int j = 0; j < shapes_.parameters.size(); ++j)
+    {
+      const ShapeParameter &parameter = shapes_.parameters[j];
       if (!keeps_symmetry(parameter, mesh))
         continue;
       names.push_back(parameter.name);
@@ -224,7 +229,7 @@ namespace retroforge
 
   void BilletMap::check(const std::vector<double> &mu, const double held) const
   {
-    if (shapes_.parameters.empty())
+    if (!shapes_.complaint)
       return;
     std::vector<double> all;
     for (const ShapeParameter &parameter : shapes_.parameters)
@@ -233,6 +238,7 @@ namespace retroforge
       all[place_[j]] = mu[j];
     if (held_)
       all[*held_] = held;
+    all.resize(n_of_kind_);
     if (const std::string complaint = shapes_.complaint(all); !complaint.empty())
       throw Error("Design/billet",
                   complaint +

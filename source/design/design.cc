@@ -57,7 +57,7 @@ namespace retroforge
     for (const DieParameters &die : dies_)
       followed_.push_back(followed_node(die, nominal_X_));
     const std::vector<DesignParameter> all = offered();
-    for (const std::string &name : names)
+    for (const std::string &name : expanded(names))
     {
       check_offered(name, "Design/parameters");
       const DesignParameter &parameter = *std::find_if(
@@ -72,6 +72,20 @@ namespace retroforge
                       "leave one of them out");
       parameters_.push_back(parameter);
     }
+  }
+
+  std::vector<std::string> Design::expanded(const std::vector<std::string> &names) const
+  {
+    const std::string        all = "billet/free form";
+    std::vector<std::string> single;
+    for (const std::string &name : names)
+      if (name != all)
+        single.push_back(name);
+      else
+        for (const ShapeParameter &shape : billet_map_.parameters())
+          if (const std::string mode = "billet/" + shape.name; mode.rfind(all + " ", 0) == 0)
+            single.push_back(mode);
+    return single;
   }
 
   bool DesignParameter::overlaps(const DesignParameter &other) const

@@ -18,6 +18,14 @@ namespace retroforge
 {
   /// The workpiece before forging: its shape, what symmetry leaves of it, where it stands, and how fine its
   /// mesh is.
+  /// Smooth moves of patches along their normals: design/free_form.h.
+  struct FreeFormParameters
+  {
+    unsigned int             modes = 0;
+    std::vector<std::string> patches;
+    double                   length = 0.; ///< l [mm]; 0: a quarter of the root of the patches' area
+  };
+
   struct BilletParameters
   {
     std::string shape = "box";
@@ -41,6 +49,8 @@ namespace retroforge
     Vec3   rotation_axis  = Vec3({0, 0, 1});
     double rotation_angle = 0;
     Vec3   translation;
+
+    FreeFormParameters free_form;
 
     std::string volume_held_by; ///< name of a parameter of the shape, without `billet/`; none if empty
 

@@ -48,6 +48,7 @@ namespace retroforge
     std::vector<std::array<NodeIndex, 4>> cells_;
     double                                volume_;
     BilletShapes                          shapes_;
+    std::size_t                           n_of_kind_; ///< of them, those of the billet's kind; then free form
     std::vector<ShapeParameter>           free_;
     std::vector<unsigned int>             place_; ///< of each free parameter among those of the shape
     std::optional<unsigned int>           held_;  ///< place of the held one

@@ -75,6 +75,8 @@ namespace retroforge
 
     /// All that this scene offers.
     std::vector<DesignParameter> offered() const;
+    /// Names with `billet/free form` replaced by those of all its modes.
+    std::vector<std::string> expanded(const std::vector<std::string> &names) const;
     /// @param where  the name stands, for the message     @throws Error  for a name that is not among them
     void check_offered(const std::string &name, const std::string &where) const;
 
