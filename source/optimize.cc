@@ -215,7 +215,12 @@ namespace retroforge
     // which is one, is of the right size.
     const OptimisationParameters &parameters = case_.parameters.optimisation;
     const double slope = length(space_.pull_back(merit_.gradient(now_.values, now_.gradients)));
-    merit_.size        = slope > 0. ? slope / parameters.first_step : 1.;
+    // Where it does not feel the design yet, as a die that nothing touches, a thousandth of it has to do.
+    constexpr double flat = 1e-8, felt = 1e-3;
+    const double     value = std::abs(criteria_.value(now_.values));
+    merit_.size            = slope > flat * value ? slope / parameters.first_step
+                             : value > 0.         ? felt * value / parameters.first_step
+                                                  : 1.;
     merit_.multipliers.assign(criteria_.limits.size(), 0.);
     double steepest = 0.;
     for (const Limit &limit : criteria_.limits)
@@ -306,18 +311,22 @@ namespace retroforge
     double                 excess      = criteria_.largest_excess(now_.values);
     for (unsigned int round = 0; round < most_rounds; ++round)
     {
-      results_.stop = Stop::running;
+      results_.stop                 = Stop::running;
+      const unsigned int iterations = iterations_;
       minimise_merit();
       if (results_.stop == Stop::iterations || results_.stop == Stop::simulations)
         break;
       const std::vector<double> multipliers = fitted_multipliers();
       const bool                settled     = limits_are_settled(multipliers);
+      const bool                is_stuck    = iterations_ == iterations && multipliers == merit_.multipliers;
       merit_.multipliers                    = multipliers;
       if (settled)
       {
         results_.best = now_;
         return;
       }
+      if (is_stuck)
+        break;
       const double excess_now = criteria_.largest_excess(now_.values);
       if (excess_now > 0.25 * excess && excess_now > case_.parameters.optimisation.limit_tolerance)
         merit_.penalty *= 4.;

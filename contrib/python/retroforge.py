@@ -53,6 +53,24 @@ def run(case, settings={}, at={}, command="gradient", folder=None):  # pylint: d
     if folder is None:
         with tempfile.TemporaryDirectory() as scratch:
             return run(case, settings, at, command, scratch)
+    start(command, case, settings, at, folder)
+    return read(folder)
+
+
+def optimize(case, settings={}, at={}, folder=None):  # pylint: disable=dangerous-default-value
+    """The best design of a case by its section Optimisation; arguments as of run(). Returns what optimisation.json has,
+    which doc/summary_schema.md describes, with `best`, {"design parameter": value}, beside.
+    @throws Error  with the program's message
+    """
+    if folder is None:
+        with tempfile.TemporaryDirectory() as scratch:
+            return optimize(case, settings, at, scratch)
+    start("optimize", case, settings, at, folder)
+    found = json.loads((pathlib.Path(folder) / "optimisation.json").read_text(encoding="utf-8"))
+    return {**found, "best": {parameter["name"]: parameter["best"] for parameter in found["parameters"]}}
+
+
+def start(command, case, settings, at, folder):
     words = [str(PROGRAM), command, str(case), "--output", str(folder)]
     for option, values in (("--set", settings), ("--at", at)):
         for name, value in values.items():
@@ -61,7 +79,6 @@ def run(case, settings={}, at={}, command="gradient", folder=None):  # pylint: d
                           env={"OMP_NUM_THREADS": "1", **os.environ})
     if done.returncode != 0:
         raise Error(done.stderr.strip().removeprefix("retroforge: ") or f"{command} did not pass:\n{done.stdout}")
-    return read(folder)
 
 
 def read(folder):

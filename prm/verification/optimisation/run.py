@@ -184,7 +184,7 @@ SEARCHED = {
     "straight bore of a ring, 3 parameters": (RING, {
         "Billet/control points": "30, 0; 30, 5; 30, 10", "Billet/element size": 4, "Press/increments": 20, "Remeshing/when": "never",
         "Design/parameters": "billet/control point 1 r, billet/control point 2 r, billet/control point 3 r",
-        "Objectives/names": "rim", "Objective rim/type": "cylinder distance", "Objective rim/patches": "side outer"}, "rim"),
+        "Objectives/names": "rim, bore", "Objective rim/type": "cylinder distance", "Objective rim/patches": "side outer"}, "rim"),
     "straight side, 10 parameters": (STRAIGHT, {
         "Billet/control points": "; ".join(f"20, {z}" for z in (0, 4.5, 9, 14, 19, 24.5, 30)), "Billet/volume held by": "control point 7 r",
         "Design/parameters": ", ".join([f"billet/control point {i} r" for i in (1, 2, 3, 4, 5, 6)] +

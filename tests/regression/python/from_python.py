@@ -66,6 +66,9 @@ class FromPython(unittest.TestCase):
         self.assertLess(found.nfev, 12)
         self.assertLess(found.fun**0.5, 0.3 * start**0.5)
         self.assertLess(np.abs(found.jac).max(), 0.01)
+        ours = retroforge.optimize(CASE, {"Optimisation/confirmation": 0, "Optimisation/noise runs": 0})
+        np.testing.assert_allclose([ours["best"][name] for name in RADII], found.x, atol=0.1)
+        self.assertLess(ours["objective"]["best"], 1.001 * found.fun)
 
 
 if __name__ == "__main__":
