@@ -528,6 +528,14 @@ namespace retroforge
         std::printf("  not confirmed: a billet from a file has no finer mesh\n");
       return;
     }
+    const std::string mode = "billet/free form ";
+    for (const DesignParameter &parameter : space_.parameters())
+      if (parameter.name.rfind(mode, 0) == 0)
+      {
+        if (root_)
+          std::printf("  not confirmed: the modes of a free form belong to their mesh\n");
+        return;
+      }
     CommandLine finer = case_.command;
     const auto  set   = [&](const std::string &path, const double value) {
       finer.overrides.emplace_back(path, exact(value));

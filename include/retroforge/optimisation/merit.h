@@ -42,7 +42,6 @@ namespace retroforge
     std::vector<Datum> data;
     std::vector<Limit> limits;
 
-    /// @param start  values where the optimisation begins
     /// @throws Error  for a name that is not among the objectives; nothing to make small; a limit twice
     Criteria(const Objectives &objectives, const OptimisationParameters &parameters);
     /// Sizes of limits that are 0.

@@ -182,7 +182,7 @@ def robust():
 SEARCHED = {
     "straight side, 3 parameters": (STRAIGHT, {"Design/parameters": ", ".join(f"billet/control point {i} r" for i in (1, 2, 3))}, "barrel"),
     "straight bore of a ring, 3 parameters": (RING, {
-        "Billet/control points": "30, 0; 30, 5; 30, 10", "Billet/element size": 4, "Press/increments": 20, "Remeshing/when": "never",
+        "Billet/control points": "30, 0; 30, 3; 30, 7; 30, 10", "Billet/element size": 4, "Press/increments": 20, "Remeshing/when": "never",
         "Design/parameters": "billet/control point 1 r, billet/control point 2 r, billet/control point 3 r",
         "Objectives/names": "rim, bore", "Objective rim/type": "cylinder distance", "Objective rim/patches": "side outer"}, "rim"),
     "straight side, 10 parameters": (STRAIGHT, {

@@ -131,6 +131,17 @@ def checked():
     judge("--check of another command", done.returncode == 1 and "option of optimize" in done.stderr, done.stderr)
 
 
+def free_form():
+    """Ten modes of the side; what they find is better than the spline's."""
+    settings = ("Billet/free form modes=10", "Billet/free form patches=side outer", "Billet/volume held by=free form 1",
+                "Design/parameters=billet/free form", "Optimisation/confirmation=0.7", "Billet/element size=4")
+    found, printed = optimize("free", *settings)
+    spline, _ = optimize("spline", "Billet/element size=4")
+    judge("all modes vary", len(found["parameters"]) == 9)
+    judge("better than the spline", found["objective"]["best"] < spline["objective"]["best"], found["objective"])
+    judge("modes belong to their mesh", "not confirmed" in printed and "confirmation" not in found)
+
+
 def bounded():
     found, _ = optimize("bounded", "Optimisation/lower bounds=billet/control point 1 r: 9.7")
     first = found["parameters"][0]
@@ -249,4 +260,4 @@ def refused():
     judge("resumed with another tolerance", "taken from the journal" in printed and found["simulations"] >= len(before.splitlines()) // 3)
 
 
-main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, bounded, failing, from_elsewhere, identified, scattered, on_two_ranks, reported, refused))
+main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, free_form, bounded, failing, from_elsewhere, identified, scattered, on_two_ranks, reported, refused))
