@@ -108,18 +108,24 @@ def lines_of(output):
 
 
 def limited():
-    """With less energy than the best design needs; what relaxing the limit gives is foretold."""
+    """With half of the energy that the best design costs more than the start; what relaxing the limit gives is foretold. Meshes differ
+    with their mesher, so numbers are taken from the free optimum."""
     settings = ("Optimisation/gradient tolerance=1e-5", "Optimisation/limit tolerance=1e-6", "Optimisation/noise runs=0")
-    found, _ = optimize("limited", "Optimisation/at most=energy: 2077", *settings)
+    whole_values = [trial["values"] for trial in found_in("whole")["trials"]]
+    start, best = whole_values[0], min(whole_values, key=lambda values: values["barrel"])
+    bound, step = 0.5 * (start["energy"] + best["energy"]), 0.02 * (best["energy"] - start["energy"])
+    judge("the straight side costs energy", step > 0, step)
+    found, _ = optimize("limited", f"Optimisation/at most=energy: {bound!r}", *settings)
     limit = found["limits"][0]
-    judge("the limit is met", abs(limit["best"] / 2077 - 1) < 1e-6 and limit["start"] < 2077, limit)
-    relaxed, _ = optimize("relaxed", "Optimisation/at most=energy: 2077.1", *settings)
-    change = (relaxed["objective"]["best"] - found["objective"]["best"]) / 0.1
-    judge("its multiplier", abs(change / limit["by_relaxing"] - 1) < 0.05, f"{change} {limit['by_relaxing']}")
-    tight = changed(SCENE, {"Optimisation": {"objective": "energy", "at most": "barrel: 0.05", "noise runs": 0}})
+    judge("the limit is met", abs(limit["best"] / bound - 1) < 1e-6 and limit["start"] < bound, limit)
+    relaxed, _ = optimize("relaxed", f"Optimisation/at most=energy: {bound + step!r}", *settings)
+    change = (relaxed["objective"]["best"] - found["objective"]["best"]) / step
+    judge("its multiplier", abs(change - limit["by_relaxing"]) < 0.05 * abs(change), f"{change} {limit['by_relaxing']}")
+    most = 0.5 * start["barrel"]
+    tight = changed(SCENE, {"Optimisation": {"objective": "energy", "at most": f"barrel: {most!r}", "noise runs": 0}})
     write("tight.prm", prm(tight))
     found, _ = optimize("tight", case="tight.prm")
-    judge("from a start beyond the limit", found["limits"][0]["start"] > 0.05 and found["limits"][0]["best"] < 0.05 * 1.0001, found["limits"])
+    judge("from a start beyond the limit", found["limits"][0]["start"] > most and found["limits"][0]["best"] < most * 1.0001, found["limits"])
 
 
 def checked():
@@ -143,9 +149,10 @@ def free_form():
 
 
 def bounded():
-    found, _ = optimize("bounded", "Optimisation/lower bounds=billet/control point 1 r: 9.7")
+    bound = 0.5 * (10 + best_of(found_in("whole"))[0])
+    found, _ = optimize("bounded", f"Optimisation/lower bounds=billet/control point 1 r: {bound!r}")
     first = found["parameters"][0]
-    judge("at its bound", first["best"] == 9.7 and first["at"] == "at its lower bound" and first["gradient"] > 0, first)
+    judge("at its bound", first["best"] == bound and first["at"] == "at its lower bound" and first["gradient"] > 0, first)
     judge("which costs", found["objective"]["best"] > found_in("whole")["objective"]["best"])
 
 
@@ -222,10 +229,14 @@ def scattered():
 
 
 def on_two_ranks():
-    done = start(["mpirun", "-np", "2", *command("optimize", "ranks")])
+    """Systems solved well: ranks sum in another order, and default tolerances leave 1e-8 of it in the optimum."""
+    exact = ("Newton/tolerance=1e-12", "Adjoint/tolerance=1e-12")
+    alone, _ = optimize("alone", *exact)
+    done = start(["mpirun", "-np", "2", *command("optimize", "ranks", *exact)])
     judge("two ranks", done.returncode == 0, done.stderr)
-    difference = max(abs(a - b) for a, b in zip(best_of(found_in("ranks")), best_of(found_in("whole"))))
-    judge("the same path", len(rows_of("ranks")) == len(rows_of("whole")) and difference / 10 < 1e-8, difference)
+    difference = max(abs(a - b) for a, b in zip(best_of(found_in("ranks")), best_of(alone)))
+    judge("the same path", len(rows_of("ranks")) == len(rows_of("alone")) and difference / 10 < 1e-8, difference)
+    print(f"  optima differ by {difference / 10:.1e} of the radius")
 
 
 def reported():
