@@ -25,7 +25,12 @@ namespace retroforge
     using Decision = TrialRow::Decision;
     using Stop     = OptimisationResults::Stop;
 
-    const std::string program = std::string(version) + " " + commit;
+    /// What gives the same bits for the same design.
+    std::string program_on(MPI_Comm comm)
+    {
+      return std::string(version) + " " + commit + ", " +
+             std::to_string(dealii::Utilities::MPI::n_mpi_processes(comm)) + " rank(s)";
+    }
 
     std::vector<std::string> names_of(const Objectives &objectives)
     {
@@ -101,7 +106,7 @@ namespace retroforge
       , space_(case_.design.parameters(), varied(case_), case_.mu, case_.parameters.optimisation)
       , criteria_(case_.objectives, case_.parameters.optimisation)
       , scatter_(case_.design.parameters(), case_.parameters.optimisation, from_below(case_, criteria_))
-      , journal_(make_journal("journal.jsonl", case_.echo))
+      , journal_(make_journal())
       , trials_(case_, journal_, scatter_)
       , results_{space_, criteria_, names_of(case_.objectives), units_of(case_.objectives)}
   {
@@ -109,26 +114,25 @@ namespace retroforge
     Trial(case_, case_.process, case_.X_0, Trial::Keep::nothing).check();
   }
 
-  Journal Optimize::make_journal(const std::string &file, const std::string &parameters) const
+  Journal Optimize::make_journal() const
   {
-    if (!resume_ || !std::filesystem::exists(path_of(file)))
-    {
-      if (resume_ && file == "journal.jsonl")
-        throw Error(case_.command.output_directory,
-                    "holds no journal of an optimisation",
-                    "--resume goes on with one",
-                    "leave --resume out to begin, or name the folder with --output DIR");
-      return Journal({program, parameters});
-    }
-    Journal journal = Journal::read(path_of(file));
+    const std::string program = program_on(case_.comm), file = path_of("journal.jsonl");
+    if (!resume_)
+      return Journal({program, case_.echo});
+    if (!std::filesystem::exists(file))
+      throw Error(case_.command.output_directory,
+                  "holds no journal of an optimisation",
+                  "--resume goes on with one",
+                  "leave --resume out to begin, or name the folder with --output DIR");
+    Journal journal = Journal::read(file);
     if (journal.header().program != program)
-      throw Error(path_of(file),
+      throw Error(file,
                   "was written by Retroforge " + journal.header().program + ", and this is " + program,
-                  "another version may give other values for the same design",
-                  "go on with that version, or begin anew with --overwrite");
-    if (!make_same_results(journal.header().parameters, parameters))
+                  "another version, or another number of ranks, may give other values for the same design",
+                  "go on with that one, or begin anew with --overwrite");
+    if (!make_same_results(journal.header().parameters, case_.echo))
       throw Error(
-        path_of(file),
+        file,
         "belongs to a case with other parameters",
         "an optimisation goes on with the case it began with; only the sections Optimisation, Check, "
         "Output and Scan may differ",
@@ -547,17 +551,35 @@ namespace retroforge
     if (root_)
       std::printf("  confirming with elements and increments %.3g times as large ...\n", part);
     std::fflush(stdout);
-    Timings    timings;
-    const Case fine(finer, timings, case_.comm);
-    Journal    journal = make_journal("confirmation.jsonl", fine.echo);
-    MPI_Barrier(case_.comm);
-    if (root_)
-      journal.write_to(path_of("confirmation.jsonl"));
-    Trials trials(fine, journal, scatter_);
-    results_.confirmation = Confirmation{trials.evaluate(results_.start.mu),
-                                         trials.evaluate(results_.best.mu),
-                                         fine.billet.n_nodes(),
-                                         fine.parameters.press.increments};
+    try
+    {
+      Timings    timings;
+      const Case fine(finer, timings, case_.comm);
+      Journal    journal = confirmation_journal(fine.echo);
+      MPI_Barrier(case_.comm);
+      if (root_)
+        journal.write_to(path_of("confirmation.jsonl"));
+      Trials trials(fine, journal, scatter_);
+      results_.confirmation = Confirmation{trials.evaluate(results_.start.mu),
+                                           trials.evaluate(results_.best.mu),
+                                           fine.billet.n_nodes(),
+                                           fine.parameters.press.increments};
+    }
+    catch (const Error &error)
+    {
+      // What was found must not be lost with it.
+      if (root_)
+        std::printf("  not confirmed: %s\n", error.what());
+    }
+  }
+
+  Journal Optimize::confirmation_journal(const std::string &parameters) const
+  {
+    const std::string file = path_of("confirmation.jsonl");
+    if (resume_ && std::filesystem::exists(file))
+      if (Journal kept = Journal::read(file); make_same_results(kept.header().parameters, parameters))
+        return kept;
+    return Journal({program_on(case_.comm), parameters});
   }
 
   void Optimize::add_row(TrialRow row)

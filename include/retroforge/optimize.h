@@ -27,7 +27,9 @@ namespace retroforge
     /// @throws Error  where results of something else are, or a journal of another case or program
     void prepare_folder();
     /// With what an earlier run left, where this one goes on.  @throws Error  for one of another case
-    Journal make_journal(const std::string &file, const std::string &parameters) const;
+    Journal make_journal() const;
+    /// With the forgings of the finer case that are done, where it is still the same.
+    Journal confirmation_journal(const std::string &parameters) const;
 
     void begin();
     /// The gradient at the start by differences, for a user who asks.

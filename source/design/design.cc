@@ -76,15 +76,19 @@ namespace retroforge
 
   std::vector<std::string> Design::expanded(const std::vector<std::string> &names) const
   {
-    const std::string        all = "billet/free form";
+    const std::string        all     = "billet/free form";
+    const bool               has_all = std::find(names.begin(), names.end(), all) != names.end();
+    const auto               is_mode = [&](const std::string &name) { return name.rfind(all + " ", 0) == 0; };
     std::vector<std::string> single;
     for (const std::string &name : names)
-      if (name != all)
-        single.push_back(name);
-      else
+      if (name == all)
+      {
         for (const ShapeParameter &shape : billet_map_.parameters())
-          if (const std::string mode = "billet/" + shape.name; mode.rfind(all + " ", 0) == 0)
-            single.push_back(mode);
+          if (is_mode("billet/" + shape.name))
+            single.push_back("billet/" + shape.name);
+      }
+      else if (!has_all || !is_mode(name)) // one that is given a value stands for itself in all of them
+        single.push_back(name);
     return single;
   }
 

@@ -145,6 +145,9 @@ def free_form():
     spline, _ = optimize("spline", "Billet/element size=4")
     judge("all modes vary", len(found["parameters"]) == 9)
     judge("better than the spline", found["objective"]["best"] < spline["objective"]["best"], found["objective"])
+    done = run("gradient", "free_hand", case="free/best.prm")
+    value = summary_of("free_hand")["objectives"][0]["value"] if done.returncode == 0 else None
+    judge("its parameters", value == found["objective"]["best"], f"{value} {done.stderr}")
     judge("modes belong to their mesh", "not confirmed" in printed and "confirmation" not in found)
 
 
@@ -228,6 +231,15 @@ def scattered():
     judge("the scattered parameter stays", found["parameters"][1]["at"] == "not varied")
 
 
+def confirmed():
+    """Finer, and finer still, from the same journal."""
+    first, _ = optimize("confirmed", "Optimisation/confirmation=0.9")
+    again, printed = optimize("confirmed", "--resume", "Optimisation/confirmation=0.7")
+    judge("confirmed", first["confirmation"]["best"] < 0.3 * first["confirmation"]["start"], first["confirmation"])
+    judge("and on a finer mesh", again["confirmation"]["nodes"] > first["confirmation"]["nodes"] and best_of(again) == best_of(first))
+    judge("without forging anew", "taken from the journal" in printed)
+
+
 def on_two_ranks():
     """Systems solved well: ranks sum in another order, and default tolerances leave 1e-8 of it in the optimum."""
     exact = ("Newton/tolerance=1e-12", "Adjoint/tolerance=1e-12")
@@ -266,9 +278,11 @@ def refused():
             ("another case", "whole", ["--resume", "Die upper/friction=0.2"], "other parameters")):
         done = run("optimize", output, *settings)
         judge(what, done.returncode == 1 and expected in done.stderr, done.stderr.strip())
+    done = start(["mpirun", "-np", "2", *command("optimize", "whole", "--resume")])
+    judge("another number of ranks", done.returncode != 0 and "rank(s)" in done.stderr, done.stderr.strip())
     judge("nothing was touched", text_of("whole", "journal.jsonl") == before)
     found, printed = optimize("whole", "--resume", "Optimisation/gradient tolerance=1e-4")
     judge("resumed with another tolerance", "taken from the journal" in printed and found["simulations"] >= len(before.splitlines()) // 3)
 
 
-main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, free_form, bounded, failing, from_elsewhere, identified, scattered, on_two_ranks, reported, refused))
+main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, free_form, bounded, failing, from_elsewhere, identified, scattered, confirmed, on_two_ranks, reported, refused))
