@@ -210,15 +210,16 @@ namespace retroforge
     }
 
     /// The part of a curved die that faces the billet must not end inside of another die. (What is beside the
-    /// billet, as a guide of the dies, may.)
+    /// billet, as a guide of the dies, may; and what is inside from the start, as a mandrel in its hole or
+    /// the wall of a die that slides along an ejector.)
     void check_surfaces(const Parameters           &parameters,
                         const Scene                &scene,
                         const Process<double>      &process,
                         const NodalVectors<double> &X)
     {
       const auto   faces_billet = beside(X, process.dies[process.leading_die].velocity);
-      const auto   dies         = process.at_stroke(parameters.press.stroke).dies;
-      const double allowed      = touching * std::cbrt(volume(scene.mesh.cells, X));
+      const auto   first = process.at_stroke(0.).dies, dies = process.at_stroke(parameters.press.stroke).dies;
+      const double allowed = touching * std::cbrt(volume(scene.mesh.cells, X));
       for (unsigned int a = 0; a < dies.size(); ++a)
         for (unsigned int b = 0; b < dies.size(); ++b)
           if (const TriangleSurface *surface = scene.dies[a].surface();
@@ -226,7 +227,8 @@ namespace retroforge
           {
             double nearest = allowed;
             for (const Vec3 &x : surface->vertices())
-              if (faces_billet(x + dies[a].displacement))
+              if (faces_billet(x + dies[a].displacement) &&
+                  scene.dies[b].signed_distance(x + first[a].displacement, first[b].displacement) > -allowed)
                 nearest = std::min(
                   nearest, scene.dies[b].signed_distance(x + dies[a].displacement, dies[b].displacement));
             if (nearest < -allowed)

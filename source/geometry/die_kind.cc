@@ -42,7 +42,9 @@ namespace retroforge
     static const Kinds::Makers kinds = {{"plane", Kinds::make<PlaneDie>},
                                         {"stl", Kinds::make<StlDie>},
                                         {"tripod", Kinds::make<TripodDie>},
-                                        {"bell", Kinds::make<BellDie>}};
+                                        {"bell", Kinds::make<BellDie>},
+                                        {"gear", Kinds::make<GearDie>},
+                                        {"punch", Kinds::make<PunchDie>}};
     return kinds;
   }
 
@@ -83,10 +85,11 @@ namespace retroforge
 
   void SurfaceDie::add_angle(dealii::ParameterHandler &prm)
   {
-    prm.add_parameter("rotation angle",
-                      angle,
-                      "Of an STL surface about that axis, of a tripod or bell about its own. Units: degrees.",
-                      Double(-360., 360.));
+    prm.add_parameter(
+      "rotation angle",
+      angle,
+      "Of an STL surface about that axis, of a die by measures about its own. Units: degrees.",
+      Double(-360., 360.));
   }
 
   Die SurfaceDie::make(const DiePlace &place) const
@@ -142,24 +145,6 @@ namespace retroforge
 
   namespace
   {
-    template <typename Number>
-    ShapeMesh<Number> make_mesh(const std::string         &where,
-                                const TripodShape<Number> &shape,
-                                const double               error,
-                                Segments                  &segments)
-    {
-      return make_tripod(where, shape, error, segments);
-    }
-
-    template <typename Number>
-    ShapeMesh<Number> make_mesh(const std::string       &where,
-                                const BellShape<Number> &shape,
-                                const double             error,
-                                Segments                &segments)
-    {
-      return make_bell(where, shape, error, segments);
-    }
-
     /// A shape of another number type, with some of its measures replaced.
     template <template <typename> class Shape, typename Number>
     Shape<Number> changed_shape(const Shape<double> &shape, const std::map<std::string, Number> &changed)
@@ -168,7 +153,13 @@ namespace retroforge
       Shape<double>::for_each_measure(shape, [&](const Measure &measure, const double x) {
         values.insert({measure.name, Number(x)});
       });
+      std::vector<unsigned int> counts;
+      Shape<double>::for_each_count(
+        shape, [&](const char *, const char *, const unsigned int n) { counts.push_back(n); });
       Shape<Number> result;
+      std::size_t   next = 0;
+      Shape<Number>::for_each_count(result,
+                                    [&](const char *, const char *, unsigned int &n) { n = counts[next++]; });
       Shape<Number>::for_each_measure(
         result, [&](const Measure &measure, Number &x) { x = values.at(measure.name); });
       return result;
@@ -182,9 +173,12 @@ namespace retroforge
     add_angle(prm);
     prm.add_parameter("chord error",
                       chord_error,
-                      "Largest distance of a tripod's or bell's facets from its smooth shape. Units: mm.",
+                      "Largest distance of the facets of a die by measures from its smooth shape. Units: mm.",
                       Double(1e-6));
     prm.enter_subsection(Shape<double>::section());
+    Shape<double>::for_each_count(shape, [&](const char *name, const std::string &meaning, unsigned int &n) {
+      prm.add_parameter(name, n, meaning + " Units: none.", dealii::Patterns::Integer(1, 1000));
+    });
     Shape<double>::for_each_measure(shape, [&](const Measure &measure, double &x) {
       prm.add_parameter(measure.name,
                         x,
@@ -212,7 +206,7 @@ namespace retroforge
                                            Segments                            &segments) const
   {
     segments.again();
-    auto mesh = make_mesh(
+    auto mesh = shape_mesh(
       place.section + "/" + Shape<double>::section(), changed_shape(shape, changed), chord_error, segments);
     const dealii::Tensor<2, 3> R = rotation_to(place.facing) * rotation(Vec3({0., 0., 1.}), angle);
     for (Vector3<Number> &x : mesh.vertices)
@@ -259,4 +253,6 @@ namespace retroforge
 
   template class CavityDie<TripodShape>;
   template class CavityDie<BellShape>;
+  template class CavityDie<GearShape>;
+  template class CavityDie<PunchShape>;
 } // namespace retroforge

@@ -12,12 +12,13 @@ namespace retroforge
     prm.enter_subsection(section());
     shape.add_name(prm,
                    "shape",
-                   "plane; stl: the surface in `file`, whose normals point to the workpiece; tripod, bell: a "
-                   "flat face with a cavity. Units: none.");
+                   "plane; stl: the surface in `file`, whose normals point to the workpiece; tripod, bell, "
+                   "gear: a flat face with a cavity; punch: a round bar with a flat end; these four by "
+                   "measures. Units: none.");
     prm.add_parameter("point",
                       point,
-                      "At the start of the run, a point of the working face; of a tripod or bell, where its "
-                      "axis meets the face; of an STL surface, by how much it is moved. Units: mm.");
+                      "At the start of the run, a point of the working face; of a die by measures, where its "
+                      "axis meets its face; of an STL surface, by how much it is moved. Units: mm.");
     prm.add_parameter(
       "facing",
       facing,

@@ -1,188 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/base/numbers.h>
-
-#include <retroforge/core/dual.h>
-#include <retroforge/core/error.h>
-#include <retroforge/geometry/die_shapes.h>
-
-#include <cmath>
-#include <functional>
+#include <retroforge/geometry/die_rings.templates.h>
 
 namespace retroforge
 {
-  namespace
-  {
-    constexpr double pi = dealii::numbers::PI, most_facets = 1e6;
-
-    template <typename Number>
-    struct Point2
-    {
-      Number x, y;
-    };
-
-    template <typename Number>
-    using Points2 = std::vector<Point2<Number>>;
-
-    /// Half of a sector of an outline, moved inwards: the ends included, always as many points.
-    template <typename Number>
-    using Outline = std::function<Points2<Number>(const Number &inwards)>;
-
-    void require(const bool condition, const std::string &where, const std::string &what, const char *rule)
-    {
-      if (!condition)
-        throw Error(where, what, rule, "change the measures so that they fit each other");
-    }
-
-    /// Points of an arc at angles from..to about a centre; the first is left out if there are points before.
-    template <typename Number>
-    void append_arc(Points2<Number>      &points,
-                    const Point2<Number> &centre,
-                    const Number         &radius,
-                    const Number         &from,
-                    const Number         &to,
-                    const unsigned int    n)
-    {
-      using std::cos;
-      using std::sin;
-      for (unsigned int i = points.empty() ? 0 : 1; i <= n; ++i)
-      {
-        const Number a = from + (to - from) * (double(i) / n);
-        points.push_back({centre.x + radius * cos(a), centre.y + radius * sin(a)});
-      }
-    }
-
-    /// (o, z) from the floor to the face. @param tangent_face, tangent_floor  how far the roundings reach
-    /// along face and floor
-    template <typename Number>
-    struct Section
-    {
-      Points2<Number> points;
-      Number          reach_out; ///< of the edge, outwards on the face
-      Number          reach_in;  ///< of the fillet, inwards on the floor
-    };
-
-    template <typename Number>
-    Section<Number> make_section(const std::string           &where,
-                                 const CavityProfile<Number> &profile,
-                                 const double                 chord_error,
-                                 Segments                    &segments)
-    {
-      using std::cos;
-      using std::sin;
-      using std::tan;
-      const auto require_positive = [&where](const std::string &name, const Number &x) {
-        require(value_of(x) > 0., where + "/" + name, "is " + as_text(value_of(x)), "must be > 0");
-      };
-      require_positive("depth", profile.depth);
-      require_positive("edge radius", profile.edge);
-      require_positive("fillet radius", profile.fillet);
-      require(value_of(profile.draft) >= 0. && value_of(profile.draft) < 80.,
-              where + "/draft angle",
-              "is " + as_text(value_of(profile.draft)),
-              "must be from 0 to 80 degrees");
-      const Number draft = profile.draft * (pi / 180.), turn = 0.5 * pi - draft, slope = tan(draft),
-                   tangent = tan(Number(0.5 * turn));
-      // The wall must be longer than the parts that the roundings take of it.
-      require(value_of(Number(profile.depth / cos(draft))) >
-                value_of(Number((profile.edge + profile.fillet) * tangent)),
-              where,
-              "edge radius and fillet radius take more than the whole wall",
-              "a part of the wall must remain between them");
-      Section<Number> section;
-      section.reach_out           = profile.edge * tangent;
-      section.reach_in            = profile.depth * slope + profile.fillet * tangent;
-      const unsigned int n_fillet = segments(value_of(profile.fillet), value_of(turn), chord_error),
-                         n_edge   = segments(value_of(profile.edge), value_of(turn), chord_error);
-      for (unsigned int i = 0; i <= n_fillet; ++i)
-      {
-        const Number a = turn * (double(i) / n_fillet);
-        section.points.push_back(
-          {section.reach_in - profile.fillet * sin(a), -profile.depth + profile.fillet * (1. - cos(a))});
-      }
-      for (unsigned int i = n_edge + 1; i-- > 0;)
-      {
-        const Number a = turn * (double(i) / n_edge);
-        section.points.push_back({-section.reach_out + profile.edge * sin(a), -profile.edge * (1. - cos(a))});
-      }
-      return section;
-    }
-
-    /// A half sector repeated around the axis, every second one mirrored; counter-clockwise.
-    template <typename Number>
-    Points2<Number> whole_ring(const Points2<Number> &half, const unsigned int n_halves)
-    {
-      const unsigned int m = half.size() - 1;
-      Points2<Number>    ring;
-      for (unsigned int s = 0; s < n_halves; ++s)
-      {
-        const bool   mirrored = s % 2 == 1;
-        const double angle = 2. * pi / n_halves * (mirrored ? s + 1 : s), c = std::cos(angle),
-                     d = std::sin(angle);
-        for (unsigned int i = 0; i < m; ++i)
-        {
-          const Point2<Number> &p = half[mirrored ? m - i : i];
-          const Number          y = mirrored ? Number(-p.y) : p.y;
-          ring.push_back({c * p.x - d * y, d * p.x + c * y});
-        }
-      }
-      return ring;
-    }
-
-    template <typename Number>
-    ShapeMesh<Number> make_rings(const std::string     &where,
-                                 const Outline<Number> &outline,
-                                 const Section<Number> &section,
-                                 const Number          &outer,
-                                 const unsigned int     n_halves)
-    {
-      using std::sqrt;
-      const double n_facets =
-        2. * section.points.size() * n_halves * (outline(section.points[0].x).size() - 1.);
-      require(n_facets <= most_facets,
-              where,
-              "has " + as_text(n_facets) + " facets",
-              "a die may have 1e6, and its `chord error' sets their number");
-      ShapeMesh<Number> mesh;
-      const auto        add = [&mesh](const Number &x, const Number &y, const Number &z) {
-        Vector3<Number> v;
-        v[0] = x;
-        v[1] = y;
-        v[2] = z;
-        mesh.vertices.push_back(v);
-      };
-      add(Number(0.), Number(0.), section.points[0].y);
-      unsigned int n = 0;
-      for (const Point2<Number> &place : section.points)
-      {
-        const Points2<Number> ring = whole_ring(outline(place.x), n_halves);
-        n                          = ring.size();
-        for (const Point2<Number> &p : ring)
-          add(p.x, p.y, place.y);
-      }
-      const std::size_t last = mesh.vertices.size() - n;
-      for (unsigned int i = 0; i < n; ++i)
-      {
-        const Vector3<Number> v   = mesh.vertices[last + i];
-        const Number          out = outer / sqrt(Number(v[0] * v[0] + v[1] * v[1]));
-        add(v[0] * out, v[1] * out, v[2]);
-      }
-      const unsigned int m = n / n_halves;
-      for (unsigned int i = 0; i < n; ++i)
-        mesh.triangles.push_back({{0, 1 + i, 1 + (i + 1) % n}});
-      for (unsigned int k = 0; k < section.points.size(); ++k)
-        for (unsigned int i = 0; i < n; ++i)
-        {
-          const unsigned int j = (i + 1) % n, a = 1 + k * n + i, b = 1 + (k + 1) * n + i,
-                             c = 1 + (k + 1) * n + j, d = 1 + k * n + j;
-          if (i / m % 2 == 0)
-            mesh.triangles.insert(mesh.triangles.end(), {{{a, b, c}}, {{a, c, d}}});
-          else
-            mesh.triangles.insert(mesh.triangles.end(), {{{a, b, d}}, {{b, c, d}}});
-        }
-      return mesh;
-    }
-  } // namespace
+  using namespace die_rings;
 
   unsigned int Segments::operator()(const double radius, const double angle, const double error)
   {
@@ -193,10 +15,10 @@ namespace retroforge
   }
 
   template <typename Number>
-  ShapeMesh<Number> make_tripod(const std::string         &where,
-                                const TripodShape<Number> &shape,
-                                const double               chord_error,
-                                Segments                  &segments)
+  ShapeMesh<Number> shape_mesh(const std::string         &where,
+                               const TripodShape<Number> &shape,
+                               const double               chord_error,
+                               Segments                  &segments)
   {
     const double error = 0.5 * chord_error; // chords in plan and in section add up
     using std::atan2;
@@ -245,14 +67,14 @@ namespace retroforge
       append_arc(points, {zero, zero}, Number(shape.hub - o), angle, Number(pi / 3.), n_hub);
       return points;
     };
-    return make_rings(where, outline, section, shape.outer, 6);
+    return make_rings(where, outline, section, std::optional<Number>(shape.outer), 6);
   }
 
   template <typename Number>
-  ShapeMesh<Number> make_bell(const std::string       &where,
-                              const BellShape<Number> &shape,
-                              const double             chord_error,
-                              Segments                &segments)
+  ShapeMesh<Number> shape_mesh(const std::string       &where,
+                               const BellShape<Number> &shape,
+                               const double             chord_error,
+                               Segments                &segments)
   {
     const double error   = 0.5 * chord_error; // chords in plan and in section add up
     const auto   section = make_section(where, shape.profile, error, segments);
@@ -272,13 +94,56 @@ namespace retroforge
       append_arc(points, {zero, zero}, Number(shape.mouth - o), zero, Number(0.5 * pi), n);
       return points;
     };
-    return make_rings(where, outline, section, shape.outer, 4);
+    return make_rings(where, outline, section, std::optional<Number>(shape.outer), 4);
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                     \
-  template ShapeMesh<Number> make_tripod(                                  \
-    const std::string &, const TripodShape<Number> &, double, Segments &); \
-  template ShapeMesh<Number> make_bell(const std::string &, const BellShape<Number> &, double, Segments &);
+  template <typename Number>
+  ShapeMesh<Number> shape_mesh(const std::string        &where,
+                               const PunchShape<Number> &shape,
+                               const double              chord_error,
+                               Segments                 &segments)
+  {
+    using std::cos;
+    using std::sin;
+    using std::tan;
+    const double error = 0.5 * chord_error; // chords in plan and in section add up
+    require_positive(where, "length", shape.length);
+    require_positive(where, "edge radius", shape.edge);
+    require_draft(where, shape.draft);
+    const Number    turn = 0.5 * pi - shape.draft * (pi / 180.), tangent = tan(Number(0.5 * turn));
+    Section<Number> section;
+    section.reach_in = shape.edge * tangent;
+    require(value_of(shape.radius) > value_of(section.reach_in),
+            where + "/radius",
+            "is " + as_text(value_of(shape.radius)) + " where the rounded edge takes " +
+              as_text(value_of(section.reach_in)),
+            "a part of the flat end must remain");
+    require(value_of(shape.length) > value_of(Number(shape.edge * (1. - cos(turn)))),
+            where + "/length",
+            "is " + as_text(value_of(shape.length)),
+            "a punch must be longer than its edge is round");
+    const unsigned int n_edge = segments(value_of(shape.edge), value_of(turn), error);
+    for (unsigned int i = 0; i <= n_edge; ++i)
+    {
+      const Number a = turn * (double(i) / n_edge);
+      section.points.push_back({section.reach_in - shape.edge * sin(a), -shape.edge * (1. - cos(a))});
+    }
+    const Number side = shape.length / tan(turn); // how much wider it is at the end of its side
+    section.points.push_back({-side, -shape.length});
+    const unsigned int    n       = segments(value_of(Number(shape.radius + side)), 0.5 * pi, error);
+    const Outline<Number> outline = [&](const Number &o) {
+      Points2<Number> points;
+      append_arc(points, {Number(0.), Number(0.)}, Number(shape.radius - o), Number(0.), Number(0.5 * pi), n);
+      return points;
+    };
+    return make_rings(where, outline, section, std::optional<Number>(), 4);
+  }
+
+#define RETROFORGE_INSTANTIATE(Number)                                                                       \
+  template ShapeMesh<Number> shape_mesh(                                                                     \
+    const std::string &, const TripodShape<Number> &, double, Segments &);                                   \
+  template ShapeMesh<Number> shape_mesh(const std::string &, const BellShape<Number> &, double, Segments &); \
+  template ShapeMesh<Number> shape_mesh(const std::string &, const PunchShape<Number> &, double, Segments &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE

@@ -211,7 +211,7 @@ namespace retroforge
           throw Error(where + "/target",
                       "die '" + context.dies[d].name + "' is a plane",
                       "a plane has no cavity to fill",
-                      "name a die of shape stl, tripod or bell");
+                      "name a die of a shape other than plane");
         return TargetSurface(std::make_shared<TriangleSurface>(*context.dies[d].surface()), d, box);
       }
 

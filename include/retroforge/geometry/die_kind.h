@@ -122,4 +122,6 @@ namespace retroforge
 
   using TripodDie = CavityDie<TripodShape>;
   using BellDie   = CavityDie<BellShape>;
+  using GearDie   = CavityDie<GearShape>;
+  using PunchDie  = CavityDie<PunchShape>;
 } // namespace retroforge

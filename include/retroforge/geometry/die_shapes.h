@@ -9,12 +9,14 @@
 
 /// @file
 /// Dies made from a few numbers: a flat face z = 0 with a cavity below it, open towards +z, where the
-/// workpiece is. Templated on the number type, so that vertices come with their derivatives in the shape's
-/// parameters; how many vertices there are follows from the values alone.
+/// workpiece is; or a punch, whose flat end is that face. Templated on the number type, so that vertices come
+/// with their derivatives in the shape's parameters; how many vertices there are follows from the values
+/// alone.
 ///
 /// All are one construction: rings around the z axis. A ring is the cavity's outline in plan, moved inwards
 /// by o at depth z, and (o, z) runs along a profile: flat face, rounded edge, drafted wall, fillet, flat
-/// floor. Halves of a sector are mirror images, so that a die cut by its planes of symmetry is the whole one.
+/// floor; of a punch end, edge and side. Halves of a sector are mirror images, so that a die cut by its
+/// planes of symmetry is the whole one.
 namespace retroforge
 {
   /// Vertices and facets, as TriangleSurface takes them.
@@ -30,6 +32,15 @@ namespace retroforge
   {
     std::string name, meaning, unit;
     double      value = 0.;
+  };
+
+  /// Of a shape whose design is told by measures alone.
+  struct NoCounts
+  {
+    template <typename Self, typename F>
+    static void for_each_count(Self &, const F &)
+    {
+    }
   };
 
   /// What a cavity looks like in section.
@@ -56,7 +67,7 @@ namespace retroforge
   /// prolonged, meets the face. The defaults, of upper and lower die together, take up a billet of radius 20
   /// and height 60 crushed by 40: floors 20 apart, faces 1 apart.
   template <typename Number>
-  struct TripodShape
+  struct TripodShape : NoCounts
   {
     Number                hub    = 24.; ///< radius [mm]
     Number                width  = 24.; ///< of an arm, whose end is a half circle [mm]
@@ -81,7 +92,7 @@ namespace retroforge
 
   /// A bell: a body of revolution around the z axis.
   template <typename Number>
-  struct BellShape
+  struct BellShape : NoCounts
   {
     Number                mouth = 60.; ///< radius where the wall, prolonged, meets the face [mm]
     Number                outer = 90.; ///< radius of the face [mm]
@@ -95,6 +106,72 @@ namespace retroforge
       f(Measure{"mouth radius", "In the plane of the face.", "mm"}, self.mouth);
       f(Measure{"outer radius", "Of the face.", "mm"}, self.outer);
       CavityProfile<Number>::for_each_measure(self.profile, f);
+    }
+  };
+
+  /// A spur gear with straight flanks, a tooth's middle on the x axis. A flank is inclined against the radius
+  /// through the tooth's middle, so that a tooth gets narrower outwards. Plan measures hold where the wall,
+  /// prolonged, meets the face; the roundings in plan keep their radii down the wall. The defaults are those
+  /// of a gear of 10 teeth made from a ring of radius 25.5 and height 45 crushed by 21; the wall is deeper
+  /// than the ring is high, for a die that slides along the lower tool. @cite Laroussi2003, Fig. 29, whose
+  /// measures are not published
+  template <typename Number>
+  struct GearShape
+  {
+    unsigned int          teeth     = 10;
+    Number                root      = 25.8; ///< radius between the teeth [mm]
+    Number                tip       = 38.9; ///< radius of the teeth's ends [mm]
+    Number                reference = 31.5; ///< radius at which a tooth's angle is measured [mm]
+    Number                tooth     = 18.;  ///< angle that a tooth takes there [degrees]
+    Number                flank = 15.; ///< of a flank against the radius through the tooth's middle [degrees]
+    Number                root_round = 2.;  ///< radius in plan at a tooth's foot [mm]
+    Number                tip_round  = 1.5; ///< radius in plan at a tooth's end [mm]
+    Number                outer      = 55.; ///< radius of the face [mm]
+    CavityProfile<Number> profile{46., 0., 0.5, 1.5};
+
+    static const char *section() { return "Gear"; } ///< in parameter files
+
+    template <typename Self, typename F>
+    static void for_each_count(Self &self, const F &f)
+    {
+      f("teeth", "Number of teeth.", self.teeth);
+    }
+
+    template <typename Self, typename F>
+    static void for_each_measure(Self &self, const F &f)
+    {
+      f(Measure{"root radius", "Between the teeth, in the plane of the face.", "mm"}, self.root);
+      f(Measure{"tip radius", "Of the teeth's ends, in the plane of the face.", "mm"}, self.tip);
+      f(Measure{"reference radius", "At which a tooth's angle is measured.", "mm"}, self.reference);
+      f(Measure{"tooth angle", "That a tooth takes at the reference radius.", "degrees"}, self.tooth);
+      f(Measure{"flank angle", "Of a flank against the radius through the tooth's middle.", "degrees"},
+        self.flank);
+      f(Measure{"root rounding", "Radius in plan at a tooth's foot.", "mm"}, self.root_round);
+      f(Measure{"tip rounding", "Radius in plan at a tooth's end.", "mm"}, self.tip_round);
+      f(Measure{"outer radius", "Of the face.", "mm"}, self.outer);
+      CavityProfile<Number>::for_each_measure(self.profile, f);
+    }
+  };
+
+  /// A round punch, or with its side alone at work a mandrel: its flat end is z = 0, its body below. The
+  /// radius holds where the side, prolonged, meets the end.
+  template <typename Number>
+  struct PunchShape : NoCounts
+  {
+    Number radius = 10.; ///< [mm]
+    Number length = 60.; ///< of its side, along the axis [mm]
+    Number draft  = 0.;  ///< of its side against the axis, wider with the distance from the end [degrees]
+    Number edge   = 1.;  ///< radius of the edge between end and side [mm]
+
+    static const char *section() { return "Punch"; } ///< in parameter files
+
+    template <typename Self, typename F>
+    static void for_each_measure(Self &self, const F &f)
+    {
+      f(Measure{"radius", "In the plane of its end.", "mm"}, self.radius);
+      f(Measure{"length", "Of its side, along the axis.", "mm"}, self.length);
+      f(Measure{"draft angle", "Of its side against the axis.", "degrees"}, self.draft);
+      f(Measure{"edge radius", "Between end and side.", "mm"}, self.edge);
     }
   };
 
@@ -118,25 +195,24 @@ namespace retroforge
   /// @throws Error  whose place begins with `where`, when the measures do not fit each other
   template <typename Number>
   ShapeMesh<Number>
-  make_tripod(const std::string &where, const TripodShape<Number> &, double chord_error, Segments &);
+  shape_mesh(const std::string &where, const TripodShape<Number> &, double chord_error, Segments &);
 
   template <typename Number>
   ShapeMesh<Number>
-  make_bell(const std::string &where, const BellShape<Number> &, double chord_error, Segments &);
+  shape_mesh(const std::string &where, const BellShape<Number> &, double chord_error, Segments &);
 
   template <typename Number>
   ShapeMesh<Number>
-  make_tripod(const std::string &where, const TripodShape<Number> &shape, const double chord_error)
+  shape_mesh(const std::string &where, const GearShape<Number> &, double chord_error, Segments &);
+
+  template <typename Number>
+  ShapeMesh<Number>
+  shape_mesh(const std::string &where, const PunchShape<Number> &, double chord_error, Segments &);
+
+  template <template <typename> class Shape, typename Number>
+  ShapeMesh<Number> shape_mesh(const std::string &where, const Shape<Number> &shape, const double chord_error)
   {
     Segments segments;
-    return make_tripod(where, shape, chord_error, segments);
-  }
-
-  template <typename Number>
-  ShapeMesh<Number>
-  make_bell(const std::string &where, const BellShape<Number> &shape, const double chord_error)
-  {
-    Segments segments;
-    return make_bell(where, shape, chord_error, segments);
+    return shape_mesh(where, shape, chord_error, segments);
   }
 } // namespace retroforge

@@ -252,7 +252,7 @@ namespace
   void know_shapes()
   {
     const BellShape<double> bell;
-    const auto              mesh = make_bell("bell", bell, 0.05);
+    const auto              mesh = shape_mesh("bell", bell, 0.05);
     const TriangleSurface   surface("bell", mesh.vertices, mesh.triangles);
     const CornerNormals     normals(surface, 40.);
     const double draft = bell.profile.draft * M_PI / 180., turn = M_PI / 2. - draft, e = bell.profile.edge,
