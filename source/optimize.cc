@@ -366,13 +366,17 @@ namespace retroforge
   void Optimize::minimise_merit()
   {
     const OptimisationParameters &parameters = case_.parameters.optimisation;
-    // A round before may have ended with steps as short as its noise.
-    const double radius = std::clamp(radius_, 0.25 * parameters.first_step, parameters.largest_step);
-    minimiser_.minimise(
-      problem(),
-      {radius, parameters.largest_step, results_.noise / merit_.size, [&](const MinimiserState &state) {
-         return go_on(state);
-       }});
+    const double                  noise      = results_.noise / merit_.size;
+    // A step shorter than the noise lets see tells nothing: the first one promises several times as much,
+    // where the largest step can. A round before may have ended with steps as short as its noise.
+    constexpr double several = 4.;
+    const double     slope   = space_.projected_length(now_.mu, merit_.gradient(now_.values, now_.gradients));
+    const double     seen    = slope > 0. ? several * noise / slope : 0.;
+    const double     radius =
+      std::clamp(std::max(radius_, seen), 0.25 * parameters.first_step, parameters.largest_step);
+    minimiser_.minimise(problem(), {radius, parameters.largest_step, noise, [&](const MinimiserState &state) {
+                                      return go_on(state);
+                                    }});
   }
 
   std::vector<double> Optimize::known_hessian(const std::vector<double> &v) const
