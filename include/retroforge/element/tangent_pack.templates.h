@@ -59,4 +59,17 @@ namespace retroforge
       slope[lane]  = law.slope(eps2[lane]);
     }
   }
+
+  /// The law's potential over its factor.
+  RETROFORGE_INLINE void
+  ask_potential_ratio(const MaterialLaw<double> &law, const double &eps2, double &ratio)
+  {
+    ratio = law.potential_ratio(eps2);
+  }
+
+  RETROFORGE_INLINE void ask_potential_ratio(const MaterialLaw<double> &law, const Pack &eps2, Pack &ratio)
+  {
+    for (unsigned int lane = 0; lane < n_lanes; ++lane)
+      ratio[lane] = law.potential_ratio(eps2[lane]);
+  }
 } // namespace retroforge
