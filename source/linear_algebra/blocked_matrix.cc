@@ -24,7 +24,7 @@ namespace retroforge
     }
 
     /// One sum after the other, as a product by rows has them, and not by fused multiplications: the same
-    /// bits on all processors. The matrix comes from memory no faster.
+    /// bits on all processors.
     RETROFORGE_ALSO_FOR("avx")
     void multiply(const NodeBlocks<double> &A, const double *x, double *y)
     {

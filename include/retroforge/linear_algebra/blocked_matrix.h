@@ -12,7 +12,7 @@
 namespace retroforge
 {
   /// A matrix with rows and columns in threes whose products go by blocks of nodes: the bits of the matrix's
-  /// own product in about half of its time. What Trilinos' preconditioners ask for besides comes from the
+  /// own product, from fewer bytes. What Trilinos' preconditioners ask for besides comes from the
   /// matrix.
   class BlockedMatrix : public Epetra_BasicRowMatrix
   {
