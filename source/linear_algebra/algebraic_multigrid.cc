@@ -8,7 +8,7 @@
 namespace retroforge
 {
   std::unique_ptr<dealii::TrilinosWrappers::PreconditionAMG>
-  make_algebraic_multigrid(const la::SparseMatrix &A, const std::vector<double> &near_kernel)
+  make_algebraic_multigrid(const Epetra_RowMatrix &A, const std::vector<double> &near_kernel)
   {
     Teuchos::ParameterList list;
     ML_Epetra::SetDefaults("SA", list);

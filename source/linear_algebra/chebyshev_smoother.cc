@@ -35,37 +35,21 @@ namespace retroforge
   } // namespace
 
   ChebyshevSmoother::ChebyshevSmoother(const la::SparseMatrix &A)
-      : A_(A), n_rows_(A.trilinos_matrix().NumMyRows())
+      : A_(A), n_rows_(A.trilinos_matrix().NumMyRows()), blocks_(A)
   {
-    copy_blocks();
+    take_diagonal();
     z_.assign(A.trilinos_matrix().NumMyCols(), 0.);
     r_.assign(n_rows_ + 1, 0.);
     defect_ = change_ = r_;
     largest_          = above_estimate * largest_eigenvalue();
   }
 
-  void ChebyshevSmoother::copy_blocks()
+  void ChebyshevSmoother::take_diagonal()
   {
-    int    *begin, *columns;
-    double *values;
-    A_.trilinos_matrix().ExtractCrsDataPointers(begin, columns, values);
-    for (unsigned int row = 0; row < n_rows_; row += 3)
-    {
-      const unsigned int width = begin[row + 1] - begin[row];
-      for (unsigned int e = 0; e < width; e += 3)
-      {
-        const unsigned int column = columns[begin[row] + e];
-        columns_.push_back(column);
-        for (unsigned int j = 0; j < 3; ++j)
-          for (unsigned int i = 0; i < 3; ++i)
-            blocks_.push_back(values[begin[row + i] + e + j]);
-        if (column == row)
-          for (unsigned int i = 0; i < 3; ++i)
-            inverse_diagonal_.push_back(1. / values[begin[row + i] + e + i]);
-      }
-      begin_.push_back(columns_.size());
-    }
-    blocks_.push_back(0.);
+    Epetra_Vector diagonal(A_.trilinos_matrix().RowMap(), false);
+    A_.trilinos_matrix().ExtractDiagonalCopy(diagonal);
+    for (unsigned int i = 0; i < n_rows_; ++i)
+      inverse_diagonal_.push_back(1. / diagonal[i]);
   }
 
   float ChebyshevSmoother::largest_eigenvalue() const
@@ -107,9 +91,9 @@ namespace retroforge
     for (unsigned int row = 0; row < n_rows_; row += 3)
     {
       Lanes first = load(&r_[row]), second = {}, third = {};
-      for (unsigned int e = begin_[row / 3]; e < begin_[row / 3 + 1]; ++e)
+      for (unsigned int e = blocks_.begin[row / 3]; e < blocks_.begin[row / 3 + 1]; ++e)
       {
-        const float *block = &blocks_[9 * e], *z = &z_[columns_[e]];
+        const float *block = &blocks_.values[9 * e], *z = &z_[blocks_.columns[e]];
         first -= load(block) * z[0];
         second -= load(block + 3) * z[1];
         third -= load(block + 6) * z[2];

@@ -43,7 +43,8 @@ namespace retroforge
     multiply(A, P, linear_);
     // ML guesses eigenvalues from random vectors: always the same ones.
     ML_set_random_seed(1);
-    of_linear_ = make_algebraic_multigrid(linear_, first_rows(near_kernel, linear_r_.locally_owned_size()));
+    of_linear_ = make_algebraic_multigrid(linear_.trilinos_matrix(),
+                                          first_rows(near_kernel, linear_r_.locally_owned_size()));
   }
 
   void PMultigrid::vmult(la::Vector &z, const la::Vector &r) const

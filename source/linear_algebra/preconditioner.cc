@@ -5,23 +5,23 @@
 
 namespace retroforge
 {
-  Preconditioner::Preconditioner(const la::SparseMatrix    &A,
+  Preconditioner::Preconditioner(const BlockedMatrix       &A,
                                  const la::SparseMatrix    &B,
                                  const la::SparseMatrix    &D,
                                  const la::SparseMatrix    &S,
                                  const bool                 multigrid,
                                  const std::vector<double> &near_kernel,
                                  const la::SparseMatrix    *interpolation)
-      : B_(B), D_(D), momentum_(A.locally_owned_range_indices(), A.get_mpi_communicator())
+      : B_(B), D_(D), momentum_(A.matrix().locally_owned_range_indices(), A.matrix().get_mpi_communicator())
   {
     if (multigrid && interpolation)
-      A_ = std::make_unique<PMultigrid>(A, *interpolation, near_kernel);
+      A_ = std::make_unique<PMultigrid>(A.matrix(), *interpolation, near_kernel);
     else if (multigrid)
       A_ = make_algebraic_multigrid(A, near_kernel);
     else
     {
       auto ilu = std::make_unique<dealii::TrilinosWrappers::PreconditionILU>();
-      ilu->initialize(A);
+      ilu->initialize(A.matrix());
       A_ = std::move(ilu);
     }
     S_.initialize(S);

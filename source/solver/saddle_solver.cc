@@ -18,21 +18,16 @@ namespace retroforge
     /// when it was new, and so many more; and for the next solve from `aged` times on.
     constexpr double patience = 2.5, spare_iterations = 10., aged = 1.7;
 
-    /// M or its preconditioner, or the transpose of either.
-    template <typename Matrix>
+    /// A function of two vectors, as deal.II's solvers call it.
+    template <typename F>
     struct Operator
     {
-      const Matrix &matrix;
-      Transposition transposition;
+      F of;
 
-      void vmult(la::BlockVector &y, const la::BlockVector &x) const
-      {
-        if (transposition == Transposition::plain)
-          matrix.vmult(y, x);
-        else
-          matrix.Tvmult(y, x);
-      }
+      void vmult(la::BlockVector &y, const la::BlockVector &x) const { of(y, x); }
     };
+    template <typename F>
+    Operator(F) -> Operator<F>;
   } // namespace
 
   void LinearSolverParameters::add_parameters(ParameterHandler &prm)
@@ -97,13 +92,12 @@ namespace retroforge
                                   const Transposition                 transposition,
                                   la::BlockVector                    &x) const
   {
-    const Operator<la::BlockSparseMatrix> M{system_.matrix, transposition};
-    la::BlockVector                       r = b;
-    std::vector<la::BlockVector>          images, sources;
+    la::BlockVector              r = b;
+    std::vector<la::BlockVector> images, sources;
     for (const la::BlockVector &guess : guesses)
     {
       la::BlockVector source(guess), y(x);
-      M.vmult(y, source);
+      multiply(transposition, y, source);
       const double whole = y.l2_norm();
       for (std::size_t j = 0; j < images.size(); ++j)
       {
@@ -125,12 +119,27 @@ namespace retroforge
     return r.l2_norm();
   }
 
+  void SaddleSolver::multiply(const Transposition    transposition,
+                              la::BlockVector       &y,
+                              const la::BlockVector &x) const
+  {
+    if (transposition == Transposition::transposed)
+    {
+      system_.matrix.Tvmult(y, x);
+      return;
+    }
+    A_->vmult(y.block(0), x.block(0));
+    system_.matrix.block(0, 1).vmult_add(y.block(0), x.block(1));
+    system_.matrix.block(1, 0).vmult(y.block(1), x.block(0));
+    system_.matrix.block(1, 1).vmult_add(y.block(1), x.block(1));
+  }
+
   void SaddleSolver::make_preconditioner()
   {
     const auto timing    = timings_.scope("preconditioner");
     const bool large     = system_.P || system_.A->pattern().rows().n >= parameters_.multigrid_from;
     const bool multigrid = parameters_.method == "multigrid" || (parameters_.method == "auto" && large);
-    preconditioner_      = std::make_unique<Preconditioner>(system_.matrix.block(0, 0),
+    preconditioner_      = std::make_unique<Preconditioner>(*A_,
                                                        system_.matrix.block(0, 1),
                                                        system_.matrix.block(1, 0),
                                                        system_.schur,
@@ -156,6 +165,10 @@ namespace retroforge
     const double norm = b.l2_norm();
     if (norm == 0.)
       return 0;
+    if (A_)
+      A_->update();
+    else
+      A_ = std::make_unique<BlockedMatrix>(system_.matrix.block(0, 0));
     const double start = start_from(guesses, b, transposition, x);
     if (start <= tolerance * norm)
       return 0;
@@ -166,11 +179,16 @@ namespace retroforge
       const bool fresh = !preconditioner_;
       if (fresh)
         make_preconditioner();
-      const Operator<la::BlockSparseMatrix> M{system_.matrix, transposition};
-      const Operator<Preconditioner>        P{*preconditioner_, transposition};
-      const unsigned int                    limit =
+      const Operator M{[&](la::BlockVector &y, const la::BlockVector &v) { multiply(transposition, y, v); }};
+      const Operator P{[&](la::BlockVector &z, const la::BlockVector &r) {
+        if (transposition == Transposition::plain)
+          preconditioner_->vmult(z, r);
+        else
+          preconditioner_->Tvmult(z, r);
+      }};
+      const unsigned int limit =
         fresh ? parameters_.max_iterations
-                                 : std::min<unsigned int>(parameters_.max_iterations,
+              : std::min<unsigned int>(parameters_.max_iterations,
                                        patience * first_rate_ * decades + spare_iterations);
       const auto                    timing = timings_.scope("krylov");
       SolverControl                 control(limit, tolerance * norm, false, false);

@@ -126,9 +126,23 @@ namespace retroforge
     const Scene &scene = stage.scene;
     if (scene.spaces.n_bubbles() == 0)
       return;
-    for (const CellIndex c : scene.partition.visited_cells)
-      W.beta[c] = solve_bubble(
-        geometry_of_cell(scene.mesh, stage.X, c), MiniPair::on_cell(scene.spaces, W, c), stage.physics.law);
+    const auto                               &visited = scene.partition.visited_cells;
+    std::array<CellGeometry<double>, n_lanes> geometry;
+    std::array<CellValues<double>, n_lanes>   w;
+    for (std::size_t begin = 0; begin < visited.size(); begin += n_lanes)
+    {
+      const unsigned int n = std::min<std::size_t>(n_lanes, visited.size() - begin);
+      for (unsigned int lane = 0; lane < n_lanes; ++lane)
+      {
+        // Lanes without a cell repeat the last one.
+        const CellIndex c = visited[begin + std::min(lane, n - 1)];
+        geometry[lane]    = geometry_of_cell(scene.mesh, stage.X, c);
+        w[lane]           = MiniPair::on_cell(scene.spaces, W, c);
+      }
+      const auto beta = solve_bubbles(geometry, w, stage.physics.law);
+      for (unsigned int lane = 0; lane < n; ++lane)
+        W.beta[visited[begin + lane]] = beta[lane];
+    }
   }
 
   void recover_bubbles(const Stage<double> &stage, Field<double> &W)

@@ -123,4 +123,9 @@ namespace retroforge
   Vec3 solve_bubble(const CellGeometry<double> &geometry,
                     const CellValues<double>   &w,
                     const MaterialLaw<double>  &law);
+
+  /// The same of n_lanes cells: the bits of each are those of solve_bubble.
+  std::array<Vec3, n_lanes> solve_bubbles(const std::array<CellGeometry<double>, n_lanes> &geometry,
+                                          const std::array<CellValues<double>, n_lanes>   &w,
+                                          const MaterialLaw<double>                       &law);
 } // namespace retroforge

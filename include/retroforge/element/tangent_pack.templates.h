@@ -2,19 +2,12 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/core/processors.h>
 #include <retroforge/element/tangent_pack.h>
 #include <retroforge/material/material_law.h>
 
 /// @file
-/// One source for one cell (T = double) and for a pack of cells (T = Pack): what is between them must vanish
-/// into the caller, which alone is compiled for several processors.
-#define RETROFORGE_INLINE inline __attribute__((always_inline))
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define RETROFORGE_ALSO_FOR(processor) __attribute__((target_clones(processor, "default")))
-#else
-#define RETROFORGE_ALSO_FOR(processor)
-#endif
-
+/// One source for one cell (T = double) and for a pack of cells (T = Pack).
 namespace retroforge
 {
   /// Calls f(entry of pack, entry of one lane) for all entries, which must be doubles in the same order.
@@ -65,5 +58,18 @@ namespace retroforge
       factor[lane] = law(eps2[lane]);
       slope[lane]  = law.slope(eps2[lane]);
     }
+  }
+
+  /// The law's potential over its factor.
+  RETROFORGE_INLINE void
+  ask_potential_ratio(const MaterialLaw<double> &law, const double &eps2, double &ratio)
+  {
+    ratio = law.potential_ratio(eps2);
+  }
+
+  RETROFORGE_INLINE void ask_potential_ratio(const MaterialLaw<double> &law, const Pack &eps2, Pack &ratio)
+  {
+    for (unsigned int lane = 0; lane < n_lanes; ++lane)
+      ratio[lane] = law.potential_ratio(eps2[lane]);
   }
 } // namespace retroforge

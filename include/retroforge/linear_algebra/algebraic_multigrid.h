@@ -15,5 +15,5 @@ namespace retroforge
   /// direct solve on the coarsest level.
   /// @param near_kernel  three vectors of A's local rows, one after the other
   std::unique_ptr<dealii::TrilinosWrappers::PreconditionAMG>
-  make_algebraic_multigrid(const la::SparseMatrix &A, const std::vector<double> &near_kernel);
+  make_algebraic_multigrid(const Epetra_RowMatrix &A, const std::vector<double> &near_kernel);
 } // namespace retroforge

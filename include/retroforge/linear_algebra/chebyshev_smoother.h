@@ -2,9 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/linear_algebra/types.h>
-
-#include <vector>
+#include <retroforge/linear_algebra/node_blocks.h>
 
 namespace retroforge
 {
@@ -22,7 +20,7 @@ namespace retroforge
     void smooth(la::Vector &z, const la::Vector &r) const;
 
   private:
-    void copy_blocks();
+    void take_diagonal();
     /// Of D^(-1) A, from below, by the power method.
     float largest_eigenvalue() const;
     /// defect_ = D^(-1) (r - A z)
@@ -31,10 +29,8 @@ namespace retroforge
     void fetch_columns() const;
 
     const la::SparseMatrix    &A_;
-    unsigned int               n_rows_;      ///< this rank's
-    std::vector<unsigned int>  begin_ = {0}; ///< first block of each node, and the end
-    std::vector<unsigned int>  columns_;     ///< first column of each block
-    std::vector<float>         blocks_;      ///< column by column
+    unsigned int               n_rows_; ///< this rank's
+    NodeBlocks<float>          blocks_;
     std::vector<float>         inverse_diagonal_;
     float                      largest_ = 1.;
     mutable std::vector<float> z_, r_, defect_, change_;

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/linear_algebra/types.h>
+#include <retroforge/linear_algebra/blocked_matrix.h>
 
 #include <deal.II/lac/trilinos_precondition.h>
 
@@ -19,7 +19,7 @@ namespace retroforge
     /// @param near_kernel    three vectors of A's local rows, one after the other (rigid translations), for
     /// multigrid
     /// @param interpolation  from linear to quadratic velocities, for multigrid; null where A's are linear
-    Preconditioner(const la::SparseMatrix    &A,
+    Preconditioner(const BlockedMatrix       &A,
                    const la::SparseMatrix    &B,
                    const la::SparseMatrix    &D,
                    const la::SparseMatrix    &S,

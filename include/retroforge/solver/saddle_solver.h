@@ -55,6 +55,8 @@ namespace retroforge
                       Transposition                       transposition,
                       la::BlockVector                    &x) const;
     void   make_preconditioner();
+    /// y = M x, or y = M^T x.
+    void multiply(Transposition transposition, la::BlockVector &y, const la::BlockVector &x) const;
     /// Solves the rows of penalised components exactly, the others held: an error there that the norm hardly
     /// sees would decide which nodes a die pushes, because a contact force is the penalty times a small
     /// difference. Of symmetric systems only.
@@ -69,6 +71,7 @@ namespace retroforge
     const SaddleSystem             &system_;
     const LinearSolverParameters   &parameters_;
     Timings                        &timings_;
+    std::unique_ptr<BlockedMatrix>  A_; ///< the system's, as of the solve that goes on
     std::unique_ptr<Preconditioner> preconditioner_;
     double                          first_rate_ = 0.; ///< iterations per decade when it was fresh
   };
