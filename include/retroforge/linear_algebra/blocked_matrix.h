@@ -11,8 +11,8 @@
 
 namespace retroforge
 {
-  /// A matrix with rows and columns in threes whose products go by blocks of nodes: the bits of the matrix's
-  /// own product, from fewer bytes. What Trilinos' preconditioners ask for besides comes from the
+  /// A matrix with rows and columns in threes whose products go by blocks of nodes: sums in the order of the
+  /// matrix's own product, from fewer bytes. What Trilinos' preconditioners ask for besides comes from the
   /// matrix.
   class BlockedMatrix : public Epetra_BasicRowMatrix
   {

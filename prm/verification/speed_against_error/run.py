@@ -12,6 +12,7 @@ import argparse
 import json
 import math
 import os
+import subprocess
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -30,14 +31,27 @@ SCHEMES = ("Press/scheme", "Press/increments", "increments")
 class Scene:
     """Where a scene is, and how it is run."""
 
-    def __init__(self, case, parameter, kind, series, reference, bars, settings=None):
+    def __init__(self, case, parameter, kind, series, reference, bars, settings=None, round_billet=None):
         self.case, self.parameter, self.kind, self.series, self.settings = case, parameter, kind, series, settings or {}
         self.reference = reference  # method and fineness
         self.bars = bars  # errors of energy and derivative at which seconds are compared
+        self.round_billet = round_billet  # radius, height, sector angle of a cylinder whose volume the mesh is to have
 
-    def words(self, method, fineness):
-        settings = {**self.settings, self.kind[0]: method, self.kind[1]: fineness, "Output/fields every": 0}
+    def words(self, method, fineness, **others):
+        settings = {**self.settings, self.kind[0]: method, self.kind[1]: fineness, "Output/fields every": 0, **others}
         return [word for name, value in settings.items() for word in ("--set", f"{name}={value}")]
+
+    def at(self, build, method, fineness):
+        """The sides of a round billet's mesh are chords: the radius at which it has the billet's volume, on the same mesh."""
+        if not self.round_billet:
+            return []
+        radius, height, angle = self.round_billet
+        words = [os.path.join(build, "retroforge"), "simulate", self.case, "--output", "first", "--overwrite"]
+        words += self.words(method, fineness, **{"Press/stroke": 0.01, "Press/increments": 1, "Output/record": "false"})
+        subprocess.run(words, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        with open("first/summary.json", encoding="utf-8") as file:
+            volume = json.load(file)["volume_initial"]
+        return ["--at", f"billet/radius={radius * math.sqrt(math.radians(angle) / 2 * radius**2 * height / volume)!r}"]
 
 
 CUBE = os.path.join(HERE, "cube.prm")
@@ -46,14 +60,13 @@ SCENES = {
                   (QUADRATIC, 5), (0.0012, 0.002)),
     "cylinder": Scene(os.path.join(HERE, "..", "speed", "case.prm"), "billet/radius", ELEMENTS,
                       {MINI: [6, 4, 3, 2.2, 1.7], QUADRATIC: [14, 10, 8, 6]}, (QUADRATIC, 4), (0.005, 0.005),
-                      {"Press/stroke": 12, "Press/increments": 24}),
+                      {"Press/stroke": 12, "Press/increments": 24}, (20, 40, 90)),
     "tripod": Scene(os.path.join(PRM, "reproduction", "laroussi_2003", "tripod", "case.prm"), "billet/radius", ELEMENTS,
-                    {MINI: [7, 5, 4, 3], QUADRATIC: [12, 9, 7]}, (MINI, 2), (0.005, 0.01),
-                    {"Press/stroke": 10, "Press/increments": 20, "Design/parameters": "billet/radius"}),
+                    {MINI: [7, 5, 4, 3], QUADRATIC: [12, 9, 7, 5]}, (MINI, 2), (0.005, 0.01),
+                    {"Press/stroke": 10, "Press/increments": 20, "Design/parameters": "billet/radius"}, (20, 60, 60)),
     "hub": Scene(os.path.join(PRM, "tutorial", "hub", "hub.prm"), "billet/radius", ELEMENTS,
                  {MINI: [8, 5, 4, 3], QUADRATIC: [12, 8]}, (MINI, 2), (0.01, 0.02),
-                 {"Billet/radius": 15.6, "Press/stroke": 20, "Press/increments": 40, 
-                  "Design/parameters": "billet/radius"}),
+                 {"Billet/radius": 15.6, "Press/stroke": 20, "Press/increments": 40, "Design/parameters": "billet/radius"}, (15.6, 40, 90)),
     "cube-time": Scene(CUBE, "billet/stretch", SCHEMES, {EULER: [4, 8, 16, 32, 64, 128], MIDPOINT: [2, 4, 8, 16, 32]},
                        (MIDPOINT, 256), (0.001, 0.001), {"Billet/element size": 5, "Press/stroke": 20}),
     "hub-time": Scene(os.path.join(PRM, "tutorial", "hub", "hub.prm"), "billet/radius", SCHEMES,
@@ -67,7 +80,7 @@ class Run:
 
     def __init__(self, build, scene, method, fineness, repeat, timeout):
         words = ["timeout", str(timeout), os.path.join(build, "retroforge"), "gradient", scene.case, "--output", "run", "--overwrite"]
-        words += scene.words(method, fineness)
+        words += scene.words(method, fineness) + scene.at(build, method, fineness)
         self.method, self.fineness, self.seconds, self.ended = method, fineness, math.inf, True
         for _ in range(repeat):
             log = os.open("run.log", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
