@@ -5,6 +5,7 @@
 
 quick     straight side of a coarse billet; a limit and what its multiplier foretells
 identify  two parameters of a ring from noisy data
+material  three of them
 starts    the straight side from three starts, and on a finer mesh
 free_form the straight side by 39 and 104 modes, on two meshes
 robust    a contour that bears friction from 0.2 to 0.6, against the nominal one, at 20 unseen frictions
@@ -100,30 +101,38 @@ def limit():
 
 def identify():
     """K and friction of a ring from its bore, its side and the effort early and late in the stroke, three times with other noise."""
+    identify_ring("identified", {"material/K": 50.0, "dies/friction": 0.22}, {"early": (0.0, 0.4), "late": (0.6, 1.0)}, 7)
+
+
+def material():
+    """K, m and friction together, with the effort in a third window: the rate of strain doubles on the way."""
+    identify_ring("material", {"material/K": 50.0, "material/m": 0.13, "dies/friction": 0.22},
+                  {"early": (0.0, 0.4), "middle": (2.3, 2.7), "late": (4.6, 5.0)}, 11)
+
+
+def identify_ring(name, truth, windows, seed):
     settings = {"Billet/element size": 3.3, "Press/increments": 20, "Remeshing/when": "never", "Material/strain rate sensitivity": 0.1,
-                "Objectives/names": "bore, side, early, late", "Objective bore/type": "mean radius", "Objective side/type": "mean radius",
-                "Objective side/patches": "side outer",
-                "Objective early/type": "mean effort", "Objective late/type": "mean effort",
-                "Objective early/window begin": 0.0, "Objective early/window end": 0.4,
-                "Objective late/window begin": 0.6, "Objective late/window end": 1.0,
-                "Design/parameters": "material/K, dies/friction"}
-    truth = {"material/K": 50.0, "dies/friction": 0.22}
+                "Objectives/names": "bore, side, " + ", ".join(windows), "Objective bore/type": "mean radius",
+                "Objective side/type": "mean radius", "Objective side/patches": "side outer", "Design/parameters": ", ".join(truth)}
+    for window, (begin, end) in windows.items():
+        settings.update({f"Objective {window}/type": "mean effort", f"Objective {window}/window begin": begin,
+                         f"Objective {window}/window end": end})
     exact = forge(RING, settings, truth)
-    generator = np.random.default_rng(7)
+    generator = np.random.default_rng(seed)
     inside, total = 0, 0
     for trial in range(3):
-        deviations = {"bore": 0.05, "side": 0.05, "early": 0.01 * exact["early"], "late": 0.01 * exact["late"]}
-        data = {name: exact[name] + deviations[name] * float(generator.standard_normal()) for name in deviations}
+        deviations = {"bore": 0.05, "side": 0.05, **{window: 0.01 * exact[window] for window in windows}}
+        data = {key: exact[key] + deviations[key] * float(generator.standard_normal()) for key in deviations}
         found = optimize(RING, {**settings, **ALONE, "Optimisation/data": named(data), "Optimisation/uncertainties": named(deviations),
-                                "Optimisation/gradient tolerance": 1e-5}, f"identify{trial}")
+                                "Optimisation/gradient tolerance": 1e-5}, f"{name}{trial}")
         identification = found["identification"]
-        for name, deviation in zip(identification["parameters"], identification["deviations"]):
-            half, best = 1.96 * deviation, best_of(found)[name]
-            within = abs(best - truth[name]) <= half
+        for parameter, deviation in zip(identification["parameters"], identification["deviations"]):
+            half, best = 1.96 * deviation, best_of(found)[parameter]
+            within = abs(best - truth[parameter]) <= half
             inside, total = inside + within, total + 1
-            print(f"{name}: {best:.4g} +- {half:.2g}, true {truth[name]:g}, {'inside' if within else 'OUTSIDE'}, "
+            print(f"{parameter}: {best:.4g} +- {half:.2g}, true {truth[parameter]:g}, {'inside' if within else 'OUTSIDE'}, "
                   f"{found['simulations']} forgings")
-    case_tools.figure("identified_inside", inside / total)
+    case_tools.figure(f"{name}_inside", inside / total)
 
 
 def starts():
@@ -269,4 +278,5 @@ def killed():
 
 
 if __name__ == "__main__":
-    {"quick": quick, "identify": identify, "starts": starts, "free_form": free_form, "robust": robust, "searches": searches, "ring": ring, "killed": killed}[sys.argv[2]]()
+    parts = (quick, identify, material, starts, free_form, robust, searches, ring, killed)
+    {part.__name__: part for part in parts}[sys.argv[2]]()
