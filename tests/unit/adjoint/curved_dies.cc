@@ -61,7 +61,7 @@ namespace
       tripod.chord_error     = 0.3;
       tripod.feature_angle   = 40.; // for facets as coarse as these
       tripod.largest_sagitta = 1.;
-      tripod.shape           = {10., 10., 46., 4., 60., {5., 20., 2., 2.}};
+      tripod.shape           = {{}, 10., 10., 46., 4., 60., {5., 20., 2., 2.}};
     }
     return p;
   }
@@ -73,7 +73,7 @@ namespace
     bell.chord_error     = 0.3;
     bell.feature_angle   = 40.;
     bell.largest_sagitta = 1.;
-    bell.shape           = {30., 50., {6., 60., 2., 14.}};
+    bell.shape           = {{}, 30., 50., {6., 60., 2., 14.}};
     p.dies[1].point      = Vec3({0., 0., 18.9});
     p.press.stroke       = 2.4;
     return p;
