@@ -46,46 +46,31 @@ namespace retroforge
     };
 
     /// Throws where tip, flank and root do not leave a part of each other.
-    void check_outline(const std::string &where, const GearShape<double> &shape, const double o)
+    template <typename Number>
+    void check_outline(const std::string &where, const GearShape<Number> &shape, const Number &o)
     {
-      const GearOutline<double> plan(shape, o);
-      const char               *here = o > 0. ? " where draft and fillet end" : "";
-      const double              tip  = plan.along_squared(plan.tip_distance(), plan.tip_round),
-                   root              = plan.along_squared(plan.root_distance(), -plan.root_round);
-      require(plan.tip_distance() > 0. && tip > 0.,
+      const GearOutline<Number> plan(shape, o);
+      const char               *here = value_of(o) > 0. ? " where draft and fillet end" : "";
+      const double              tip  = value_of(plan.along_squared(plan.tip_distance(), plan.tip_round)),
+                   root = value_of(plan.along_squared(plan.root_distance(), Number(-plan.root_round)));
+      require(value_of(plan.tip_distance()) > 0. && tip > 0.,
               where + "/tip rounding",
-              "is " + as_text(shape.tip_round) + ", more than the tooth is wide" + here,
+              "is " + as_text(value_of(shape.tip_round)) + ", more than the tooth is wide" + here,
               "a part of the flank and of the tip must remain");
       require(root > 0. && root < tip,
               where + "/root rounding",
-              "is " + as_text(shape.root_round) + " and leaves nothing of the flank" + here,
+              "is " + as_text(value_of(shape.root_round)) + " and leaves nothing of the flank" + here,
               "a flank must run between the roundings of a tooth's foot and end");
-      const auto angle = [](const Point2<double> &x) { return std::atan2(x.y, x.x); };
+      const auto angle = [](const Point2<Number> &x) { return std::atan2(value_of(x.y), value_of(x.x)); };
       require(angle(plan.centre(plan.tip_distance(), plan.tip_round)) > 0.,
               where + "/tip radius",
-              "is " + as_text(shape.tip) + ", where the flanks have met" + here,
+              "is " + as_text(value_of(shape.tip)) + ", where the flanks have met" + here,
               "a part of the tooth's end must remain: take a wider tooth, steeper flanks or less rounding");
-      require(angle(plan.centre(plan.root_distance(), -plan.root_round)) < pi / shape.teeth,
+      require(angle(plan.centre(plan.root_distance(), Number(-plan.root_round))) < pi / shape.teeth,
               where + "/root radius",
-              "is " + as_text(shape.root) + ", where the roundings of neighbouring teeth meet" + here,
+              "is " + as_text(value_of(shape.root)) + ", where the roundings of neighbouring teeth meet" +
+                here,
               "a part of the root must remain: take fewer or narrower teeth or less rounding");
-    }
-
-    GearShape<double> values(const GearShape<double> &shape)
-    {
-      return shape;
-    }
-
-    GearShape<double> values(const GearShape<Dual> &shape)
-    {
-      std::vector<double> all;
-      GearShape<Dual>::for_each_measure(shape,
-                                        [&](const Measure &, const Dual &x) { all.push_back(x.val()); });
-      GearShape<double> result;
-      result.teeth  = shape.teeth;
-      std::size_t i = 0;
-      GearShape<double>::for_each_measure(result, [&](const Measure &, double &x) { x = all[i++]; });
-      return result;
     }
   } // namespace
 
@@ -102,24 +87,25 @@ namespace retroforge
       shape.teeth >= 3, where + "/teeth", "is " + as_text(shape.teeth), "a gear has at least three teeth");
     require_positive(where, "root rounding", shape.root_round);
     require_positive(where, "tip rounding", shape.tip_round);
-    const GearShape<double> value = values(shape);
-    const double            in = value_of(section.reach_in), out = value_of(section.reach_out);
+    const Number in = section.reach_in, out = section.reach_out;
+    const double root = value_of(shape.root), reference = value_of(shape.reference),
+                 tip = value_of(shape.tip);
     require(
-      0. < value.root - in && value.root < value.reference && value.reference < value.tip,
+      value_of(in) < root && root < reference && reference < tip,
       where + "/reference radius",
-      "is " + as_text(value.reference),
+      "is " + as_text(reference),
       "it must lie between the radii of root and tip, and the root must be wider than draft and fillet");
-    require(value.outer > value.tip + out,
+    require(value_of(shape.outer) > tip + value_of(out),
             where + "/outer radius",
-            "is " + as_text(value.outer),
+            "is " + as_text(value_of(shape.outer)),
             "the face must surround the cavity");
-    for (const double o : {-out, 0., in})
-      check_outline(where, value, o);
-    const double       flank = value.flank * pi / 180., pitch = pi / shape.teeth;
-    const unsigned int n_tip      = segments(value.tip + out, pitch, error),
-                       n_end      = segments(value.tip_round, 0.5 * pi - flank, error),
-                       n_foot     = segments(value.root_round, 0.5 * pi - flank, error),
-                       n_root     = segments(value.root + out, pitch, error);
+    for (const Number &o : {Number(-out), Number(0.), in})
+      check_outline(where, shape, o);
+    const double       pitch = pi / shape.teeth, quarter = 0.5 * pi - value_of(shape.flank) * pi / 180.;
+    const unsigned int n_tip      = segments(tip + value_of(out), pitch, error),
+                       n_end      = segments(value_of(shape.tip_round), quarter, error),
+                       n_foot     = segments(value_of(shape.root_round), quarter, error),
+                       n_root     = segments(root + value_of(out), pitch, error);
     const Outline<Number> outline = [&](const Number &o) {
       const GearOutline<Number> plan(shape, o);
       const Number              slope = shape.flank * (pi / 180.), zero(0.);

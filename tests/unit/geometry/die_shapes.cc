@@ -293,13 +293,18 @@ void show_error(const Make &make)
   }
 }
 
+/// What a user is told of a default shape after a change.
+template <template <typename> class Shape>
+void refusal(const std::function<void(Shape<double> &)> &change)
+{
+  Shape<double> shape;
+  change(shape);
+  show_error([&]() { shape_mesh(std::string("Die a/") + Shape<double>::section(), shape, 0.05); });
+}
+
 void check_refusals()
 {
-  const auto tripod = [](const std::function<void(TripodShape<double> &)> &change) {
-    TripodShape<double> shape;
-    change(shape);
-    show_error([&]() { shape_mesh("Die a/Tripod", shape, 0.05); });
-  };
+  const auto tripod = refusal<TripodShape>;
   tripod([](auto &s) { s.width = 5.; });
   tripod([](auto &s) { s.corner = 1.; });
   tripod([](auto &s) { s.hub = 10.; });
@@ -309,16 +314,10 @@ void check_refusals()
   tripod([](auto &s) { s.profile.depth = 3.; });
   tripod([](auto &s) { s.profile.edge = 0.; });
   tripod([](auto &s) { s.profile.draft = 85.; });
-  BellShape<double> narrow, small;
-  narrow.mouth = 35.;
-  small.outer  = 60.;
-  show_error([&]() { shape_mesh("Die a/Bell", narrow, 0.05); });
-  show_error([&]() { shape_mesh("Die a/Bell", small, 0.05); });
-  const auto gear = [](const std::function<void(GearShape<double> &)> &change) {
-    GearShape<double> shape;
-    change(shape);
-    show_error([&]() { shape_mesh("Die a/Gear", shape, 0.05); });
-  };
+  const auto bell = refusal<BellShape>;
+  bell([](auto &s) { s.mouth = 35.; });
+  bell([](auto &s) { s.outer = 60.; });
+  const auto gear = refusal<GearShape>;
   gear([](auto &s) { s.teeth = 2; });
   gear([](auto &s) { s.teeth = 14; });
   gear([](auto &s) { s.reference = 40.; });
@@ -328,11 +327,7 @@ void check_refusals()
   gear([](auto &s) { s.root_round = 0.; });
   gear([](auto &s) { s.outer = 38.; });
   gear([](auto &s) { s.profile.draft = 4.; });
-  const auto punch = [](const std::function<void(PunchShape<double> &)> &change) {
-    PunchShape<double> shape;
-    change(shape);
-    show_error([&]() { shape_mesh("Die a/Punch", shape, 0.05); });
-  };
+  const auto punch = refusal<PunchShape>;
   punch([](auto &s) { s.edge = 11.; });
   punch([](auto &s) { s.length = 0.5; });
   punch([](auto &s) { s.draft = 80.; });
