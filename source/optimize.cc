@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -82,12 +83,25 @@ namespace retroforge
       return below;
     }
 
+    double dot(const std::vector<double> &x, const std::vector<double> &y)
+    {
+      return std::inner_product(x.begin(), x.end(), y.begin(), 0.);
+    }
+
     double length(const std::vector<double> &x)
     {
-      double sum = 0.;
-      for (const double entry : x)
-        sum += entry * entry;
-      return std::sqrt(sum);
+      return std::sqrt(dot(x, x));
+    }
+
+    /// The part of x along orthonormal directions.
+    std::vector<double> along(const std::vector<std::vector<double>> &directions,
+                              const std::vector<double>              &x)
+    {
+      std::vector<double> part(x.size(), 0.);
+      for (const std::vector<double> &direction : directions)
+        for (std::size_t j = 0; j < x.size(); ++j)
+          part[j] += dot(direction, x) * direction[j];
+      return part;
     }
   } // namespace
 
@@ -187,6 +201,8 @@ namespace retroforge
                 criteria_.objective.name.c_str(),
                 varied(case_).size(),
                 criteria_.limits.size());
+    for (const LinearRelation &relation : space_.relations())
+      std::printf("  every design keeps %s\n", relation.text.c_str());
     if (!scatter_.empty())
       std::printf("  each design is forged %zu times, with %s from %.6g to %.6g\n",
                   scatter_.n_samples(),
@@ -249,6 +265,8 @@ namespace retroforge
       const double sign = generator() % 2 == 0 ? 1. : -1.;
       direction[j]      = space_.at(now_.mu, j) == DesignSpace::At::inside ? sign : 0.;
     }
+    if (!space_.relations().empty())
+      direction = along(space_.free_directions(now_.mu), direction);
     const std::vector<double> steps = {1e-1, 1e-2, 1e-3};
     const auto                rows  = check_derivative(asked, direction, steps);
     if (!root_)
@@ -278,7 +296,7 @@ namespace retroforge
       std::vector<double> x(space_.size());
       for (double &entry : x)
         entry = part * (2. * (generator() / 4294967295.) - 1.);
-      const std::vector<double> mu         = space_.values(x);
+      const std::vector<double> mu         = space_.values(space_.projected(x));
       const Evaluation          evaluation = trials_.evaluate(mu);
       add_row({Decision::noise,
                evaluation,
@@ -349,11 +367,12 @@ namespace retroforge
   BoundedProblem Optimize::problem()
   {
     BoundedProblem problem;
-    problem.start    = space_.scaled(now_.mu);
-    problem.lower    = space_.scaled_lower();
-    problem.upper    = space_.scaled_upper();
-    problem.value    = [&](const std::vector<double> &x) { return value_at(x); };
-    problem.gradient = [&](const std::vector<double> &x) {
+    problem.start     = space_.scaled(now_.mu);
+    problem.lower     = space_.scaled_lower();
+    problem.upper     = space_.scaled_upper();
+    problem.relations = space_.scaled_relations();
+    problem.value     = [&](const std::vector<double> &x) { return value_at(x); };
+    problem.gradient  = [&](const std::vector<double> &x) {
       now_ = trials_.differentiate(space_.values(x));
       return space_.pull_back(merit_.gradient(now_.values, now_.gradients));
     };
@@ -446,15 +465,12 @@ namespace retroforge
 
   std::vector<double> Optimize::fitted_multipliers() const
   {
-    std::vector<unsigned int> free;
-    for (unsigned int j = 0; j < space_.size(); ++j)
-      if (space_.at(now_.mu, j) == DesignSpace::At::inside)
-        free.push_back(j);
-    const auto over_free = [&](const std::vector<double> &by_mu, const double factor) {
+    const std::vector<std::vector<double>> free = space_.free_directions(now_.mu);
+    const auto over_free                        = [&](const std::vector<double> &by_mu, const double factor) {
       const std::vector<double> by_x = space_.pull_back(by_mu);
       std::vector<double>       part;
-      for (const unsigned int j : free)
-        part.push_back(factor * by_x[j]);
+      for (const std::vector<double> &direction : free)
+        part.push_back(factor * dot(direction, by_x));
       return part;
     };
     Merit plain = merit_;
@@ -518,6 +534,8 @@ namespace retroforge
       multiplier *= merit_.size;
     if (!criteria_.data.empty())
       results_.confidence = confidence_of(criteria_, space_, results_.best);
+    results_.by_moving_relation =
+      slopes_of_relations(space_, results_.best.mu, lagrangian_slopes(results_.best));
     write_shapes(results_.best, "best");
     results_.n_simulations = trials_.n_asked();
     results_.n_sweeps      = 0;
@@ -624,6 +642,17 @@ namespace retroforge
     std::fflush(stdout);
   }
 
+  std::vector<double> Optimize::lagrangian_slopes(const Evaluation &at) const
+  {
+    std::vector<double> by_objective = criteria_.slopes(at.values), by_mu(space_.size(), 0.);
+    for (std::size_t i = 0; i < criteria_.limits.size(); ++i)
+      by_objective[criteria_.limits[i].objective] += results_.multipliers[i] * criteria_.limits[i].slope();
+    for (std::size_t o = 0; o < by_objective.size(); ++o)
+      for (std::size_t j = 0; j < by_mu.size(); ++j)
+        by_mu[j] += by_objective[o] * at.gradients[o][j];
+    return by_mu;
+  }
+
   void Optimize::write_shapes(const Evaluation &evaluation, const std::string &name)
   {
     const std::string base  = path_of("designs/" + name);
@@ -634,6 +663,8 @@ namespace retroforge
     const Trial &trial = trials_.forged(evaluation.mu);
     if (!root_)
       return;
+    if (case_.parameters.optimisation.keep_records)
+      trial.write_record(base, parameters_at(trials_.middle_sample(evaluation.mu)));
     write_msh(base + "_billet.msh", case_.billet, trial.X_0());
     write_boundary_stl(base + "_billet.stl", case_.billet, trial.X_0());
     write_boundary_stl(base + "_forged.stl", trial.end().leg->scene.mesh, trial.end().X);
@@ -646,11 +677,16 @@ namespace retroforge
   {
     results_.write_csv(path_of("optimisation.csv"));
     results_.write_json(path_of("optimisation.json"));
-    CommandLine best = case_.command;
-    best.at.clear();
-    best.overrides.emplace_back("Design/at", values_by_name(space_.parameters(), results_.best.mu));
+    write_file(path_of("best.prm"), parameters_at(results_.best.mu));
+  }
+
+  std::string Optimize::parameters_at(const std::vector<double> &mu) const
+  {
+    CommandLine there = case_.command;
+    there.at.clear();
+    there.overrides.emplace_back("Design/at", values_by_name(space_.parameters(), mu));
     std::string parameters;
-    Parameters::read(best.case_file, best.overrides, parameters);
-    write_file(path_of("best.prm"), parameters);
+    Parameters::read(there.case_file, there.overrides, parameters);
+    return parameters;
   }
 } // namespace retroforge

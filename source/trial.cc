@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/version.h>
+#include <retroforge/output/results_folder.h>
+#include <retroforge/output/safe_file.h>
+#include <retroforge/resume.h>
 #include <retroforge/scene_checks.h>
 #include <retroforge/trial.h>
 
@@ -87,6 +91,19 @@ namespace retroforge
                     "results must be finite numbers",
                     "use values of the usual size: exponents and sharpness above all");
     return values;
+  }
+
+  void Trial::write_record(const std::string &directory, const std::string &parameters) const
+  {
+    make_directory(directory);
+    write_file(directory + "/parameters.prm", parameters);
+    RecordWriter writer(
+      directory,
+      {version, commit, parameters, facets(model_.dies), case_.billet, X_0_, fingerprints(model_.dies)});
+    const auto source = recording_.source();
+    for (unsigned int i = 0; i < state_.increments; ++i)
+      writer.write(source(i));
+    writer.finish();
   }
 
   AdjointSweep Trial::sweep(const std::vector<Combination> &combinations)

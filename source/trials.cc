@@ -59,7 +59,7 @@ namespace retroforge
 
   const Trial &Trials::forged(const std::vector<double> &mu)
   {
-    return forged_one(scatter_.sample(mu, scatter_.n_samples() / 2));
+    return forged_one(middle_sample(mu));
   }
 
   Evaluation Trials::evaluate_one(const std::vector<double> &mu)

@@ -51,8 +51,10 @@ namespace retroforge
     bool                limits_are_settled(const std::vector<double> &multipliers) const;
     /// Accepted, within the limits, and the least of those; the least beyond its limits where none is.
     Evaluation best_so_far() const;
-    void       report_best();
-    void       confirm();
+    /// Derivative by the parameters of the objective and of the limits by their multipliers.
+    std::vector<double> lagrangian_slopes(const Evaluation &at) const;
+    void                report_best();
+    void                confirm();
 
     double value_at(const std::vector<double> &x);
     void   decided(const std::vector<double> &x, bool accepted);
@@ -62,8 +64,10 @@ namespace retroforge
     void print_row(const TrialRow &row) const;
     /// Billet and forged shape of a design, for the eye and for other programs.
     /// Collective.
-    void        write_shapes(const Evaluation &evaluation, const std::string &name);
-    void        write_results() const;
+    void write_shapes(const Evaluation &evaluation, const std::string &name);
+    void write_results() const;
+    /// The case's, at another design.
+    std::string parameters_at(const std::vector<double> &mu) const;
     std::string path_of(const std::string &file) const { return case_.command.output_directory + "/" + file; }
 
     const bool  resume_;

@@ -36,6 +36,10 @@ namespace retroforge
     /// After values(), where increments are kept.
     AdjointSweep sweep(const std::vector<Combination> &combinations);
 
+    /// Of the increments that are kept, into a folder from which a run goes on; on one rank.
+    /// @param parameters  of the case at this design   @throws Error  if it cannot be written
+    void write_record(const std::string &directory, const std::string &parameters) const;
+
     const ForgingState         &end() const { return state_; }
     const Process<double>      &process() const { return process_; }
     const NodalVectors<double> &X_0() const { return X_0_; }

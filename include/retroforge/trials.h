@@ -28,6 +28,12 @@ namespace retroforge
     /// memory.
     const Trial &forged(const std::vector<double> &mu);
 
+    /// The design as it is forged in its middle sample.
+    std::vector<double> middle_sample(const std::vector<double> &mu) const
+    {
+      return scatter_.sample(mu, scatter_.n_samples() / 2);
+    }
+
     /// Forgings that were asked for, each once, and those of them that were forged here.
     unsigned int n_asked() const { return asked_.size(); }
     unsigned int n_forged() const { return n_forged_; }

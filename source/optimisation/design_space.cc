@@ -4,8 +4,11 @@
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/optimisation/design_space.h>
 
+#include <deal.II/lac/householder.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace retroforge
 {
@@ -85,6 +88,7 @@ namespace retroforge
                     "an optimisation begins within its bounds",
                     "widen them, or begin elsewhere with --at");
     }
+    read_relations(optimisation.relations, varied);
   }
 
   std::vector<double> DesignSpace::scaled(const std::vector<double> &mu) const
@@ -120,16 +124,177 @@ namespace retroforge
                                                      : At::inside;
   }
 
+  bool DesignSpace::holds_as_equation(const std::vector<double> &mu, const std::size_t relation) const
+  {
+    constexpr double      close = 1e-6; // in scales
+    const LinearRelation &of    = scaled_relations_[relation];
+    const double          at    = of.value(scaled(mu));
+    return of.is_equation() || at - of.lower <= close || of.upper - at <= close;
+  }
+
+  std::vector<double> DesignSpace::projected(std::vector<double> x) const
+  {
+    const std::vector<double> low = scaled_lower(), high = scaled_upper();
+    const auto                onto_bounds = [&](std::vector<double> &y) {
+      for (std::size_t j = 0; j < y.size(); ++j)
+        y[j] = std::clamp(y[j], low[j], high[j]);
+    };
+    onto_bounds(x);
+    if (relations_.empty())
+      return x;
+    // Dykstra's alternating projections: each set is left by what the last visit to it has moved.
+    constexpr unsigned int           most_sweeps = 10000;
+    constexpr double                 exact       = 1e-14;
+    std::vector<std::vector<double>> left(relations_.size() + 1, std::vector<double>(x.size(), 0.));
+    const auto                       visit = [&](const std::size_t set, const auto &onto) {
+      std::vector<double> y = x;
+      for (std::size_t j = 0; j < x.size(); ++j)
+        y[j] += left[set][j];
+      const std::vector<double> before = y;
+      onto(y);
+      double moved = 0.;
+      for (std::size_t j = 0; j < x.size(); ++j)
+      {
+        const double leaves = before[j] - y[j];
+        moved               = std::max(moved, std::abs(leaves - left[set][j]));
+        left[set][j]        = leaves;
+      }
+      x = y;
+      return moved;
+    };
+    for (unsigned int sweep = 0; sweep < most_sweeps; ++sweep)
+    {
+      double moved = 0.;
+      for (std::size_t r = 0; r < relations_.size(); ++r)
+        moved = std::max(moved, visit(r, [&](std::vector<double> &y) {
+                           const LinearRelation &of = scaled_relations_[r];
+                           const double          at = of.value(y), to = std::clamp(at, of.lower, of.upper);
+                           for (std::size_t j = 0; j < y.size(); ++j)
+                             y[j] += (to - at) * of.weights[j];
+                         }));
+      moved = std::max(moved, visit(relations_.size(), onto_bounds));
+      if (moved <= exact)
+        break;
+    }
+    return x;
+  }
+
+  std::vector<std::vector<double>> DesignSpace::free_directions(const std::vector<double> &mu) const
+  {
+    std::vector<std::vector<double>> held, free;
+    const auto                       add_what_is_new = [](std::vector<double>                     direction,
+                                    const std::vector<std::vector<double>> &known,
+                                    std::vector<std::vector<double>>       &to) {
+      // Twice, for rounding.
+      for (unsigned int pass = 0; pass < 2; ++pass)
+        for (const auto *basis : {&known, const_cast<const std::vector<std::vector<double>> *>(&to)})
+          for (const std::vector<double> &unit : *basis)
+          {
+            const double along = std::inner_product(unit.begin(), unit.end(), direction.begin(), 0.);
+            for (std::size_t j = 0; j < direction.size(); ++j)
+              direction[j] -= along * unit[j];
+          }
+      const double length =
+        std::sqrt(std::inner_product(direction.begin(), direction.end(), direction.begin(), 0.));
+      constexpr double new_enough = 1e-8;
+      if (length < new_enough)
+        return;
+      for (double &entry : direction)
+        entry /= length;
+      to.push_back(std::move(direction));
+    };
+    std::vector<std::vector<double>> units(mu.size(), std::vector<double>(mu.size(), 0.));
+    for (std::size_t j = 0; j < mu.size(); ++j)
+    {
+      units[j][j] = 1.;
+      if (at(mu, j) != At::inside)
+        held.push_back(units[j]);
+    }
+    for (std::size_t r = 0; r < relations_.size(); ++r)
+      if (holds_as_equation(mu, r))
+        add_what_is_new(scaled_relations_[r].weights, {}, held);
+    for (std::size_t j = 0; j < mu.size(); ++j)
+      if (at(mu, j) == At::inside)
+        add_what_is_new(units[j], held, free);
+    return free;
+  }
+
   double DesignSpace::projected_length(const std::vector<double> &mu, const std::vector<double> &by_mu) const
   {
-    const std::vector<double> x = scaled(mu), g = pull_back(by_mu), low = scaled_lower(),
-                              high = scaled_upper();
-    double sum                     = 0.;
+    const std::vector<double> x = scaled(mu), g = pull_back(by_mu);
+    std::vector<double>       y = x;
     for (std::size_t j = 0; j < x.size(); ++j)
-    {
-      const double step = std::clamp(x[j] - g[j], low[j], high[j]) - x[j];
-      sum += step * step;
-    }
+      y[j] -= g[j];
+    y          = projected(y);
+    double sum = 0.;
+    for (std::size_t j = 0; j < x.size(); ++j)
+      sum += (y[j] - x[j]) * (y[j] - x[j]);
     return std::sqrt(sum);
+  }
+
+  void DesignSpace::read_relations(const std::vector<std::string> &texts,
+                                   const std::vector<std::string> &varied)
+  {
+    for (const std::string &text : texts)
+    {
+      const LinearRelation by_varied = read_relation(text, varied);
+      LinearRelation       relation{
+        by_varied.text, std::vector<double>(size(), 0.), by_varied.lower, by_varied.upper};
+      for (std::size_t j = 0; j < size(); ++j)
+        for (std::size_t k = 0; k < varied.size(); ++k)
+          if (parameters_[j].name == varied[k])
+            relation.weights[j] = by_varied.weights[k];
+      LinearRelation of_x   = relation;
+      double         square = 0.;
+      for (std::size_t j = 0; j < size(); ++j)
+      {
+        of_x.weights[j] *= scales_[j];
+        square += of_x.weights[j] * of_x.weights[j];
+      }
+      const double length = std::sqrt(square), at_start = relation.value(start_);
+      for (double &weight : of_x.weights)
+        weight /= length;
+      of_x.lower             = (relation.lower - at_start) / length;
+      of_x.upper             = (relation.upper - at_start) / length;
+      constexpr double exact = 1e-9; // in scales
+      if (relation.excess(start_) > exact * length)
+        throw Error("Optimisation/relations",
+                    "'" + relation.text + "' does not hold at the start, by " +
+                      as_text(relation.excess(start_)),
+                    "an optimisation begins where its relations hold",
+                    "change it, or begin elsewhere with --at");
+      relations_.push_back(std::move(relation));
+      scaled_relations_.push_back(std::move(of_x));
+    }
+  }
+
+  std::vector<double> slopes_of_relations(const DesignSpace         &space,
+                                          const std::vector<double> &mu,
+                                          const std::vector<double> &by_mu)
+  {
+    std::vector<double>       slopes(space.relations().size(), 0.);
+    std::vector<unsigned int> active, free;
+    for (unsigned int r = 0; r < slopes.size(); ++r)
+      if (space.holds_as_equation(mu, r))
+        active.push_back(r);
+    for (unsigned int j = 0; j < space.size(); ++j)
+      if (space.at(mu, j) == DesignSpace::At::inside)
+        free.push_back(j);
+    if (active.empty() || free.size() < active.size())
+      return slopes;
+    // In scaled variables, where changes are alike.
+    dealii::FullMatrix<double> weights(free.size(), active.size());
+    dealii::Vector<double>     g(free.size()), nu(active.size());
+    for (unsigned int j = 0; j < free.size(); ++j)
+    {
+      const double scale = space.scales()[free[j]];
+      g(j)               = by_mu[free[j]] * scale;
+      for (unsigned int r = 0; r < active.size(); ++r)
+        weights(j, r) = space.relations()[active[r]].weights[free[j]] * scale;
+    }
+    dealii::Householder<double>(weights).least_squares(nu, g);
+    for (unsigned int r = 0; r < active.size(); ++r)
+      slopes[active[r]] = nu(r);
+    return slopes;
   }
 } // namespace retroforge

@@ -4,8 +4,10 @@
 
 // The one file that knows ROL, whose headers take long to compile.
 #include <ROL_Bounds.hpp>
+#include <ROL_Constraint.hpp>
 #include <ROL_Objective.hpp>
 #include <ROL_ParameterList.hpp>
+#include <ROL_Problem.hpp>
 #include <ROL_StatusTest.hpp>
 #include <ROL_StdVector.hpp>
 #include <ROL_Stream.hpp>
@@ -121,6 +123,80 @@ namespace retroforge
       Vector                tried_, at_, gradient_;
     };
 
+    /// The values  weights_i . x - origin_i  of some relations.
+    class RelationsForRol : public ROL::Constraint<double>
+    {
+    public:
+      explicit RelationsForRol(std::vector<LinearRelation> relations, const bool are_equations)
+          : relations_(std::move(relations)), are_equations_(are_equations)
+      {
+      }
+
+      void value(ROL::Vector<double> &c, const ROL::Vector<double> &x, double & /*tolerance*/) override
+      {
+        for (std::size_t i = 0; i < relations_.size(); ++i)
+          numbers(c)[i] = relations_[i].value(numbers(x)) - (are_equations_ ? relations_[i].lower : 0.);
+      }
+
+      void applyJacobian(ROL::Vector<double>       &jv,
+                         const ROL::Vector<double> &v,
+                         const ROL::Vector<double> & /*x*/,
+                         double & /*tolerance*/) override
+      {
+        for (std::size_t i = 0; i < relations_.size(); ++i)
+          numbers(jv)[i] = relations_[i].value(numbers(v));
+      }
+
+      void applyAdjointJacobian(ROL::Vector<double>       &ajv,
+                                const ROL::Vector<double> &v,
+                                const ROL::Vector<double> & /*x*/,
+                                double & /*tolerance*/) override
+      {
+        ajv.zero();
+        for (std::size_t i = 0; i < relations_.size(); ++i)
+          for (std::size_t j = 0; j < numbers(ajv).size(); ++j)
+            numbers(ajv)[j] += numbers(v)[i] * relations_[i].weights[j];
+      }
+
+      void applyAdjointHessian(ROL::Vector<double> &ahuv,
+                               const ROL::Vector<double> & /*u*/,
+                               const ROL::Vector<double> & /*v*/,
+                               const ROL::Vector<double> & /*x*/,
+                               double & /*tolerance*/) override
+      {
+        ahuv.zero();
+      }
+
+    private:
+      const std::vector<LinearRelation> relations_;
+      const bool                        are_equations_;
+    };
+
+    /// Inequalities get a slack each, which ROL keeps between their bounds.
+    void add_relations(const std::vector<LinearRelation> &relations, ROL::Problem<double> &problem)
+    {
+      std::vector<LinearRelation> equations, inequalities;
+      Vector                      lower, upper;
+      for (const LinearRelation &relation : relations)
+      {
+        (relation.is_equation() ? equations : inequalities).push_back(relation);
+        if (relation.is_equation())
+          continue;
+        lower.push_back(relation.lower);
+        upper.push_back(relation.upper);
+      }
+      if (!equations.empty())
+        problem.addLinearConstraint("equations",
+                                    ROL::makePtr<RelationsForRol>(equations, true),
+                                    rol_vector(Vector(equations.size(), 0.)));
+      if (!inequalities.empty())
+        problem.addLinearConstraint("inequalities",
+                                    ROL::makePtr<RelationsForRol>(inequalities, false),
+                                    rol_vector(Vector(inequalities.size(), 0.)),
+                                    ROL::Ptr<ROL::BoundConstraint<double>>(ROL::makePtr<ROL::Bounds<double>>(
+                                      rol_vector(lower), rol_vector(upper))));
+    }
+
     class AskedStatus : public ROL::StatusTest<double>
     {
     public:
@@ -157,7 +233,11 @@ namespace retroforge
       // ROL adds this times the rounding of numbers to both reductions.
       region.set("Safeguard Size", std::max(100., settings.noise / std::numeric_limits<double>::epsilon()));
       region.sublist("Lin-More").sublist("Cauchy Point").set("Normalize Initial Step Size", true);
-      auto &general = list.sublist("General");
+      auto &general    = list.sublist("General");
+      auto &polyhedral = general.sublist("Polyhedral Projection");
+      polyhedral.set("Type", "Dykstra");
+      polyhedral.set("Absolute Tolerance", 1e-12);
+      polyhedral.set("Relative Tolerance", 1e-12);
       general.set("Output Level", 0);
       general.sublist("Krylov").set("Iteration Limit", 10);
       return list;
@@ -173,11 +253,15 @@ namespace retroforge
     ROL::ParameterList                   list = rol_parameters(settings);
     ROL::TypeB::LinMoreAlgorithm<double> algorithm(list);
     algorithm.setStatusTest(ROL::makePtr<AskedStatus>(list, settings));
-    const auto          x = rol_vector(problem.start);
-    ProblemForRol       objective(problem, *learned_);
-    ROL::Bounds<double> bounds(rol_vector(problem.lower), rol_vector(problem.upper));
-    ROL::nullstream     silence;
-    algorithm.run(*x, objective, bounds, silence);
+    const auto           x = rol_vector(problem.start);
+    ROL::Problem<double> posed(ROL::makePtr<ProblemForRol<Learned>>(problem, *learned_), x);
+    posed.addBoundConstraint(
+      ROL::makePtr<ROL::Bounds<double>>(rol_vector(problem.lower), rol_vector(problem.upper)));
+    add_relations(problem.relations, posed);
+    posed.setProjectionAlgorithm(list);
+    ROL::nullstream silence;
+    posed.finalize(false, false, silence);
+    algorithm.run(posed, silence);
     return *x->getVector();
   }
 

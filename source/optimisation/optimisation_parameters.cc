@@ -38,6 +38,12 @@ namespace retroforge
                       "parameters.");
     prm.add_parameter(
       "upper bounds", upper, "Largest values of design parameters. Units: those of the parameters.");
+    prm.add_parameter(
+      "relations",
+      relations,
+      "Linear relations of design parameters that hold for every design, `2 NAME - NAME <= 5, "
+      "NAME = NAME': sums of parameters, with factors, on both sides of <=, >= or =. Units: "
+      "those of the parameters.");
     prm.add_parameter("scales",
                       scales,
                       "Changes of design parameters that are of the same weight, `NAME: VALUE, NAME: VALUE': "
@@ -74,6 +80,13 @@ namespace retroforge
                       "Start and optimum are forged again with elements and increments this much smaller; 0 "
                       "leaves it out. Units: none.",
                       Double(0., 1.));
+    prm.add_parameter(
+      "keep records",
+      keep_records,
+      "Whether the record of each design that becomes the next one is kept, in designs/trial_N: "
+      "retroforge gradient --resume goes through it again, with other objectives, too. Units: "
+      "none.",
+      Bool());
     prm.add_parameter("scattered",
                       scattered,
                       "A design parameter that a workshop does not hold, as dies/friction: every design is "

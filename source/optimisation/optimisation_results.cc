@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/text.h>
 #include <retroforge/core/version.h>
 #include <retroforge/optimisation/optimisation_results.h>
 #include <retroforge/output/safe_file.h>
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <ostream>
@@ -218,6 +220,13 @@ namespace retroforge
                         {"best", number(best.values[limit.objective])},
                         {"by_relaxing", number(by_relaxing(i))}});
     }
+    Json relations = Json::array();
+    for (std::size_t r = 0; r < space.relations().size(); ++r)
+      relations.push_back(
+        {{"relation", space.relations()[r].text},
+         {"active", space.holds_as_equation(best.mu, r)},
+         {"excess", number(space.relations()[r].excess(best.mu))},
+         {"by_moving", r < by_moving_relation.size() ? number(by_moving_relation[r]) : Json()}});
     for (const TrialRow &row : rows)
       trials.push_back({{"decision", in_words(row.decision, row.evaluation.failed())},
                         {"merit", number(row.merit)},
@@ -237,6 +246,7 @@ namespace retroforge
                    {"best", number(value(best))},
                    {"noise", number(noise)}}},
                  {"limits", limits},
+                 {"relations", relations},
                  {"parameters", parameters},
                  {"stop", in_words(stop)},
                  {"finished", stop != Stop::running},
@@ -287,6 +297,18 @@ namespace retroforge
           << std::setw(14) << limit.bound << std::setw(14) << start.values[limit.objective] << std::setw(14)
           << best.values[limit.objective] << "  " << by_relaxing(i) << '\n';
     }
+    for (std::size_t r = 0; r < by_moving_relation.size(); ++r)
+      out << (r == 0 ? "\n" : "") << "  " << space.relations()[r].text << ": "
+          << (space.holds_as_equation(best.mu, r)
+                ? "felt, objective by moving its bound by 1: " + as_text(by_moving_relation[r])
+                : "not felt")
+          << '\n';
+    const auto accepted = std::find_if(rows.rbegin(), rows.rend(), [](const TrialRow &row) {
+      return row.decision == TrialRow::Decision::accepted;
+    });
+    if (stop != Stop::running && accepted != rows.rend() && accepted->evaluation.mu != best.mu)
+      out << "  the search ended at another design, of " << std::setprecision(7)
+          << value(accepted->evaluation) << unit << "; the least is shown\n";
     if (confidence)
       print_confidence(*this, out);
     if (confirmation)

@@ -3,18 +3,21 @@
 #pragma once
 
 #include <retroforge/design/design.h>
+#include <retroforge/optimisation/linear_relation.h>
 #include <retroforge/optimisation/optimisation_parameters.h>
 
 namespace retroforge
 {
   /// The design parameters as an optimiser sees them: changes from the start in units of their scales,
-  /// x_j = (mu_j - start_j) / scale_j,  between bounds. Those that are not varied stay where they start.
+  /// x_j = (mu_j - start_j) / scale_j,  between bounds and related to each other as a user asks. Those that
+  /// are not varied stay where they start.
   class DesignSpace
   {
   public:
     /// @param varied  names of the parameters that an optimiser may change
     /// @param start   values where the optimisation begins
     /// @throws Error  for names that are not among the parameters, bounds that cross, a start outside of them
+    /// or of a relation
     DesignSpace(const std::vector<DesignParameter> &parameters,
                 const std::vector<std::string>     &varied,
                 const std::vector<double>          &start,
@@ -31,6 +34,12 @@ namespace retroforge
     std::vector<double> scaled_lower() const { return scaled(lower_); }
     std::vector<double> scaled_upper() const { return scaled(upper_); }
 
+    const std::vector<LinearRelation> &relations() const { return relations_; } ///< of mu
+    /// The same of x, each with weights of length 1.
+    const std::vector<LinearRelation> &scaled_relations() const { return scaled_relations_; }
+    /// Whether a relation holds as an equation at mu.
+    bool holds_as_equation(const std::vector<double> &mu, std::size_t relation) const;
+
     std::vector<double> scaled(const std::vector<double> &mu) const;
     /// mu(x), within its bounds in spite of rounding.
     std::vector<double> values(const std::vector<double> &x) const;
@@ -45,11 +54,26 @@ namespace retroforge
       upper
     };
     At at(const std::vector<double> &mu, std::size_t j) const;
-    /// Length of  P(x - g) - x,  with P onto the bounds: 0 at an optimum.
+    /// The point nearest to x within the bounds and relations.
+    std::vector<double> projected(std::vector<double> x) const;
+    /// Orthonormal directions along which x can go from mu without leaving a bound or a relation it is at.
+    std::vector<std::vector<double>> free_directions(const std::vector<double> &mu) const;
+    /// Length of  P(x - g) - x,  with P onto bounds and relations: 0 at an optimum.
     double projected_length(const std::vector<double> &mu, const std::vector<double> &by_mu) const;
 
   private:
     std::vector<DesignParameter> parameters_;
     std::vector<double>          start_, scales_, lower_, upper_;
+    std::vector<LinearRelation>  relations_, scaled_relations_;
+
+    void read_relations(const std::vector<std::string> &texts, const std::vector<std::string> &varied);
   };
+
+  /// What an objective changes by, per unit of the bound of each relation, at an optimum: the multipliers nu
+  /// with the least  |g - sum_r nu_r weights_r|  over variables that no bound holds; 0 of relations that do
+  /// not hold as equations.
+  /// @param by_mu  derivative of the objective, limits included, by mu
+  std::vector<double> slopes_of_relations(const DesignSpace         &space,
+                                          const std::vector<double> &mu,
+                                          const std::vector<double> &by_mu);
 } // namespace retroforge

@@ -2,6 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/optimisation/linear_relation.h>
+
 #include <functional>
 #include <memory>
 #include <string>
@@ -9,12 +11,15 @@
 
 namespace retroforge
 {
-  /// A function of a few scaled variables between bounds, known by its values and its gradients.
+  /// A function of a few scaled variables between bounds, with linear relations, known by its values and its
+  /// gradients.
   struct BoundedProblem
   {
     using Vector = std::vector<double>;
 
     Vector start, lower, upper; ///< bounds may be infinite
+    /// lower <= weights . x <= upper,  with weights of length 1; points that are tried keep them.
+    std::vector<LinearRelation> relations;
 
     /// +infinity where there is none: never NaN, and nothing is thrown.
     std::function<double(const Vector &x)> value;
@@ -43,7 +48,7 @@ namespace retroforge
   {
     unsigned int iteration = 0; ///< points tried
     double       value     = 0.;
-    double       gradient  = 0.; ///< length of  P(x - g) - x,  with P onto the bounds
+    double       gradient  = 0.; ///< length of  P(x - g) - x,  with P onto bounds and relations
     double       radius    = 0.; ///< of the trust region
   };
 

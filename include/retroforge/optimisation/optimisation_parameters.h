@@ -22,7 +22,8 @@ namespace retroforge
     Values                   uncertainties; ///< their standard deviations
     Values                   lower;         ///< bounds of design parameters, in their units
     Values                   upper;
-    Values                   scales; ///< changes of design parameters that matter alike
+    std::vector<std::string> relations; ///< linear, of design parameters
+    Values                   scales;    ///< changes of design parameters that matter alike
     double                   first_step         = 1.;
     double                   largest_step       = 4.;
     unsigned int             iterations         = 30;
@@ -31,6 +32,7 @@ namespace retroforge
     double                   limit_tolerance    = 1e-4;
     unsigned int             noise_runs         = 3;
     double                   confirmation       = 0.7;
+    bool                     keep_records       = false;
 
     std::string         scattered;       ///< a design parameter that is not known exactly; empty: none
     std::vector<double> scatter_range;   ///< from, to

@@ -55,10 +55,11 @@ namespace retroforge
     std::vector<TrialRow>       rows  = {};
     double                      noise = 0.; ///< of the objective, in its unit
     Stop                        stop  = Stop::running;
-    Evaluation                  start = {}, best = {}; ///< with gradients
-    std::vector<double>         multipliers   = {};    ///< of the limits, per unit of the limit's excess
-    std::optional<Confidence>   confidence    = {};    ///< where there are data
-    std::optional<Confirmation> confirmation  = {};
+    Evaluation                  start = {}, best = {};   ///< with gradients
+    std::vector<double>         multipliers        = {}; ///< of the limits, per unit of the limit's excess
+    std::vector<double>         by_moving_relation = {}; ///< objective per unit of each relation's bound
+    std::optional<Confidence>   confidence         = {}; ///< where there are data
+    std::optional<Confirmation> confirmation       = {};
     unsigned int                n_simulations = 0, n_sweeps = 0, n_failed = 0;
 
     double value(const Evaluation &evaluation) const { return criteria.value(evaluation.values); }

@@ -159,6 +159,41 @@ def bounded():
     judge("which costs", found["objective"]["best"] > found_in("whole")["objective"]["best"])
 
 
+def related():
+    """Two radii that may not differ by more than half of what they would; what moving that bound gives is foretold."""
+    one, two = "billet/control point 1 r", "billet/control point 2 r"
+    first, second = best_of(found_in("whole"))[:2]
+    settings = ("Optimisation/gradient tolerance=1e-5", "Optimisation/noise runs=0")
+    bound, step = 0.5 * (second - first), 0.02 * (second - first)
+    judge("they differ", bound > 0, bound)
+    found, printed = optimize("related", f"Optimisation/relations={two} <= {one} + {bound!r}", *settings)
+    values = best_of(found)
+    relation = found["relations"][0]
+    judge("the relation is kept", abs(values[1] - values[0] - bound) < 1e-8 and relation["active"], values)
+    judge("it is told", "every design keeps" in printed and "felt, objective" in printed)
+    wider, _ = optimize("wider", f"Optimisation/relations={two} - {one} <= {bound + step!r}", *settings)
+    change = (wider["objective"]["best"] - found["objective"]["best"]) / step
+    judge("its slope", abs(change - relation["by_moving"]) < 0.05 * abs(change), f"{change} {relation['by_moving']}")
+    equal, _ = optimize("equal", f"Optimisation/relations={one} = {two}", *settings)
+    judge("equal", abs(best_of(equal)[0] - best_of(equal)[1]) < 1e-8 and equal["objective"]["best"] < 0.5 * equal["objective"]["start"])
+    rows = rows_of("equal")
+    judge("in every design", max(abs(float(row[f"{one} [mm]"]) - float(row[f"{two} [mm]"])) for row in rows) < 1e-8)
+    loose, _ = optimize("loose", f"Optimisation/relations={one} - {two} <= 5")
+    judge("one that is not felt", abs(best_of(loose)[0] - first) < 0.02 and not loose["relations"][0]["active"], best_of(loose))
+
+
+def recorded():
+    """The record of a design is that of a run, from which it is differentiated again."""
+    found, _ = optimize("kept", "Optimisation/keep records=true", "Optimisation/iterations=2", "Optimisation/noise runs=0")
+    folder = "kept/designs/best"
+    done = run("gradient", folder, "--resume", case=f"{folder}/parameters.prm")
+    judge("gone through again", done.returncode == 0, done.stderr)
+    summary = summary_of(folder)
+    judge("its value", summary["objectives"][0]["value"] == found["objective"]["best"], summary["objectives"])
+    for parameter, of_run in zip(found["parameters"], summary["parameters"]):
+        judge(f"gradient by {parameter['name']}", parameter["gradient"] == of_run["gradient"]["barrel"], of_run["gradient"])
+
+
 def failing():
     """A first step so long that the contour crosses the axis, where no mesh is."""
     found, printed = optimize("failing", "Optimisation/first step=400", "Optimisation/largest step=400")
@@ -268,6 +303,9 @@ def refused():
             ("data without deviations", ["Optimisation/objective=", "Optimisation/data=barrel: 0"], "has none for 'barrel'"),
             ("a scattered parameter that is not there", ["Optimisation/scattered=die upper/friction", "Optimisation/scatter range=0, 1"],
              "add it there"),
+            ("a relation of something else", ["Optimisation/relations=billet/control point 1 r <= die upper/offset"], "does not vary"),
+            ("a relation that is none", ["Optimisation/relations=billet/control point 1 r < 5"], "has no = after <"),
+            ("a relation that does not hold", ["Optimisation/relations=billet/control point 1 r <= 9"], "does not hold at the start"),
             ("start outside", ["Optimisation/upper bounds=billet/control point 1 r: 9"], "begins at 10 mm"),
             ("a die in the billet", ["Die upper/point=0, 0, 13"], "inside it")):
         done = run("optimize", "wrong", *settings)
@@ -285,4 +323,4 @@ def refused():
     judge("resumed with another tolerance", "taken from the journal" in printed and found["simulations"] >= len(before.splitlines()) // 3)
 
 
-main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, free_form, bounded, failing, from_elsewhere, identified, scattered, confirmed, on_two_ranks, reported, refused))
+main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, free_form, bounded, related, recorded, failing, from_elsewhere, identified, scattered, confirmed, on_two_ranks, reported, refused))

@@ -53,6 +53,30 @@ int main()
   const std::vector<double> start = {20., 2., 0.};
   const DesignSpace         space(parameters, varied, start, optimisation);
 
+  {
+    // A parameter of scale 1 and one of scale 2, from (1, 3): by hand on paper.
+    OptimisationParameters related;
+    related.scales    = {{"billet/radius", 1.}, {"die upper/offset", 2.}};
+    related.lower     = {{"billet/radius", 0.5}};
+    related.relations = {"2 billet/radius - die upper/offset <= 1",
+                         "- die upper/offset + 3 * billet/radius = 0"};
+    const DesignSpace two(parameters, varied, {1., 2., 3.}, related);
+    const auto       &of_mu = two.relations()[0], &of_x = two.scaled_relations()[0];
+    std::cout << "a relation: " << of_mu.weights[0] << ' ' << of_mu.weights[2] << " to " << of_mu.upper
+              << "; of x: " << of_x.weights[0] << ' ' << of_x.weights[2] << " to " << of_x.upper << '\n';
+    // 3 x_0 = 2 x_2 : a point off it goes to the nearest on it; one far down to where the bound ends it.
+    const std::vector<double> near = two.projected({0., 0., 1.}), low = two.projected({-5., 0., -5.});
+    std::cout << "nearest on a line: " << near[0] * 13. << ' ' << near[2] * 13. << "; at its end: " << low[0]
+              << ' ' << low[2] << '\n';
+    const auto free = two.free_directions({1., 2., 3.});
+    std::cout << "one direction is free: "
+              << answer(free.size() == 1 && std::abs(free[0][2] / free[0][0] - 1.5) < 1e-14)
+              << "; none at the bound: " << answer(two.free_directions({0.5, 2., 1.5}).empty()) << '\n';
+    // f = 6 mu_0 + 0 mu_2 over x: (6, 0) = nu (3, -2) + what is free.
+    const std::vector<double> slopes = slopes_of_relations(two, {2., 2., 6.}, {6., 0., 0.});
+    std::cout << "slopes of relations: " << slopes[0] << ' ' << slopes[1] << '\n';
+  }
+
   const std::vector<double> mu = {18.3, 2., -1.1}, x = space.scaled(mu), back = space.values(x);
   double                    error = 0.;
   for (unsigned int j = 0; j < 3; ++j)
@@ -91,4 +115,16 @@ int main()
   refuse("start outside", [](auto &o) { o.lower.emplace("billet/radius", 21.); });
   refuse("scale", [](auto &o) { o.scales.emplace("billet/radius", -1.); });
   refuse("first step", [](auto &o) { o.first_step = 5.; });
+  refuse("a relation without comparison",
+         [](OptimisationParameters &o) { o.relations = {"billet/radius + 1"}; });
+  refuse("a misspelt name in a relation",
+         [](OptimisationParameters &o) { o.relations = {"billet/radus <= 30"}; });
+  refuse("a relation that does not hold",
+         [](OptimisationParameters &o) { o.relations = {"billet/radius <= 19"}; });
+  refuse("a strict one", [](OptimisationParameters &o) { o.relations = {"billet/radius < 30"}; });
+  refuse("two comparisons", [](OptimisationParameters &o) { o.relations = {"1 <= billet/radius <= 30"}; });
+  refuse("an empty term", [](OptimisationParameters &o) { o.relations = {"billet/radius + <= 30"}; });
+  refuse("one of nothing",
+         [](OptimisationParameters &o) { o.relations = {"billet/radius <= billet/radius"}; });
+  refuse("one of what stays", [](OptimisationParameters &o) { o.relations = {"material/K <= 3"}; });
 }

@@ -123,6 +123,26 @@ int main()
               << "; in less than 60 values: " << answer(counted.values < 60) << "\n";
   }
   {
+    // Minima along a line and in a wedge, whose multipliers are known: the gradient is along the weights.
+    Counted      counted({-1., 1.5}, {-infinity, -infinity}, {infinity, infinity});
+    const Vector slanted = {std::sqrt(0.5), std::sqrt(0.5)};
+    for (const bool is_equation : {true, false})
+    {
+      const double bound        = 0.5 * std::sqrt(0.5);
+      counted.problem.relations = {{"", slanted, is_equation ? bound : -infinity, bound}};
+      const Vector x            = Minimiser().minimise(counted.problem, until(1e-9, 200));
+      const Vector g            = rosenbrock_gradient(x);
+      std::cout << (is_equation ? "equation" : "inequality")
+                << ": kept to 1e-9: " << answer(std::abs(x[0] + x[1] - 0.5) < 1e-9)
+                << "; gradient along its weights to 1e-6: "
+                << answer(std::abs(g[0] - g[1]) < 1e-6 && (is_equation || g[0] < 0.)) << "\n";
+    }
+    counted.problem.relations = {{"", slanted, -infinity, std::sqrt(0.5)}, {"", {1., 0.}, -infinity, 0.3}};
+    const Vector x            = Minimiser().minimise(counted.problem, until(1e-9, 200));
+    std::cout << "two, one of which is felt: "
+              << answer(std::abs(x[0] - 0.3) < 1e-6 && std::abs(x[1] - 0.09) < 1e-6) << "\n";
+  }
+  {
     Counted counted({1., 1.}, {-infinity, -infinity}, {infinity, infinity});
     Minimiser().minimise(counted.problem, until(1e-7, 200));
     std::cout << "begins at its minimum: one value: " << answer(counted.values == 1) << "\n";
