@@ -27,20 +27,40 @@ namespace retroforge
       return mirrors;
     }
 
-    /// The sector between the first two of n planes through the die's axis; it begins at the x axis.
-    std::vector<Plane> mirrors_through_axis(const DieParameters &die, const unsigned int n)
+    /// Two unit vectors across the die's axis; the first along x, or along y where the die faces along x.
+    std::array<Vec3, 2> across_axis(const DieParameters &die)
     {
-      if (n == 0)
-        return {};
-      const bool         is_along_x = std::abs(die.facing[0]) > 0.9;
-      const Vec3         along      = is_along_x ? Vec3({0., 1., 0.}) : Vec3({1., 0., 0.});
-      const Vec3         first      = unit(along - (along * die.facing) * die.facing);
-      const Vec3         across     = cross(die.facing, first);
-      const double       angle      = dealii::numbers::PI / n;
-      std::vector<Plane> mirrors    = {{die.point, -across}};
-      if (n > 1)
-        mirrors.push_back({die.point, std::cos(angle) * across - std::sin(angle) * first});
-      return mirrors;
+      const Vec3 along = std::abs(die.facing[0]) > 0.9 ? Vec3({0., 1., 0.}) : Vec3({1., 0., 0.});
+      const Vec3 first = unit(along - (along * die.facing) * die.facing);
+      return {{first, cross(die.facing, first)}};
+    }
+
+    /// The two that bound one sector between n planes through the die's axis: of the 2 n sectors, the first
+    /// of those that are farthest inside of the other mirrors.
+    std::vector<Plane>
+    mirrors_through_axis(const DieParameters &die, const unsigned int n, const std::vector<Plane> &others)
+    {
+      const auto axes      = across_axis(die);
+      const auto direction = [&](const double angle) {
+        return std::cos(angle) * axes[0] + std::sin(angle) * axes[1];
+      };
+      const double angle = dealii::numbers::PI / n;
+      unsigned int best  = 0;
+      double       least = std::numeric_limits<double>::max();
+      for (unsigned int k = 0; k < 2 * n; ++k)
+      {
+        double beyond = -1.;
+        for (const Plane &plane : others)
+          beyond = std::max(beyond, direction((k + 0.5) * angle) * plane.normal);
+        if (beyond < least - 1e-9)
+        {
+          least = beyond;
+          best  = k;
+        }
+      }
+      constexpr double quarter = 0.5 * dealii::numbers::PI;
+      return {{die.point, direction(best * angle - quarter)},
+              {die.point, direction((best + 1) * angle + quarter)}};
     }
 
     /// The sector inside all planes, and the images of points there.
@@ -127,7 +147,10 @@ namespace retroforge
     MovingSurface
     moving_surface(const TriangleSurface &surface, const DieFreeFormParameters &form, const Sector &sector)
     {
-      const Box            region(form.from, form.to);
+      // Images on a plane lie beside it by rounding.
+      const double         rounding = on_plane * surface.diagonal();
+      const Vec3           wider({rounding, rounding, rounding});
+      const Box            region(form.from - wider, form.to + wider);
       const ClosestFeature closest(surface);
       MovingSurface        moving{surface.vertices(), surface.triangles(), {}, {}};
       moving.held.assign(surface.vertices().size(), false);
@@ -195,8 +218,9 @@ namespace retroforge
     vertices_                      = surface.vertices();
     triangles_                     = surface.triangles();
     std::vector<Plane> mirrors     = mirrors_of(die, symmetry);
-    for (const Plane &plane : mirrors_through_axis(die, form->mirrors))
-      mirrors.push_back(plane);
+    if (form->mirrors > 0)
+      for (const Plane &plane : mirrors_through_axis(die, form->mirrors, mirrors))
+        mirrors.push_back(plane);
     const Sector        sector(std::move(mirrors), on_plane * surface.diagonal());
     const MovingSurface moving = moving_surface(surface, *form, sector);
     check_number(section_, form->modes, moving);
