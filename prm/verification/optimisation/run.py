@@ -177,14 +177,11 @@ def free_form():
 
 
 def die_form():
-    """The die is one of rings, a flat cone: where flat meets flat, the least change says which node touches first. It begins 4 mm above
-    the billet, so that it may grow towards it. Its offset, the first mode, stays."""
+    """The die is one of rings, a flat cone: where flat meets flat, the least change says which node touches first. Its offset, the first
+    mode, stays."""
     make_die.FACETS_PER_TURN = 32
     make_die.write_stl(pathlib.Path("cone.stl"), make_die.revolved([(2.0 * i, 0.08 * i) for i in range(17)]))
-    found = optimize(STRAIGHT, {"Billet/element size": 4, "Remeshing/when": "never", "Die upper/shape": "stl", "Die upper/file": "cone.stl",
-                                "Die upper/point": "0, 0, 34", "Press/stroke": 16, "Press/increments": 60, "Die upper/free form modes": 4,
-                                "Die upper/free form mirrors": 32,
-                                "Design/parameters": ", ".join(f"die upper/free form {i}" for i in (2, 3, 4))}, "die_form")
+    found = optimize(os.path.join(HERE, "round_die.prm"), {}, "die_form")
     objective, confirmation = found["objective"], found["confirmation"]
     print(f"straight side by a die: {objective['start']:.4g} -> {objective['best']:.4g} mm^2 in {found['simulations']} designs; "
           f"finer mesh {confirmation['start']:.4g} -> {confirmation['best']:.4g} mm^2")
