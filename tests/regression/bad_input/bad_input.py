@@ -288,7 +288,7 @@ def replaced():
 
 def full_disk():
     """A small file system of our own, where the machine lets us have one."""
-    for size, name, more in (("4k", "first files", ""), ("120k", "fields", ""),
+    for size, name, more in (("4k", "first files", ""), ("128k", "fields", ""),
                              ("136k", "record", "--set 'Output/fields every=0' --set Press/increments=60")):
         disk, saved = f"disk_{size}", f"saved_{size}"
         os.mkdir(disk)
