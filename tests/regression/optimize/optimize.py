@@ -152,6 +152,17 @@ def free_form():
     judge("modes belong to their mesh", "not confirmed" in printed and "confirmation" not in found)
 
 
+def derivatives_by_modes():
+    """The first mode is the die's offset; the others by the adjoint, the tangent and replayed differences, with a soft penalty that rounding
+    does not spoil."""
+    done = run("gradient", "modes", "Design/parameters=die upper/free form, die upper/offset", case="die.prm")
+    by_mode = [parameter["gradient"]["barrel"] for parameter in summary_of("modes")["parameters"]] if done.returncode == 0 else [0, 1]
+    judge("the first mode is the offset", abs(by_mode[0] / by_mode[-1] - 1) < 1e-9, f"{by_mode} {done.stderr}")
+    done = run("check", "checked_die", "Contact/penetration=1e-2", "Contact/slip regularisation=0.1", "Linear solver/method=direct",
+               "Check/steps=1e-5, 1e-6", "Check/taylor halvings=2", "Check/free differences=false", case="die.prm")
+    judge("modes by adjoint, tangent and differences", done.returncode == 0, done.stdout[-3000:] + done.stderr)
+
+
 def die_free_form():
     """A die of rings that takes any round shape. It begins above the billet, so that it may grow towards it, and as a flat cone: where flat
     meets flat, the least change says which node touches first. Its modes belong to the die, so they are confirmed on a finer mesh of the
@@ -166,6 +177,7 @@ def die_free_form():
                             "Design": {"parameters": ", ".join(f"die upper/free form {i}" for i in (2, 3, 4))},
                             "Optimisation": {"noise runs": 0, "confirmation": 0.7, "gradient tolerance": 0.05, "iterations": 8}})
     write("die.prm", prm(scene))
+    derivatives_by_modes()
     found, _ = optimize("die", case="die.prm")
     objective = found["objective"]
     judge("a shape of the die makes the side straighter", objective["best"] < 0.5 * objective["start"], objective)
