@@ -12,8 +12,8 @@ namespace retroforge
 {
   /// Free form of a die of facets: its vertices move by a few modes of its surface (surface_modes),
   ///   x_k = x_k of the die + sum_i mu_i phi_i(k) e_k,
-  /// e_k the die's facing, or the surface's normal at the vertex. Positive values bring metal away from the
-  /// workpiece's side to it: a cavity gets less deep.
+  /// e_k the die's facing, or the surface's normal at the vertex. Where a mode is positive, so is the move
+  /// towards the workpiece: a cavity gets less deep.
   ///
   /// Along the facing a vertex stays where it is in plan, so that facets that face the workpiece go on doing
   /// so, whatever the values, and walls keep their draft where the modes do not change across them. Sharp
@@ -33,7 +33,7 @@ namespace retroforge
 
     unsigned int n_modes() const { return moves_.size(); }
 
-    /// Of each vertex per unit of a mode's coefficient; none but unit vectors times the mode.
+    /// phi_i(k) e_k of each vertex: dx/dmu_i.
     const NodalVectors<double> &move(const unsigned int mode) const { return moves_[mode]; }
 
     /// Of the die as made [mm].
