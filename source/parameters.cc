@@ -150,7 +150,8 @@ namespace retroforge
       "Parameters whose gradient is wanted: material/K, material/m, material/e0, contact/rho, contact/v0, "
       "dies/friction, `die NAME/friction`, `die NAME/speed`, `die NAME/offset`, and of the billet's "
       "shape: of a box billet/stretch, billet/height, of a cylinder billet/radius, billet/height, of a ring "
-      "billet/mu1 to billet/mu4, of a profile `billet/control point I r', `billet/control point I z'. "
+      "billet/mu1 to billet/mu4, of a profile `billet/control point I r', `billet/control point I z'; modes "
+      "of free forms are `billet/free form I' and `die NAME/free form I'. "
       "The gradient by every node of the billet always comes along. Units: none.");
     prm.add_parameter(
       "at",

@@ -34,6 +34,15 @@ namespace retroforge
       return std::min_element(X.begin(), X.end(), lower) - X.begin();
     }
 
+    std::vector<Plane> symmetry_planes(const TetMesh &mesh)
+    {
+      std::vector<Plane> planes;
+      for (const Patch &patch : mesh.patches)
+        if (patch.symmetry)
+          planes.push_back(*patch.symmetry);
+      return planes;
+    }
+
     double extent_in_x(const TetMesh &mesh)
     {
       const auto [low, high] = bounding_box(mesh.X);
@@ -55,7 +64,10 @@ namespace retroforge
       , width_(billet.shape == "file" ? extent_in_x(nominal_billet) : billet.whole_width())
   {
     for (const DieParameters &die : dies_)
+    {
       followed_.push_back(followed_node(die, nominal_X_));
+      die_forms_.emplace_back(die, symmetry_planes(nominal_billet));
+    }
     const std::vector<DesignParameter> all = offered();
     for (const std::string &name : expanded(names))
     {
@@ -76,19 +88,25 @@ namespace retroforge
 
   std::vector<std::string> Design::expanded(const std::vector<std::string> &names) const
   {
-    const std::string        all     = "billet/free form";
-    const bool               has_all = std::find(names.begin(), names.end(), all) != names.end();
-    const auto               is_mode = [&](const std::string &name) { return name.rfind(all + " ", 0) == 0; };
+    const std::vector<DesignParameter> all        = offered();
+    const auto                         is_mode_of = [](const std::string &name, const std::string &form) {
+      const std::string end = "/free form";
+      return form.size() > end.size() && form.substr(form.size() - end.size()) == end &&
+             name.rfind(form + " ", 0) == 0;
+    };
     std::vector<std::string> single;
     for (const std::string &name : names)
-      if (name == all)
-      {
-        for (const ShapeParameter &shape : billet_map_.parameters())
-          if (is_mode("billet/" + shape.name))
-            single.push_back("billet/" + shape.name);
-      }
-      else if (!has_all || !is_mode(name)) // one that is given a value stands for itself in all of them
+    {
+      const std::size_t n = single.size();
+      for (const DesignParameter &parameter : all)
+        if (is_mode_of(parameter.name, name))
+          single.push_back(parameter.name);
+      // One that is given a value stands for itself in all of them.
+      if (single.size() == n && std::none_of(names.begin(), names.end(), [&](const std::string &form) {
+            return is_mode_of(name, form);
+          }))
         single.push_back(name);
+    }
     return single;
   }
 
@@ -127,6 +145,7 @@ namespace retroforge
     }
 
     void add_numbers_of(const DieParameters          &die,
+                        const DieFreeForm            &form,
                         const unsigned int            d,
                         const double                  width,
                         std::vector<DesignParameter> &all)
@@ -141,6 +160,9 @@ namespace retroforge
       all.push_back({prefix + "offset", "mm", Kind::offset, 0., width, d});
       for (const auto &[key, measure] : die.shape->measures())
         all.push_back({prefix + key, measure.unit, Kind::die_shape, measure.value, measure.value, d, 0, key});
+      for (unsigned int i = 0; i < form.n_modes(); ++i)
+        all.push_back(
+          {prefix + "free form " + std::to_string(i + 1), "mm", Kind::die_free_form, 0., width, d, i});
     }
   } // namespace
 
@@ -169,7 +191,7 @@ namespace retroforge
         {"billet/" + shape.name, shape.unit, Kind::billet, shape.nominal, shape.scale, invalid_index, j});
     }
     for (unsigned int d = 0; d < dies_.size(); ++d)
-      add_numbers_of(dies_[d], d, width_, all);
+      add_numbers_of(dies_[d], die_forms_[d], d, width_, all);
     if (friction)
       all.push_back({"dies/friction",
                      "mm^(-m)",
@@ -281,8 +303,7 @@ namespace retroforge
   template <typename Number>
   Process<Number> Design::process(const std::vector<Number> &mu) const
   {
-    auto                                       process = converted<Number>(process_);
-    std::vector<std::map<std::string, Number>> measures(dies_.size());
+    auto process = converted<Number>(process_);
     for (unsigned int j = 0; j < parameters_.size(); ++j)
     {
       const DesignParameter &parameter = parameters_[j];
@@ -309,17 +330,36 @@ namespace retroforge
             process.dies[parameter.die].displacement[i] += dies_[parameter.die].facing[i] * mu[j];
           break;
         case Kind::die_shape:
-          measures[parameter.die][parameter.measure] = mu[j];
-          break;
+        case Kind::die_free_form:
         case Kind::billet:
           break;
       }
     }
-    for (unsigned int d = 0; d < dies_.size(); ++d)
-      if (!measures[d].empty())
-        process.dies[d].vertices = dies_[d].shape->vertices(dies_[d].place(), measures[d]);
+    shape_dies(mu, process);
     follow_billet(mu, process);
     return process;
+  }
+
+  template <typename Number>
+  void Design::shape_dies(const std::vector<Number> &mu, Process<Number> &process) const
+  {
+    std::vector<std::map<std::string, Number>>  measures(dies_.size());
+    std::vector<std::map<unsigned int, Number>> coefficients(dies_.size());
+    for (unsigned int j = 0; j < parameters_.size(); ++j)
+      if (parameters_[j].kind == Kind::die_shape)
+        measures[parameters_[j].die][parameters_[j].measure] = mu[j];
+      else if (parameters_[j].kind == Kind::die_free_form)
+        coefficients[parameters_[j].die][parameters_[j].number] = mu[j];
+    for (unsigned int d = 0; d < dies_.size(); ++d)
+    {
+      NodalVectors<Number> &vertices = process.dies[d].vertices;
+      if (!measures[d].empty())
+        vertices = dies_[d].shape->vertices(dies_[d].place(), measures[d]);
+      else if (!coefficients[d].empty())
+        convert(die_forms_[d].vertices(), vertices);
+      if (!coefficients[d].empty())
+        die_forms_[d].forward(coefficients[d], vertices);
+    }
   }
 
   template <typename Number>
@@ -356,11 +396,18 @@ namespace retroforge
     std::vector<double>       gradient;
     for (unsigned int j = 0; j < parameters_.size(); ++j)
     {
+      const DesignParameter &parameter = parameters_[j];
+      if (parameter.kind == Kind::die_free_form)
+      {
+        gradient.push_back(
+          die_forms_[parameter.die].reverse(parameter.number, bar.dies[parameter.die].vertices));
+        continue;
+      }
       const auto process_dot = process(along(mu, j));
       double     sum         = 0.;
       for_each_number([&](const double &x_bar, const Dual &x) { sum += x_bar * x.dx(0); }, bar, process_dot);
-      if (parameters_[j].kind == Kind::billet)
-        sum += billet[parameters_[j].number];
+      if (parameter.kind == Kind::billet)
+        sum += billet[parameter.number];
       gradient.push_back(sum);
     }
     return gradient;

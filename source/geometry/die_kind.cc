@@ -81,6 +81,12 @@ namespace retroforge
       "Edges stay sharp, too, where a smooth surface would be farther from its facets than this part of the "
       "die's extent: folds between large faces. Raise it for coarse facets. Units: none.",
       Double(0.));
+    free_form_parameters.add_parameters(prm);
+  }
+
+  void SurfaceDie::check(const std::string &section, const std::string &chosen) const
+  {
+    free_form_parameters.check(section, chosen);
   }
 
   void SurfaceDie::add_angle(dealii::ParameterHandler &prm)
@@ -117,6 +123,7 @@ namespace retroforge
 
   void StlDie::check(const std::string &section, const std::string &chosen) const
   {
+    SurfaceDie::check(section, chosen);
     const bool is_chosen = chosen == "stl";
     if (is_chosen && file.empty())
       throw Error(section + "/file",

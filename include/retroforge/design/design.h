@@ -3,7 +3,7 @@
 #pragma once
 
 #include <retroforge/design/billet_map.h>
-#include <retroforge/geometry/die_parameters.h>
+#include <retroforge/design/die_free_form.h>
 #include <retroforge/time/process.h>
 
 namespace retroforge
@@ -13,13 +13,14 @@ namespace retroforge
   {
     enum class Kind
     {
-      material,  ///< a number of the material law
-      contact,   ///< a number of the contact law
-      friction,  ///< of one die, or of all that have friction
-      speed,     ///< of one die, along its velocity
-      offset,    ///< of one die, along its facing direction
-      die_shape, ///< a measure of one tripod or bell
-      billet     ///< of the billet's shape, see BilletMap
+      material,      ///< a number of the material law
+      contact,       ///< a number of the contact law
+      friction,      ///< of one die, or of all that have friction
+      speed,         ///< of one die, along its velocity
+      offset,        ///< of one die, along its facing direction
+      die_shape,     ///< a measure of one tripod or bell
+      die_free_form, ///< a mode of one die's surface
+      billet         ///< of the billet's shape, see BilletMap
     };
 
     std::string  name;
@@ -28,13 +29,16 @@ namespace retroforge
     double       nominal    = 0.;
     double       scale      = 1.;            ///< a length or size that steps are relative to
     unsigned int die        = invalid_index; ///< invalid_index: all
-    unsigned int number     = 0;             ///< in the law, or in BilletMap
+    unsigned int number     = 0;             ///< in the law, among the modes, or in BilletMap
     std::string  measure    = {};            ///< of a die's shape
     bool         may_vanish = false;         ///< else it is positive, unless it is free
     double       largest    = std::numeric_limits<double>::infinity();
 
     /// Whether it may have any sign: shapes are checked where they are made.
-    bool is_free() const { return kind == Kind::offset || kind == Kind::billet; }
+    bool is_free() const
+    {
+      return kind == Kind::offset || kind == Kind::die_free_form || kind == Kind::billet;
+    }
     /// Whether both set the same number.
     bool overlaps(const DesignParameter &other) const;
   };
@@ -75,7 +79,7 @@ namespace retroforge
 
     /// All that this scene offers.
     std::vector<DesignParameter> offered() const;
-    /// Names with `billet/free form` replaced by those of all its modes.
+    /// Names with `billet/free form` and `die NAME/free form` replaced by those of all their modes.
     std::vector<std::string> expanded(const std::vector<std::string> &names) const;
     /// @param where  the name stands, for the message     @throws Error  for a name that is not among them
     void check_offered(const std::string &name, const std::string &where) const;
@@ -91,7 +95,12 @@ namespace retroforge
     template <typename Number>
     void follow_billet(const std::vector<Number> &mu, Process<Number> &process) const;
 
+    /// Measures and modes of the dies that the parameters change.
+    template <typename Number>
+    void shape_dies(const std::vector<Number> &mu, Process<Number> &process) const;
+
     std::vector<DieParameters>   dies_;
+    std::vector<DieFreeForm>     die_forms_; ///< of each die
     Process<double>              process_;
     NodalVectors<double>         nominal_X_;
     double                       stroke_;

@@ -7,11 +7,8 @@
 namespace retroforge
 {
   /// Free form: named patches of any billet moved along their normals. The parameters are coefficients of the
-  /// modes of the surface,
-  ///   L phi_i = lambda_i M phi_i,    phi_i^T M phi_i = area / (1 + l^2 lambda_i),
-  /// L and M its stiffness and lumped mass in linear elements, from the smoothest on: equal coefficients are
-  /// equal moves in the Sobolev norm  |d|^2 + l^2 |grad d|^2  over the patches, whatever the mesh, and with
-  /// as many modes as nodes every shape is there. Coefficients are in mm, of root mean square for the first.
+  /// modes of the patches' surface (surface_modes): with as many modes as nodes every shape is there.
+  /// Coefficients are in mm, of root mean square for the first.
   ///
   /// Inside the billet the moves are continued by Laplace's equation. Nodes of symmetry planes and of other
   /// patches that are plane slide in their planes; other patches stay.

@@ -4,6 +4,7 @@
 
 #include <retroforge/core/choice.h>
 #include <retroforge/geometry/die.h>
+#include <retroforge/geometry/die_free_form_parameters.h>
 #include <retroforge/geometry/die_shapes.h>
 
 #include <deal.II/base/tensor.h>
@@ -39,6 +40,9 @@ namespace retroforge
     /// How deep contact reaches, where the user says so [mm]; 0: not said.
     virtual double depth_of_contact() const { return 0.; }
 
+    /// Of dies whose vertices can move; else null.
+    virtual const DieFreeFormParameters *free_form() const { return nullptr; }
+
     /// The measures that a design can vary.
     virtual std::map<std::string, Measure> measures() const { return {}; }
 
@@ -64,9 +68,14 @@ namespace retroforge
     double      largest_sagitta = 3e-3; ///< of the surface's diagonal
     double      angle           = 0.;   ///< by which it is turned [degrees]
 
+    DieFreeFormParameters free_form_parameters;
+
     void   add_parameters(dealii::ParameterHandler &prm) override;
+    void   check(const std::string &section, const std::string &chosen) const override;
     Die    make(const DiePlace &place) const override;
     double depth_of_contact() const override { return depth; }
+
+    const DieFreeFormParameters *free_form() const override { return &free_form_parameters; }
 
   protected:
     void add_angle(dealii::ParameterHandler &prm);

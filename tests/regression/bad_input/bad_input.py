@@ -118,6 +118,17 @@ MISTAKES = {
     "file for a plane": (settings("Die lower/file=lower.stl"), r"Die lower/file.*plane"),
     "die whose measures do not fit": (settings("Die lower/shape=tripod", "Die lower/Tripod/arm width=3"),
                                       r"Die lower/Tripod/arm width.*3"),
+    "free form of a plane": (settings("Die upper/free form modes=3"), r"Die upper/free form modes.*3.*plane.*offset"),
+    "free form of more modes than vertices": (settings("Die upper/shape=punch", "Die upper/free form modes=3000"),
+                                              r"Die upper/free form modes.*3000.*vertices are free.*fewer modes"),
+    "free form where no die is": (settings("Die upper/shape=punch", "Die upper/free form modes=3", "Die upper/free form region from=90, 0, 0",
+                                           "Die upper/free form region to=91, 1, 1"), r"Die upper/free form modes.*0 of the die's.*region"),
+    "corners of a free form's region swapped": (settings("Die upper/shape=punch", "Die upper/free form region from=1, 1, 1",
+                                                         "Die upper/free form region to=0, 0, 0"), r"Die upper/free form region from.*lower"),
+    "mode that a die does not have": (settings("Die upper/shape=punch", "Die upper/free form modes=3",
+                                               "Design/parameters=die upper/free form 4"), r"Design/parameters.*free form 4.*did you mean"),
+    "free form of a die without modes": (settings("Die upper/shape=punch", "Design/parameters=die upper/free form"),
+                                         r"Design/parameters.*die upper/free form' is not a parameter"),
     "unknown shape of a die": (settings("Die lower/shape=cone"), r"Die lower/shape.*cone.*bell"),
     "element size of zero": (settings("Billet/element size=0"), r"Billet/element size"),
     "missing mesh": (file_mesh("absent"), r"absent\.msh"),
@@ -277,7 +288,7 @@ def replaced():
 
 def full_disk():
     """A small file system of our own, where the machine lets us have one."""
-    for size, name, more in (("4k", "first files", ""), ("120k", "fields", ""),
+    for size, name, more in (("4k", "first files", ""), ("128k", "fields", ""),
                              ("136k", "record", "--set 'Output/fields every=0' --set Press/increments=60")):
         disk, saved = f"disk_{size}", f"saved_{size}"
         os.mkdir(disk)
