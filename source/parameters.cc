@@ -416,13 +416,6 @@ end
                     "the friction of a sticking node would be infinitely stiff",
                     "use 1e-2, or 1e-3 for a sharper law");
     }
-    for (const ObjectiveParameters &objective : objectives.all)
-      if (discretization.pair() == ElementPair::taylor_hood && objective.type.name == "contact pressure")
-        throw Error(
-          "Discretization/element",
-          "is P2-P1, and objective '" + objective.name + "' is a contact pressure",
-          "quadratic velocities hardly load the nodes of the mesh, whose pressures are then no measure",
-          "leave it at mini, or use another objective");
     leading_die();
   }
 

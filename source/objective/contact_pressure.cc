@@ -17,12 +17,20 @@ namespace retroforge
       return pair.die == die && pair.point.is_node() && view.stage.scene.partition.owns(pair.point.nodes[0]);
     }
 
-    /// Pushing force of a point along the die's normal, zero where the die does not press.
+    /// Force of a point along the die's normal. A vertex of quadratic velocities that is pressed because the
+    /// middles around it are may pull a little: were that cut off, derivatives would hang on its last digits.
     template <typename Number>
     Number pushing_force(const ContactNode<Number> &node, const Number &rho)
     {
-      const Number h = approach_excess(node);
-      return node.active && value_of(h) > 0. ? Number(rho * node.S * h) : Number(0.);
+      return node.active ? Number(rho * node.S * approach_excess(node)) : Number(0.);
+    }
+
+    /// A third of the surface at a node over the S of its pair: where velocities are quadratic, a vertex has
+    /// only a twelfth of a face.
+    template <typename Number>
+    double surface_over_S(const Stage<Number> &stage)
+    {
+      return stage.contact.quadratic ? 4. : 1.;
     }
 
     constexpr unsigned int none = invalid_index;
@@ -38,12 +46,14 @@ namespace retroforge
       return pairs;
     }
 
-    /// Of each pair of a node: its force and its part of those of the edges at it, over its area.
+    /// Of each pair of a node: its force and its half of those of the edges at it, over a third of the
+    /// surface there [MPa].
     template <typename Number>
     std::vector<Number> nodal_pressures(const StageView<Number> &view, const unsigned int die)
     {
-      const Stage<Number>            &stage = view.stage;
-      const std::vector<unsigned int> of    = pairs_of_nodes(view, die);
+      const Stage<Number>            &stage  = view.stage;
+      const std::vector<unsigned int> of     = pairs_of_nodes(view, die);
+      const double                    larger = surface_over_S(stage);
       std::vector<Number>             pressure(stage.contact.pairs.size(), Number(0.));
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
         if (const ContactPair &pair = stage.contact.pairs[p]; pair.die == die)
@@ -52,7 +62,7 @@ namespace retroforge
             pushing_force(stage.contact_node(p, view.W, view.active), stage.physics.contact.rho);
           for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)
             if (const unsigned int q = of[pair.point.nodes[i]]; q != none)
-              pressure[q] += pair.point.weight() * force / stage.areas.S[q];
+              pressure[q] += pair.point.weight() * force / (larger * stage.areas.S[q]);
         }
       return pressure;
     }
@@ -88,12 +98,14 @@ namespace retroforge
   {
     const Stage<Number> &stage    = view.stage;
     const auto           pressure = nodal_pressures(view, die_);
+    const double         larger   = surface_over_S(stage);
     std::vector<Number>  sums(2, Number(0.));
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_mine(view, p, die_))
       {
-        sums[0] += stage.areas.S[p] * power(Number(pressure[p] / reference_), Number(exponent_));
-        sums[1] += stage.areas.S[p] * stage.contact.ramps[p];
+        const Number surface = larger * stage.areas.S[p];
+        sums[0] += surface * power(Number(pressure[p] / reference_), Number(exponent_));
+        sums[1] += surface * stage.contact.ramps[p];
       }
     return sums;
   }
@@ -105,18 +117,19 @@ namespace retroforge
     const Stage<double> &stage    = view.stage;
     const auto           pressure = nodal_pressures(view, die_);
     const auto           of       = pairs_of_nodes(view, die_);
+    const double         larger   = surface_over_S(stage);
     ContactPullback      pullback(view, bar);
     std::vector<double>  force_bar(pressure.size(), 0.); ///< of the force on the node of a pair
     for (unsigned int p = 0; p < pressure.size(); ++p)
       if (is_mine(view, p, die_))
       {
-        // S (F/S)^e
-        const double   relative = pressure[p] / reference_, whole = std::pow(relative, exponent_);
+        // A (F/A)^e,  A = larger S
+        const double   whole = power(pressure[p] / reference_, exponent_);
         ContactNodeBar node_bar;
-        node_bar.S = weights[0] * (1. - exponent_) * whole + weights[1] * stage.contact.ramps[p];
-        bar.contact.ramp[p] += weights[1] * stage.areas.S[p];
+        node_bar.S = larger * (weights[0] * (1. - exponent_) * whole + weights[1] * stage.contact.ramps[p]);
+        bar.contact.ramp[p] += weights[1] * larger * stage.areas.S[p];
         pullback.add(p, node_bar);
-        if (relative > 0.)
+        if (pressure[p] > 0.)
           force_bar[p] = weights[0] * exponent_ * whole / pressure[p];
       }
     for (unsigned int p = 0; p < pressure.size(); ++p)
@@ -128,7 +141,7 @@ namespace retroforge
             of_point += pair.point.weight() * force_bar[q];
         const ContactNode<double> node = stage.contact_node(p, view.W, view.active);
         const double              rho = stage.physics.contact.rho, force = pushing_force(node, rho);
-        if (of_point == 0. || force == 0.)
+        if (of_point == 0. || !node.active)
           continue;
         ContactNodeBar node_bar;
         node_bar.S           = of_point * force / node.S;

@@ -8,10 +8,12 @@ namespace retroforge
 {
   /// Smooth maximum over nodes and time of the contact pressure on a die [MPa],
   ///   ( sum_i dt_i sum_k S_k p_k^q / sum_i dt_i sum_k S_k w_k )^(1/q),
-  /// p_k the pushing force on a node, that of its own and half of that of each edge at it, over S_k;
-  /// k the nodes pressed by the die, S_k a third of the surface at k, w_k the friction ramp: the mean over
-  /// the surface in contact, never above the largest pressure. The set of pressed nodes is frozen, as
-  /// everywhere. Zero before any contact.
+  /// p_k the force that pushes a node of the mesh, that of its own and half of that of each edge at it, over
+  /// S_k; k the nodes in reach of the die, S_k a third of the surface at k, w_k the friction ramp: the mean
+  /// over the surface in contact. The same with linear and with quadratic velocities: these have an even
+  /// pressure p load a middle with p/3 of each face at it and a vertex with nothing, half of which is p S_k.
+  /// Where the die pulls, p_k counts as zero. The set of pressed points is frozen, as everywhere. Zero before
+  /// any contact.
   class ContactPressure : public PathObjectiveOf<ContactPressure>
   {
   public:

@@ -9,17 +9,25 @@ sys.path.insert(0, os.path.join(HERE, "..", ".."))
 from case_tools import figure, run  # noqa: E402
 
 CASE = os.path.join(HERE, "case.prm")
+CURVED = os.path.join(HERE, "curved.prm")
 
 
-def derivatives(name, case):
-    rows = run(sys.argv[1], "check", case)[0]["check"]
+# A pressure is the penalty times small differences of velocities: at the default penetration differences of it are lost in rounding,
+# and steps as small as the others' lose the friction's remainder in it.
+PRESSURE = {"Objectives/names": "strain, contact pressure", "Contact/penetration": 1e-3, "Check/taylor start": 3e-4}
+
+
+def derivatives(name, case, settings=None, objective=None):
+    rows = [row for row in run(sys.argv[1], "check", case, settings)[0]["check"] if objective in (None, row["objective"])]
     figure(f"{name}adjoint_tangent", max(abs(row["adjoint"] / row["tangent"] - 1.) for row in rows))
     figure(f"{name}replayed", max(min(abs(step["replayed_central"] / row["adjoint"] - 1.) for step in row["steps"]) for row in rows))
     figure(f"{name}taylor_order", min(order for row in rows for order in row["taylor_orders"][:2]))
 
 
 derivatives("", CASE)
-derivatives("curved_", os.path.join(HERE, "curved.prm"))
+derivatives("curved_", CURVED)
+derivatives("pressure_", CASE, PRESSURE, "contact pressure")
+derivatives("curved_pressure_", CURVED, PRESSURE, "contact pressure")
 
 CRUSHED = run(sys.argv[1], "simulate", CASE, {
     "Die upper/facing": "0, 0, -1", "Press/stroke": 20, "Press/increments": 50, "Remeshing/when": "never", "Billet/element size": 7})[0]
