@@ -546,8 +546,13 @@ end
       states.push_back(die.initial_state());
     Objectives made;
     for (const ObjectiveParameters &objective : objectives.all)
-      made.push_back(
-        objective.make({made_dies, states, leading_die(), press.stroke, material.law.K, made_billet}));
+      made.push_back(objective.make({made_dies,
+                                     states,
+                                     leading_die(),
+                                     press.stroke,
+                                     material.law.K,
+                                     made_billet,
+                                     step_model().contact.ramp}));
     return made;
   }
 

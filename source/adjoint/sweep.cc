@@ -70,7 +70,10 @@ namespace retroforge
           if (const auto d = run.objectives[o].at_end->target_die(); d != invalid_index)
             add(weight, bar.target, physics_bar.dies[d].vertices);
           for (std::size_t d = 0; d < run.model.dies.size(); ++d)
-            physics_bar.dies[d].displacement = weight * bar.displacements[d];
+          {
+            physics_bar.dies[d].displacement = weight * bar.dies[d].displacement;
+            add(weight, bar.dies[d].vertices, physics_bar.dies[d].vertices);
+          }
           reverse_at_stroke(run.process, {end.stroke, 0.}, 0., physics_bar, costates[j].process);
         }
       }

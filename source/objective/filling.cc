@@ -8,8 +8,10 @@
 
 namespace retroforge
 {
-  FillingObjective::FillingObjective(TargetSurface target, const double rounding)
-      : target_(std::move(target)), rounding_(rounding)
+  FillingObjective::FillingObjective(TargetSurface                   target,
+                                     const double                    rounding,
+                                     const std::optional<FreeNodes> &free)
+      : target_(std::move(target)), rounding_(rounding), free_(free)
   {
     if (!(rounding >= 0.))
       throw Error("Filling",
@@ -23,6 +25,8 @@ namespace retroforge
     decisions_              = {};
     decisions_.by_workpiece = target_.seen_by_workpiece(view);
     decisions_.workpiece    = WorkpieceSurface(view);
+    if (free_)
+      free_->decide(view);
     const ClosestFeature       closest(decisions_.workpiece.shape());
     const NodalVectors<double> vertices = target_.vertices(view);
     const Sector               sector(view.scene.mesh);
@@ -61,7 +65,13 @@ namespace retroforge
   std::vector<Number> FillingObjective::compute_integrals(const FinalView<Number> &view) const
   {
     std::vector<Number> sums(2, Number(0.));
-    const auto          S = lumped_areas(surface_triangles(view.scene.mesh), view.X);
+    auto                S = lumped_areas(surface_triangles(view.scene.mesh), view.X);
+    if (free_)
+    {
+      const std::vector<Number> parts = free_->parts(view);
+      for (std::size_t k = 0; k < S.size(); ++k)
+        S[k] *= parts[k];
+    }
     for (const SeenFeature &seen : decisions_.by_workpiece)
       if (view.scene.partition.owns(seen.point))
         sums[0] += rounded(target_.distance(view, view.X[seen.point], seen.feature)) * S[seen.point];
@@ -87,21 +97,25 @@ namespace retroforge
     const auto            triangles = surface_triangles(view.scene.mesh);
     const auto            S         = lumped_areas(triangles, view.X);
     const TriangleSurface moved     = target_.moved(view);
-    std::vector<double>   S_bar(S.size(), 0.);
+    std::vector<double>   S_bar(S.size(), 0.), parts_bar(S.size(), 0.);
+    const auto            parts = free_ ? free_->parts(view) : std::vector<double>(S.size(), 1.);
     for (const SeenFeature &seen : decisions_.by_workpiece)
       if (view.scene.partition.owns(seen.point))
       {
         const double delta = target_.distance(view, view.X[seen.point], seen.feature);
-        S_bar[seen.point] += weight * rounded(delta);
+        S_bar[seen.point] += weight * rounded(delta) * parts[seen.point];
+        parts_bar[seen.point] += weight * rounded(delta) * S[seen.point];
         target_.reverse_distance(view,
                                  moved,
                                  view.X[seen.point],
                                  seen.feature,
-                                 weight * slope(delta) * S[seen.point],
+                                 weight * slope(delta) * S[seen.point] * parts[seen.point],
                                  bar.X[seen.point],
                                  bar);
       }
     reverse_lumped_areas(triangles, view.X, S_bar, bar.X);
+    if (free_)
+      free_->reverse(view, parts_bar, bar);
   }
 
   void

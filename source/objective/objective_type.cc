@@ -364,7 +364,8 @@ namespace retroforge
 
     struct FillingType : TargetType
     {
-      double rounding = 0.;
+      double      rounding = 0.;
+      std::string nodes    = "all";
 
       void add_parameters(ParameterHandler &prm) override
       {
@@ -373,6 +374,12 @@ namespace retroforge
                           rounding,
                           "Of the distance |d| where the surfaces meet, in `filling'. Units: mm.",
                           Double(0.));
+        prm.add_parameter(
+          "nodes",
+          nodes,
+          "Of the workpiece, whose distances a `filling' adds up: of its whole surface, or free: of "
+          "what touches no die, gradually over the ramp of friction. Units: none.",
+          Selection("all|free"));
       }
 
       void make(const std::string      &where,
@@ -380,7 +387,10 @@ namespace retroforge
                 NamedObjective         &objective) const override
       {
         objective.extent = Extent::part;
-        objective.at_end = std::make_unique<FillingObjective>(target.make(where, context), rounding);
+        objective.at_end = std::make_unique<FillingObjective>(
+          target.make(where, context),
+          rounding,
+          nodes == "free" ? std::optional<FreeNodes>(context.ramp) : std::nullopt);
       }
     };
 

@@ -40,7 +40,7 @@ namespace retroforge
   void TargetSurface::add_displacement_bar(const Vec3 &displacement_bar, FinalBar &bar) const
   {
     if (die_ != invalid_index)
-      bar.displacements[die_] += displacement_bar;
+      bar.dies[die_].displacement += displacement_bar;
   }
 
   std::vector<SeenFeature> TargetSurface::seen_by_workpiece(const FinalView<double> &view) const

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/objective/free_nodes.h>
 #include <retroforge/objective/target_surface.h>
 #include <retroforge/objective/workpiece_surface.h>
 
@@ -20,15 +21,19 @@ namespace retroforge
   ///   1/2 ( sum_k |delta_k| S_k  +  sum_l |delta_l| S_l ),
   /// k the nodes of the workpiece's surface, delta_k their distance from the target, S_k a third of the areas
   /// around them; l the vertices of the target, delta_l their distance from the workpiece's surface. All
-  /// surface nodes count, those in contact included. |delta| may be rounded to  sqrt(delta^2 + r^2) - r.
-  /// Of the target, only what lies in the sector counts that symmetry planes left of the workpiece.
+  /// surface nodes count, those in contact included; or, as in the source, those of the free surface: S_k is
+  /// then multiplied with how far the node is free (FreeNodes). |delta| may be rounded to  sqrt(delta^2 +
+  /// r^2) - r. Of the target, only what lies in the sector counts that symmetry planes left of the workpiece.
   /// Frozen: closest features, and which points see any. Moves of an open target's rim past the workpiece are
   /// such decisions.  @cite Laroussi2003, Eq. (109), (111)
   class FillingObjective : public FinalObjectiveOf<FillingObjective>
   {
   public:
     /// @param rounding  r [mm]; 0 has a kink where a node lies on the target, with derivative zero at it
-    explicit FillingObjective(TargetSurface target, double rounding = 0.);
+    /// @param free      counts nodes of the free surface only
+    explicit FillingObjective(TargetSurface                   target,
+                              double                          rounding = 0.,
+                              const std::optional<FreeNodes> &free     = {});
 
     std::string  name() const override { return "filling"; }
     std::string  unit() const override { return "mm^3"; }
@@ -65,8 +70,9 @@ namespace retroforge
     void reverse_by_workpiece(const FinalView<double> &view, double weight, FinalBar &bar) const;
     void reverse_by_target(const FinalView<double> &view, double weight, FinalBar &bar) const;
 
-    TargetSurface    target_;
-    double           rounding_;
-    FillingDecisions decisions_;
+    TargetSurface            target_;
+    double                   rounding_;
+    std::optional<FreeNodes> free_;
+    FillingDecisions         decisions_;
   };
 } // namespace retroforge

@@ -30,14 +30,15 @@ namespace retroforge
   {
     NodalVectors<double> X;
     std::vector<double>  q;
-    std::vector<Vec3>    displacements; ///< of the dies
-    NodalVectors<double> target;        ///< vertices; filled in when it has as many entries as there are
+    NodalVectors<double> target; ///< vertices; filled in when it has as many entries as there are
+    /// Displacements, and vertices of dies that are not meant as the target.
+    std::vector<DieState<double>> dies;
 
     FinalBar(const Scene &scene, const std::size_t n_target_vertices = 0)
         : X(scene.mesh.n_nodes())
         , q(scene.mesh.n_cells(), 0.)
-        , displacements(scene.dies.size())
         , target(n_target_vertices)
+        , dies(no_derivatives(scene.dies))
     {
     }
   };

@@ -16,6 +16,7 @@ namespace retroforge
     double                               stroke;      ///< [mm]
     double                               consistency; ///< K, a stress of the size to expect [MPa]
     const TetMesh                       &billet;
+    FrictionRamp                         ramp; ///< where nodes begin to touch
   };
 
   /// A type of objective: its settings, and how an objective is made of them. doc/objectives.md says what

@@ -21,6 +21,7 @@
 #include <retroforge/objective/radius.h>
 #include <retroforge/objective/shape_distance.h>
 #include <retroforge/objective/strain_statistics.h>
+#include <retroforge/objective/surface_areas.h>
 #include <retroforge/objective/unfilled_volume.h>
 #include <retroforge/objective/volume.h>
 
@@ -40,7 +41,8 @@ struct FinalInputs
 
   std::vector<Group<Number>> groups()
   {
-    std::vector<Group<Number>> groups = {{"X", {}}, {"q", {}}, {"displacement", {}}, {"target", {}}};
+    std::vector<Group<Number>> groups = {
+      {"X", {}}, {"q", {}}, {"displacement", {}}, {"target", {}}, {"dies", {}}};
     append(X, groups[0].second);
     for (Number &value : q)
       groups[1].second.push_back(&value);
@@ -48,6 +50,8 @@ struct FinalInputs
       for (unsigned int i = 0; i < 3; ++i)
         groups[2].second.push_back(&die.displacement[i]);
     append(target, groups[3].second);
+    for (auto &die : dies)
+      append(die.vertices, groups[4].second);
     return groups;
   }
 };
@@ -57,13 +61,18 @@ struct FinalProblem
   Scene               scene;
   FinalInputs<double> at;
 
-  FinalProblem(TetMesh mesh, NodalVectors<double> target, MPI_Comm comm = MPI_COMM_WORLD)
-      : scene(std::move(mesh), ElementPair::mini, {Die("lower", Vec3(), Vec3({0., 0., 1.}))}, comm)
+  FinalProblem(TetMesh                 mesh,
+               NodalVectors<double>    target,
+               const std::vector<Die> &dies = {Die("lower", Vec3(), Vec3({0., 0., 1.}))})
+      : scene(std::move(mesh), ElementPair::mini, dies, MPI_COMM_WORLD)
       , at{scene.mesh.X,
            std::vector<double>(scene.mesh.n_cells(), 0.3),
-           {{Vec3(), Vec3(), 0., {}}},
+           std::vector<DieState<double>>(dies.size()),
            std::move(target)}
   {
+    for (std::size_t d = 0; d < dies.size(); ++d)
+      if (dies[d].surface())
+        at.dies[d].vertices = dies[d].surface()->vertices();
   }
 
   template <typename Number>
@@ -88,7 +97,7 @@ struct FinalProblem
   {
     FinalBar bar(scene, inputs.target.size());
     objective.reverse_integrals(view(inputs), objective.reverse_value(integrals(objective, inputs)), bar);
-    FinalInputs<double> result{bar.X, bar.q, {{Vec3(), bar.displacements[0], 0., {}}}, bar.target};
+    FinalInputs<double> result{bar.X, bar.q, bar.dies, bar.target};
     for (const auto &[name, entries] : result.groups())
       for (double *entry : entries)
         *entry = scene.partition.sum(*entry);
@@ -97,9 +106,12 @@ struct FinalProblem
 
   FinalInputs<Dual> dual_shape() const
   {
+    std::vector<DieState<Dual>> dies(at.dies.size());
+    for (std::size_t d = 0; d < dies.size(); ++d)
+      dies[d].vertices.resize(at.dies[d].vertices.size());
     return {NodalVectors<Dual>(at.X.size()),
             std::vector<Dual>(at.q.size(), Dual(0.)),
-            {DieState<Dual>{Vector3<Dual>(), Vector3<Dual>(), Dual(0.), {}}},
+            std::move(dies),
             NodalVectors<Dual>(at.target.size())};
   }
 };
@@ -195,6 +207,32 @@ void check_filling_of_half(Errors &errors)
     problem->value(filling);
     const double all = problem == &whole ? 4. : 2.;
     errors.compare("sheet to a box", problem->integrals(filling, problem->at)[1], 0.1 * all);
+  }
+}
+
+/// A cube on a plane, within a target larger by d all round: what of its surface belongs to nodes above the
+/// plane counts, or also half of the rest, where the plane is half of the ramp below the cube.
+void check_filling_of_free_nodes(Errors &errors)
+{
+  const double d = 0.07, width = 0.02;
+  const auto   larger = scaled(cube(), 1. + 2. * d, Vec3({-d, -d, -d}));
+  FinalProblem problem(box(Vec3({0.5, 0.5, 0.}), Vec3({1., 1., 1.}), 0.4), {});
+  double       above = 0.;
+  for (const auto &nodes : surface_triangles(problem.scene.mesh))
+  {
+    const auto  &X    = problem.at.X;
+    const double area = 0.5 * cross(X[nodes[1]] - X[nodes[0]], X[nodes[2]] - X[nodes[0]]).norm();
+    for (const NodeIndex k : nodes)
+      above += X[k][2] > 0. ? area / 3. : 0.;
+  }
+  for (const double part : {0., 0.5, 1.})
+  {
+    problem.at.dies[0].displacement = Vec3({0., 0., -part * width});
+    FillingObjective filling(TargetSurface(larger), 0., FreeNodes(FrictionRamp{width, false}));
+    problem.value(filling);
+    errors.compare("cube on a plane, free nodes",
+                   problem.integrals(filling, problem.at)[0],
+                   d * (above + part * (6. - above)));
   }
 }
 
@@ -306,6 +344,21 @@ double check_all_derivatives()
   check("maximum strain, log-sum-exp", exponential, inside);
   check("filling of a die", die_filling, under_die);
   check("filling of a closed shape, rounded", closed_filling, inside);
+  FinalProblem between(box(Vec3({0., 0., 0.2}), Vec3({1.6, 1.4, 1.}), 0.4, true),
+                       die->vertices(),
+                       {Die("lower", *die, 2.), Die("side", Vec3({0.75, 0., 0.}), Vec3({-1., 0., 0.1}))});
+  shake(between);
+  between.at.dies[0].displacement = Vec3({0.02, -0.01, -0.05});
+  FillingObjective of_free(TargetSurface(die, 0, low), 0., FreeNodes(FrictionRamp{0.3, false}));
+  check("filling of a die, free nodes", of_free, between);
+  std::cout << "  some of them touch, some in part: " << [&] {
+    FreeNodes free(FrictionRamp{0.3, false});
+    free.decide(between.view(between.at));
+    unsigned int touch = 0, in_part = 0;
+    for (const double part : free.parts(between.view(between.at)))
+      (part == 0. ? touch : in_part) += part < 1. ? 1 : 0;
+    return yes(touch > 3 && in_part > 3);
+  }() << std::endl;
   check("unfilled volume before a die", die_unfilled, under_die);
   check("unfilled volume of a closed shape", closed_unfilled, inside);
   check("distance from a die", die_distance, under_die);
@@ -334,6 +387,7 @@ int main(int argc, char **argv)
   check_volume_and_strain(errors);
   check_shapes(errors);
   check_filling_of_half(errors);
+  check_filling_of_free_nodes(errors);
   check_cylinder(errors);
   check_unfilled();
   errors.print(1e-12);

@@ -58,6 +58,7 @@ Objectives all_objectives(const unsigned int upper)
   at_end("maximum strain", StrainObjective(StrainStatistic::maximum));
   at_end("shape distance", ShapeDistance(target));
   at_end("filling", FillingObjective(target, 0.01));
+  at_end("filling of free nodes", FillingObjective(target, 0.01, FreeNodes(FrictionRamp{1., false})));
   at_end("unfilled volume", UnfilledVolume(target, Cavity::within, 24, 4.));
   return objectives;
 }

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/objective/final_objective.h>
+
+namespace retroforge
+{
+  /// How far nodes of the workpiece are free of all dies at the end:
+  ///   f_k = product over dies d of 1 - w(delta_kd),
+  /// w the friction ramp of contact: 0 where a node touches, 1 where it is out of the ramp's width. A node
+  /// that an edge holds off a curved die touches, as it does for friction. Frozen: which points are within
+  /// the ramp's width, and the features of the dies that they see.
+  class FreeNodes
+  {
+  public:
+    explicit FreeNodes(const FrictionRamp &ramp) : ramp_(ramp) {}
+
+    void decide(const FinalView<double> &view);
+
+    /// f of every node.
+    template <typename Number>
+    std::vector<Number> parts(const FinalView<Number> &view) const;
+
+    /// Adds the derivatives of  parts_bar·parts  in positions, and in displacements and vertices of the dies.
+    void reverse(const FinalView<double> &view, const std::vector<double> &parts_bar, FinalBar &bar) const;
+
+  private:
+    FrictionRamp             ramp_;
+    std::vector<ContactPair> near_;
+  };
+} // namespace retroforge

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/objective/free_nodes.h>
+
+namespace retroforge
+{
+  namespace
+  {
+    /// Of the vertices alone: those of quadratic velocities lie on straight edges between them.
+    template <typename Number>
+    ContactView<Number> contact_view(const FinalView<Number> &view)
+    {
+      return {view.scene.mesh, view.scene.topology, view.scene.dies, view.dies, view.X};
+    }
+
+    template <typename Number>
+    ContactSet<Number>
+    contact_of(const FinalView<Number> &view, const std::vector<ContactPair> &near, const FrictionRamp &ramp)
+    {
+      return make_contact_set<Number>(contact_view(view), near, {ramp, Number(1.)});
+    }
+
+    template <typename Number>
+    std::vector<Number> products(const FinalView<Number> &view, const ContactSet<Number> &contact)
+    {
+      std::vector<Number> parts(view.X.size(), Number(1.));
+      for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+        if (contact.pairs[p].point.is_node())
+          parts[contact.pairs[p].point.nodes[0]] *= Number(1. - contact.ramps[p]);
+      return parts;
+    }
+  } // namespace
+
+  void FreeNodes::decide(const FinalView<double> &view)
+  {
+    near_ = find_contact_pairs(contact_view(view), ramp_, ramp_.width, true);
+  }
+
+  template <typename Number>
+  std::vector<Number> FreeNodes::parts(const FinalView<Number> &view) const
+  {
+    return products(view, contact_of(view, near_, ramp_));
+  }
+
+  void
+  FreeNodes::reverse(const FinalView<double> &view, const std::vector<double> &parts_bar, FinalBar &bar) const
+  {
+    const auto                                     contact = contact_of(view, near_, ramp_);
+    ContactSetBar                                  contact_bar(near_.size());
+    std::map<NodeIndex, std::vector<unsigned int>> pairs_of; // several dies may touch a node
+    for (unsigned int p = 0; p < near_.size(); ++p)
+      if (near_[p].point.is_node())
+        pairs_of[near_[p].point.nodes[0]].push_back(p);
+    for (const auto &[k, pairs] : pairs_of)
+      for (const unsigned int p : pairs)
+      {
+        double others = 1.;
+        for (const unsigned int other : pairs)
+          others *= other == p ? 1. : 1. - contact.ramps[other];
+        contact_bar.ramp[p] = -parts_bar[k] * others;
+      }
+    reverse_contact_set(contact_view(view), contact, ramp_, contact_bar, bar.X, bar.dies);
+  }
+
+  template std::vector<double> FreeNodes::parts(const FinalView<double> &) const;
+  template std::vector<Dual>   FreeNodes::parts(const FinalView<Dual> &) const;
+} // namespace retroforge
