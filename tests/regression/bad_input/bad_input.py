@@ -6,6 +6,7 @@
 
 and what was computed before the trouble can still be read. Usage: bad_input.py RETROFORGE"""
 import csv
+import math
 import os
 import re
 import struct
@@ -287,10 +288,13 @@ def replaced():
 
 
 def full_disk():
-    """A small file system of our own, where the machine lets us have one."""
-    for size, name, more in (("4k", "first files", ""), ("128k", "fields", ""),
-                             ("136k", "record", "--set 'Output/fields every=0' --set Press/increments=60")):
-        disk, saved = f"disk_{size}", f"saved_{size}"
+    """A small file system of our own, where the machine lets us have one. Runs begin with their parameters, which grow with
+    the program: sizes are what is left beside them."""
+    parameters = os.path.getsize(os.path.join("twice", "parameters.prm"))
+    beside = lambda left: f"{4 * math.ceil(parameters / 4096) + left}k"  # noqa: E731
+    for size, name, more in (("4k", "first files", ""), (beside(24), "fields", ""),
+                             (beside(32), "record", "--set 'Output/fields every=0' --set Press/increments=60")):
+        disk, saved = f"disk_{name.replace(' ', '_')}", f"saved_{name.replace(' ', '_')}"
         os.mkdir(disk)
         script = (f"mount -t tmpfs -o size={size} tmpfs {disk} || exit 77; "
                   f"{PROGRAM} gradient case.prm --output {disk}/run {more}; status=$?; cp -r {disk} {saved}; exit $status")
@@ -303,7 +307,7 @@ def full_disk():
             continue
         judge_message(f"disk full at the {name}", done, re.escape(disk))
         history = os.path.join(saved, "run", "history.csv")
-        if size != "4k":
+        if name != "first files":
             whole_history(f"what was computed before is kept ({name})", history, 1)
 
 
