@@ -15,7 +15,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <numeric>
 #include <random>
 #include <set>
 
@@ -24,7 +23,7 @@ namespace retroforge
   namespace
   {
     using Decision = TrialRow::Decision;
-    using Stop     = OptimisationResults::Stop;
+    using Stop     = SearchStop;
 
     /// What gives the same bits for the same design.
     std::string program_on(MPI_Comm comm)
@@ -83,26 +82,6 @@ namespace retroforge
       return below;
     }
 
-    double dot(const std::vector<double> &x, const std::vector<double> &y)
-    {
-      return std::inner_product(x.begin(), x.end(), y.begin(), 0.);
-    }
-
-    double length(const std::vector<double> &x)
-    {
-      return std::sqrt(dot(x, x));
-    }
-
-    /// The part of x along orthonormal directions.
-    std::vector<double> along(const std::vector<std::vector<double>> &directions,
-                              const std::vector<double>              &x)
-    {
-      std::vector<double> part(x.size(), 0.);
-      for (const std::vector<double> &direction : directions)
-        for (std::size_t j = 0; j < x.size(); ++j)
-          part[j] += dot(direction, x) * direction[j];
-      return part;
-    }
   } // namespace
 
   Optimize::Optimize(const CommandLine &command, MPI_Comm comm)
@@ -122,10 +101,36 @@ namespace retroforge
       , scatter_(case_.design.parameters(), case_.parameters.optimisation, from_below(case_, criteria_))
       , journal_(make_journal())
       , trials_(case_, journal_, scatter_)
+      , search_(space_, criteria_, case_.parameters.optimisation, search_task())
       , results_{space_, criteria_, names_of(case_.objectives), units_of(case_.objectives)}
   {
     // A start of which nothing can come is refused before anything is written.
     Trial(case_, case_.process, case_.X_0, Trial::Keep::nothing).check();
+  }
+
+  SearchTask Optimize::search_task()
+  {
+    SearchTask task;
+    task.evaluate      = [&](const std::vector<double> &mu) { return trials_.evaluate(mu); };
+    task.differentiate = [&](const std::vector<double> &mu) { return trials_.differentiate(mu); };
+    task.n_evaluated   = [&] { return trials_.n_asked(); };
+    task.decided       = [&](const Evaluation &evaluation, const bool accepted) {
+      if (accepted)
+        write_shapes(evaluation, "trial_" + std::to_string(results_.rows.size()));
+      add_row({accepted ? Decision::accepted : Decision::refused,
+               evaluation,
+               search_.merit_of(evaluation),
+               search_.radius()});
+    };
+    task.renewed = [&](const double excess) {
+      if (!root_)
+        return;
+      std::printf("  limits exceeded by %.2g at most; multipliers renewed:", excess);
+      for (const double multiplier : search_.multipliers())
+        std::printf(" %.4g", multiplier);
+      std::printf("\n");
+    };
+    return task;
   }
 
   Journal Optimize::make_journal() const
@@ -183,7 +188,10 @@ namespace retroforge
     if (case_.command.check)
       check();
     measure_noise();
-    search();
+    // A limit's optimum is the last design, not the least one within its tolerance.
+    const bool settled = search_.run(results_.noise);
+    results_.stop      = search_.stop();
+    results_.best      = settled ? search_.now() : best_so_far();
     report_best();
     confirm();
     if (root_)
@@ -227,48 +235,16 @@ namespace retroforge
                     std::to_string(start.increments + 1) + ": " + start.failure,
                   "the first design must succeed",
                   "begin elsewhere with --at, or cure what the message says");
-    now_ = trials_.differentiate(case_.mu);
-    criteria_.set_sizes(now_.values);
-    results_.start = results_.best = now_;
-    merit_                         = {&criteria_, criteria_.value(now_.values), 1., {}, 0.};
-    // A unit of merit is what the first step promises where nothing bends: so the first guess of the Hessian,
-    // which is one, is of the right size.
-    const OptimisationParameters &parameters = case_.parameters.optimisation;
-    const double slope = length(space_.pull_back(merit_.gradient(now_.values, now_.gradients)));
-    // Where it does not feel the design yet, as a die that nothing touches, a thousandth of it has to do.
-    constexpr double flat = 1e-8, felt = 1e-3;
-    const double     value = std::abs(criteria_.value(now_.values));
-    merit_.size            = slope > flat * value ? slope / parameters.first_step
-                             : value > 0.         ? felt * value / parameters.first_step
-                                                  : 1.;
-    merit_.multipliers.assign(criteria_.limits.size(), 0.);
-    double steepest = 0.;
-    for (const Limit &limit : criteria_.limits)
-      steepest = std::max(
-        steepest, std::abs(limit.slope()) * length(space_.pull_back(now_.gradients[limit.objective])));
-    constexpr double curvature = 10.; // of the penalty, in that of the first guess of the Hessian
-    merit_.penalty             = steepest > 0. ? curvature / (steepest * steepest) : 1.;
-    merit_.multipliers         = fitted_multipliers();
-    radius_                    = parameters.first_step;
-    add_row({Decision::start, now_, merit_.value(now_.values), radius_});
-    write_shapes(now_, "start");
+    results_.start = results_.best = trials_.differentiate(case_.mu);
+    criteria_.set_sizes(results_.start.values);
+    search_.begin(results_.start);
+    add_row({Decision::start, results_.start, search_.merit_of(results_.start), search_.radius()});
+    write_shapes(results_.start, "start");
   }
 
   void Optimize::check()
   {
-    const BoundedProblem asked = problem();
-    std::mt19937         generator(2);
-    std::vector<double>  direction(space_.size());
-    for (std::size_t j = 0; j < direction.size(); ++j)
-    {
-      // Both ways must be free.
-      const double sign = generator() % 2 == 0 ? 1. : -1.;
-      direction[j]      = space_.at(now_.mu, j) == DesignSpace::At::inside ? sign : 0.;
-    }
-    if (!space_.relations().empty())
-      direction = along(space_.free_directions(now_.mu), direction);
-    const std::vector<double> steps = {1e-1, 1e-2, 1e-3};
-    const auto                rows  = check_derivative(asked, direction, steps);
+    const std::vector<DifferenceCheck> rows = search_.check();
     if (!root_)
       return;
     std::printf("  gradient along a direction, against differences of forgings that decide everything anew:\n"
@@ -298,17 +274,15 @@ namespace retroforge
         entry = part * (2. * (generator() / 4294967295.) - 1.);
       const std::vector<double> mu         = space_.values(space_.projected(x));
       const Evaluation          evaluation = trials_.evaluate(mu);
-      add_row({Decision::noise,
-               evaluation,
-               evaluation.failed() ? INFINITY : merit_.value(evaluation.values),
-               part});
+      add_row({Decision::noise, evaluation, search_.merit_of(evaluation), part});
       if (evaluation.failed())
         continue;
-      double                    predicted = criteria_.value(now_.values);
-      const std::vector<double> slopes    = criteria_.slopes(now_.values);
-      for (std::size_t o = 0; o < now_.gradients.size(); ++o)
+      const Evaluation         &start     = results_.start;
+      double                    predicted = criteria_.value(start.values);
+      const std::vector<double> slopes    = criteria_.slopes(start.values);
+      for (std::size_t o = 0; o < start.gradients.size(); ++o)
         for (std::size_t j = 0; j < mu.size(); ++j)
-          predicted += slopes[o] * now_.gradients[o][j] * (mu[j] - now_.mu[j]);
+          predicted += slopes[o] * start.gradients[o][j] * (mu[j] - start.mu[j]);
       sum += std::pow(criteria_.value(evaluation.values) - predicted, 2);
       ++n_values;
     }
@@ -318,196 +292,7 @@ namespace retroforge
                   results_.noise,
                   criteria_.objective.unit.empty() ? "" : " ",
                   criteria_.objective.unit.c_str(),
-                  results_.noise / std::abs(criteria_.value(now_.values)));
-  }
-
-  void Optimize::search()
-  {
-    if (criteria_.limits.empty())
-    {
-      minimise_merit();
-      results_.best = best_so_far();
-      return;
-    }
-    constexpr unsigned int most_rounds = 20;
-    double                 excess      = criteria_.largest_excess(now_.values);
-    for (unsigned int round = 0; round < most_rounds; ++round)
-    {
-      results_.stop                 = Stop::running;
-      const unsigned int iterations = iterations_;
-      minimise_merit();
-      if (results_.stop == Stop::iterations || results_.stop == Stop::simulations)
-        break;
-      const std::vector<double> multipliers = fitted_multipliers();
-      const bool                settled     = limits_are_settled(multipliers);
-      const bool                is_stuck    = iterations_ == iterations && multipliers == merit_.multipliers;
-      merit_.multipliers                    = multipliers;
-      if (settled)
-      {
-        results_.best = now_;
-        return;
-      }
-      if (is_stuck)
-        break;
-      const double excess_now = criteria_.largest_excess(now_.values);
-      if (excess_now > 0.25 * excess && excess_now > case_.parameters.optimisation.limit_tolerance)
-        merit_.penalty *= 4.;
-      excess = excess_now;
-      if (root_)
-      {
-        std::printf("  limits exceeded by %.2g at most; multipliers renewed:", excess);
-        for (const double multiplier : merit_.multipliers)
-          std::printf(" %.4g", multiplier * merit_.size);
-        std::printf("\n");
-      }
-    }
-    results_.best = best_so_far();
-  }
-
-  BoundedProblem Optimize::problem()
-  {
-    BoundedProblem problem;
-    problem.start     = space_.scaled(now_.mu);
-    problem.lower     = space_.scaled_lower();
-    problem.upper     = space_.scaled_upper();
-    problem.relations = space_.scaled_relations();
-    problem.value     = [&](const std::vector<double> &x) { return value_at(x); };
-    problem.gradient  = [&](const std::vector<double> &x) {
-      now_ = trials_.differentiate(space_.values(x));
-      return space_.pull_back(merit_.gradient(now_.values, now_.gradients));
-    };
-    problem.known_hessian = [&](const std::vector<double> &v) { return known_hessian(v); };
-    problem.known_is_all  = !criteria_.data.empty();
-    problem.decided       = [&](const std::vector<double> &x, const bool accepted) { decided(x, accepted); };
-    return problem;
-  }
-
-  void Optimize::minimise_merit()
-  {
-    const OptimisationParameters &parameters = case_.parameters.optimisation;
-    const double                  noise      = results_.noise / merit_.size;
-    // A step shorter than the noise lets see tells nothing: the first one promises several times as much,
-    // where the largest step can. A round before may have ended with steps as short as its noise.
-    constexpr double several = 4.;
-    const double     slope   = space_.projected_length(now_.mu, merit_.gradient(now_.values, now_.gradients));
-    const double     seen    = slope > 0. ? several * noise / slope : 0.;
-    const double     radius =
-      std::clamp(std::max(radius_, seen), 0.25 * parameters.first_step, parameters.largest_step);
-    minimiser_.minimise(problem(), {radius, parameters.largest_step, noise, [&](const MinimiserState &state) {
-                                      return go_on(state);
-                                    }});
-  }
-
-  std::vector<double> Optimize::known_hessian(const std::vector<double> &v) const
-  {
-    std::vector<double> product(v.size(), 0.);
-    const auto          add = [&](const unsigned int objective, const double factor) {
-      const std::vector<double> row = space_.pull_back(now_.gradients[objective]);
-      double                    sum = 0.;
-      for (std::size_t j = 0; j < v.size(); ++j)
-        sum += row[j] * v[j];
-      for (std::size_t j = 0; j < v.size(); ++j)
-        product[j] += factor * sum * row[j];
-    };
-    for (const Datum &datum : criteria_.data)
-      add(datum.objective, 1. / (datum.deviation * datum.deviation * merit_.size));
-    for (const unsigned int i : pressing())
-      add(criteria_.limits[i].objective, merit_.penalty * std::pow(criteria_.limits[i].slope(), 2));
-    return product;
-  }
-
-  std::vector<unsigned int> Optimize::pressing() const
-  {
-    std::vector<unsigned int> limits;
-    for (unsigned int i = 0; i < criteria_.limits.size(); ++i)
-      if (merit_.multipliers[i] + merit_.penalty * criteria_.limits[i].excess(now_.values) > 0.)
-        limits.push_back(i);
-    return limits;
-  }
-
-  bool Optimize::go_on(const MinimiserState &state)
-  {
-    const OptimisationParameters &parameters = case_.parameters.optimisation;
-    radius_                                  = state.radius;
-    constexpr double shortest                = 1e-5;
-    const double     noise                   = results_.noise / merit_.size;
-    if (state.gradient <= parameters.gradient_tolerance * parameters.first_step)
-      results_.stop = Stop::gradient;
-    else if (state.gradient * state.radius <= noise)
-      results_.stop = Stop::noise;
-    else if (state.radius < shortest * parameters.first_step)
-      results_.stop = Stop::step;
-    else if (iterations_ >= parameters.iterations)
-      results_.stop = Stop::iterations;
-    else if (trials_.n_asked() >= parameters.simulations)
-      results_.stop = Stop::simulations;
-    if (results_.stop == Stop::running)
-      ++iterations_;
-    return results_.stop == Stop::running;
-  }
-
-  double Optimize::value_at(const std::vector<double> &x)
-  {
-    const Evaluation evaluation = trials_.evaluate(space_.values(x));
-    return evaluation.failed() ? INFINITY : merit_.value(evaluation.values);
-  }
-
-  void Optimize::decided(const std::vector<double> &x, const bool accepted)
-  {
-    const Evaluation evaluation = trials_.evaluate(space_.values(x));
-    if (accepted)
-      write_shapes(evaluation, "trial_" + std::to_string(results_.rows.size()));
-    add_row({accepted ? Decision::accepted : Decision::refused,
-             evaluation,
-             evaluation.failed() ? INFINITY : merit_.value(evaluation.values),
-             radius_});
-  }
-
-  std::vector<double> Optimize::fitted_multipliers() const
-  {
-    const std::vector<std::vector<double>> free = space_.free_directions(now_.mu);
-    const auto over_free                        = [&](const std::vector<double> &by_mu, const double factor) {
-      const std::vector<double> by_x = space_.pull_back(by_mu);
-      std::vector<double>       part;
-      for (const std::vector<double> &direction : free)
-        part.push_back(factor * dot(direction, by_x));
-      return part;
-    };
-    Merit plain = merit_;
-    plain.multipliers.clear();
-    const std::vector<double>        g = over_free(plain.gradient(now_.values, now_.gradients), 1.);
-    std::vector<std::vector<double>> columns;
-    const std::vector<unsigned int>  pressed = pressing();
-    for (const unsigned int i : pressed)
-      columns.push_back(
-        over_free(now_.gradients[criteria_.limits[i].objective], criteria_.limits[i].slope()));
-    const std::vector<double> fitted = least_squares_multipliers(g, columns);
-    std::vector<double>       multipliers(criteria_.limits.size(), 0.);
-    for (std::size_t k = 0; k < pressed.size(); ++k)
-      multipliers[pressed[k]] = fitted[k];
-    return multipliers;
-  }
-
-  bool Optimize::limits_are_settled(const std::vector<double> &multipliers) const
-  {
-    const OptimisationParameters &parameters = case_.parameters.optimisation;
-    Merit                         lagrangian = merit_;
-    lagrangian.multipliers.clear();
-    std::vector<double> gradient = lagrangian.gradient(now_.values, now_.gradients);
-    for (std::size_t i = 0; i < multipliers.size(); ++i)
-    {
-      const Limit &limit  = criteria_.limits[i];
-      const double excess = limit.excess(now_.values);
-      if (excess > parameters.limit_tolerance ||
-          (multipliers[i] > 0. && excess < -parameters.limit_tolerance))
-        return false;
-      for (std::size_t j = 0; j < gradient.size(); ++j)
-        gradient[j] += multipliers[i] * limit.slope() * now_.gradients[limit.objective][j];
-    }
-    constexpr double looser = 10.; // than what each round is asked for
-    return results_.stop == Stop::noise || results_.stop == Stop::step ||
-           space_.projected_length(now_.mu, gradient) <=
-             looser * parameters.gradient_tolerance * parameters.first_step;
+                  results_.noise / std::abs(criteria_.value(results_.start.values)));
   }
 
   Evaluation Optimize::best_so_far() const
@@ -529,9 +314,7 @@ namespace retroforge
   {
     results_.best = trials_.differentiate(results_.best.mu);
     // Multipliers are those of the design accepted last, which the rounds ended with.
-    results_.multipliers = merit_.multipliers;
-    for (double &multiplier : results_.multipliers)
-      multiplier *= merit_.size;
+    results_.multipliers = search_.multipliers();
     if (!criteria_.data.empty())
       results_.confidence = confidence_of(criteria_, space_, results_.best);
     results_.by_moving_relation =

@@ -19,7 +19,7 @@ namespace retroforge
   {
     using Json = nlohmann::ordered_json;
     using At   = DesignSpace::At;
-    using Stop = OptimisationResults::Stop;
+    using Stop = SearchStop;
 
     Json number(const double x)
     {

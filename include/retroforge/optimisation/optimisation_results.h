@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/optimisation/confidence.h>
+#include <retroforge/optimisation/search.h>
 
 #include <iosfwd>
 #include <optional>
@@ -36,17 +37,6 @@ namespace retroforge
   /// What an optimisation found.
   struct OptimisationResults
   {
-    /// As `stopped`, in words.
-    enum class Stop
-    {
-      running,
-      gradient,
-      noise,
-      step,
-      iterations,
-      simulations
-    };
-
     const DesignSpace             &space;
     const Criteria                &criteria;
     const std::vector<std::string> objectives; ///< names of all of the case
@@ -54,7 +44,7 @@ namespace retroforge
 
     std::vector<TrialRow>       rows  = {};
     double                      noise = 0.; ///< of the objective, in its unit
-    Stop                        stop  = Stop::running;
+    SearchStop                  stop  = SearchStop::running;
     Evaluation                  start = {}, best = {};   ///< with gradients
     std::vector<double>         multipliers        = {}; ///< of the limits, per unit of the limit's excess
     std::vector<double>         by_moving_relation = {}; ///< objective per unit of each relation's bound
@@ -71,6 +61,6 @@ namespace retroforge
     void print(std::ostream &out) const;
   };
 
-  std::string in_words(OptimisationResults::Stop stop);
+  std::string in_words(SearchStop stop);
   std::string in_words(TrialRow::Decision decision, bool failed);
 } // namespace retroforge
