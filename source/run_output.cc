@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/contact/penetration.h>
-#include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/mesh/parts_quality.h>
 #include <retroforge/output/console.h>
 #include <retroforge/run_output.h>
 
@@ -43,10 +43,10 @@ namespace retroforge
         touched_.insert(event.record.pairs[p].die);
     if (is_due(event.state, case_.parameters.objectives.every))
       add_objectives(event.state);
-    const auto timing = timings_.scope("output");
+    const auto       timing = timings_.scope("output");
+    const HistoryRow row    = row_of(event);
     if (history_)
     {
-      const HistoryRow row = row_of(event);
       history_->add(row);
       print(event, row);
     }
@@ -76,12 +76,13 @@ namespace retroforge
 
   HistoryRow RunOutput::row_of(const IncrementEvent &event)
   {
-    const ForgingState     &state   = event.state;
-    const TetMesh          &mesh    = state.leg->scene.mesh;
-    const std::vector<Die> &dies    = case_.model.dies;
-    const double            size    = volume(mesh.cells, state.X);
-    const Penetration       deepest = deepest_point(
-      mesh, state.leg->scene.topology, dies, case_.process.at_stroke(state.stroke).dies, state.X);
+    const ForgingState     &state  = event.state;
+    const Scene            &scene  = state.leg->scene;
+    const Ownership        &cells  = scene.partition.cells();
+    const std::vector<Die> &dies   = case_.model.dies;
+    const double            size   = volume(scene.mesh, state.X, cells);
+    const auto              states = case_.process.at_stroke(state.stroke).dies;
+    const Penetration deepest = deepest_point(scene.mesh, scene.topology, dies, states, state.X, case_.comm);
     if (!(deepest.depth <= deepest_.depth))
       deepest_ = {deepest.depth,
                   deepest.depth / case_.edge_length(),
@@ -98,7 +99,7 @@ namespace retroforge
             force,
             energy,
             size,
-            minimum_quality(mesh.cells, state.X),
+            minimum_quality(scene.mesh, state.X, cells),
             deepest.depth,
             event.record.newton,
             event.record.krylov,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/contact/level_gaps.h>
+#include <retroforge/core/shares.h>
 #include <retroforge/element/mini_element.templates.h>
 
 #include <algorithm>
@@ -84,41 +85,69 @@ namespace retroforge
     /// Where a die bulges into an edge by more than this part of its length, as seen from its ends.
     constexpr double least_bulge = 1e-6;
 
+    /// One of the points looked at, as it sees a die.
+    struct Seen
+    {
+      unsigned int point;
+      DieFeature   feature;
+      double       delta;
+    };
+
+    /// What points 0 … n - 1 see of die d within reach, ascending. Each rank looks at its share of them.
+    /// @param position  of a point
+    template <typename Position>
+    std::vector<Seen> seen_by(const ContactView<double> &view,
+                              const unsigned int         d,
+                              const std::size_t          n,
+                              const double               reach,
+                              const Position            &position)
+    {
+      std::vector<Seen> seen;
+      const auto [begin, end] = share_of_rank(n, view.comm);
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const Vec3 x = position(i);
+        if (const DieFeature feature = view.dies[d].closest(x, view.states[d].displacement, reach);
+            feature.found())
+          seen.push_back(
+            {static_cast<unsigned int>(i), feature, view.dies[d].project(x, view.states[d], feature).delta});
+      }
+      return joined(std::move(seen), view.comm);
+    }
+
     /// Adds the middles of edges in reach of die d that are deeper in it than their ends.
     /// @param delta  of each node to this die; infinite out of reach
-    void add_edges(const Topology             &topology,
-                   const Die                  &die,
-                   const unsigned int          d,
-                   const DieState<double>     &state,
-                   const NodalVectors<double> &X,
-                   const std::vector<double>  &delta,
-                   const FrictionRamp         &ramp,
-                   const double                reach,
-                   std::vector<ContactPair>   &pairs)
+    void add_edges(const ContactView<double> &view,
+                   const unsigned int         d,
+                   const std::vector<double> &delta,
+                   const FrictionRamp        &ramp,
+                   const double               reach,
+                   std::vector<ContactPair>  &pairs)
     {
+      const auto            &X     = view.X;
+      const auto            &edges = view.topology.surface_edges;
       std::vector<NodeIndex> ends;
-      for (const auto &[a, b] : topology.surface_edges)
+      const auto             middle = [&](const std::size_t e) {
+        return ContactPoint::middle(edges[e][0], edges[e][1]).position(X);
+      };
+      for (const auto &[e, feature, at_middle] : seen_by(view, d, edges.size(), reach, middle))
       {
-        const ContactPoint point   = ContactPoint::middle(a, b);
-        const Vec3         x       = point.position(X);
-        const DieFeature   feature = die.closest(x, state.displacement, reach);
-        if (!feature.found())
-          continue;
-        const double at_middle = die.project(x, state, feature).delta;
+        const auto &[a, b] = edges[e];
         if (at_middle <= reach &&
             at_middle < 0.5 * (delta[a] + delta[b]) - least_bulge * (X[a] - X[b]).norm())
         {
-          pairs.push_back({point, d, at_middle <= ramp.width, feature});
-          for (const NodeIndex k : point.nodes)
+          pairs.push_back({ContactPoint::middle(a, b), d, at_middle <= ramp.width, feature});
+          for (const NodeIndex k : edges[e])
             if (!(delta[k] <= reach))
               ends.push_back(k);
         }
       }
       std::sort(ends.begin(), ends.end());
       ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-      for (const NodeIndex k : ends)
-        if (const DieFeature feature = die.closest(X[k], state.displacement); feature.found())
-          pairs.push_back({ContactPoint::node(k), d, false, feature});
+      const auto     node      = [&](const std::size_t i) { return X[ends[i]]; };
+      constexpr auto any_reach = std::numeric_limits<double>::max();
+      for (const Seen &seen : seen_by(view, d, ends.size(), any_reach, node))
+        pairs.push_back({ContactPoint::node(ends[seen.point]), d, false, seen.feature});
     }
   } // namespace
 
@@ -127,37 +156,76 @@ namespace retroforge
                                               const double               reach,
                                               const bool                 with_edges)
   {
-    const auto &[mesh, topology, dies, states, X, edges] = view;
+    const auto              &X     = view.X;
+    const auto              &edges = view.topology.surface_edges;
+    std::vector<NodeIndex>   nodes;
     std::vector<ContactPair> pairs;
-    for (unsigned int d = 0; d < dies.size(); ++d)
+    for (NodeIndex k = 0; k < X.size(); ++k)
+      if (view.topology.is_on_surface(k))
+        nodes.push_back(k);
+    const auto node   = [&](const std::size_t i) { return X[nodes[i]]; };
+    const auto middle = [&](const std::size_t e) {
+      const auto &[a, b] = edges[e];
+      return ContactPoint::middle(a, b, view.mesh.n_nodes() + view.edges->find(a, b));
+    };
+    for (unsigned int d = 0; d < view.dies.size(); ++d)
     {
+      const auto add = [&](const ContactPoint &point, const Seen &seen) {
+        if (seen.delta <= reach)
+          pairs.push_back({point, d, seen.delta <= ramp.width, seen.feature});
+      };
       std::vector<double> delta(X.size(), std::numeric_limits<double>::infinity());
-      for (NodeIndex k = 0; k < X.size(); ++k)
-        if (topology.is_on_surface(k))
-        {
-          const DieFeature feature = dies[d].closest(X[k], states[d].displacement, reach);
-          if (!feature.found())
-            continue;
-          delta[k] = dies[d].project(X[k], states[d], feature).delta;
-          if (delta[k] <= reach)
-            pairs.push_back({ContactPoint::node(k), d, delta[k] <= ramp.width, feature});
-        }
-      if (edges)
-        for (const auto &[a, b] : topology.surface_edges)
-        {
-          const ContactPoint point   = ContactPoint::middle(a, b, mesh.n_nodes() + edges->find(a, b));
-          const Vec3         x       = point.position(X);
-          const DieFeature   feature = dies[d].closest(x, states[d].displacement, reach);
-          if (!feature.found())
-            continue;
-          if (const double gap = dies[d].project(x, states[d], feature).delta; gap <= reach)
-            pairs.push_back({point, d, gap <= ramp.width, feature});
-        }
-      else if (with_edges && dies[d].surface())
-        add_edges(topology, dies[d], d, states[d], X, delta, ramp, reach, pairs);
+      for (const Seen &seen : seen_by(view, d, nodes.size(), reach, node))
+      {
+        delta[nodes[seen.point]] = seen.delta;
+        add(ContactPoint::node(nodes[seen.point]), seen);
+      }
+      if (view.edges)
+        for (const Seen &seen : seen_by(
+               view, d, edges.size(), reach, [&](const std::size_t e) { return middle(e).position(X); }))
+          add(middle(seen.point), seen);
+      else if (with_edges && view.dies[d].surface())
+        add_edges(view, d, delta, ramp, reach, pairs);
     }
     return pairs;
   }
+
+  namespace
+  {
+    /// Of each pair, as far as it is this rank's to project: the gap and the normal.
+    template <typename Number>
+    std::vector<Projection<Number>> projections_of(const ContactView<Number>      &view,
+                                                   const std::vector<ContactPair> &pairs,
+                                                   const std::size_t               begin,
+                                                   const std::size_t               end)
+    {
+      std::vector<Projection<Number>> projections;
+      for (std::size_t p = begin; p < end; ++p)
+        projections.push_back(view.dies[pairs[p].die].project(
+          pairs[p].point.position(view.X), view.states[pairs[p].die], pairs[p].feature));
+      return projections;
+    }
+
+    std::vector<Projection<double>> projected(const ContactView<double>      &view,
+                                              const std::vector<ContactPair> &pairs)
+    {
+      const auto [begin, end] = share_of_rank(pairs.size(), view.comm);
+      std::vector<std::array<double, 4>> numbers;
+      for (const auto &[delta, n] : projections_of(view, pairs, begin, end))
+        numbers.push_back({{delta, n[0], n[1], n[2]}});
+      std::vector<Projection<double>> projections;
+      for (const auto &of : joined(std::move(numbers), view.comm))
+        projections.push_back({of[0], Vec3({of[1], of[2], of[3]})});
+      return projections;
+    }
+
+    /// A tangent is carried by all ranks alike.
+    std::vector<Projection<Dual>> projected(const ContactView<Dual>        &view,
+                                            const std::vector<ContactPair> &pairs)
+    {
+      return projections_of(view, pairs, 0, pairs.size());
+    }
+  } // namespace
 
   namespace
   {
@@ -273,20 +341,19 @@ namespace retroforge
                                       const ContactApproach<Number>  &approach)
   {
     ContactSet<Number> contact;
-    const auto &[mesh, topology, dies, states, X, edges] = view;
-    contact.edge_stiffness                               = approach.edge_stiffness;
-    contact.pairs                                        = pairs;
-    contact.tau                                          = approach.tau;
-    contact.approach                                     = approach.law;
-    contact.quadratic                                    = edges != nullptr;
+    const auto &[mesh, topology, dies, states, X, edges, comm] = view;
+    contact.edge_stiffness                                     = approach.edge_stiffness;
+    contact.pairs                                              = pairs;
+    contact.projections                                        = projected(view, pairs);
+    contact.tau                                                = approach.tau;
+    contact.approach                                           = approach.law;
+    contact.quadratic                                          = edges != nullptr;
     PairOfVelocityNode index;
-    for (const ContactPair &pair : pairs)
+    for (unsigned int p = 0; p < pairs.size(); ++p)
     {
-      if (pair.point.has_own_velocity())
-        index[{pair.die, pair.point.velocity_node}] = contact.projections.size();
-      contact.projections.push_back(
-        dies[pair.die].project(pair.point.position(X), states[pair.die], pair.feature));
-      contact.ramps.push_back(approach.ramp(contact.projections.back().delta, pair.touching));
+      if (pairs[p].point.has_own_velocity())
+        index[{pairs[p].die, pairs[p].point.velocity_node}] = p;
+      contact.ramps.push_back(approach.ramp(contact.projections[p].delta, pairs[p].touching));
     }
     if (edges)
     {
@@ -339,6 +406,9 @@ namespace retroforge
     }
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
     {
+      // Of the sums of all ranks, a rank has the part of its own points.
+      if (gaps_bar[p] == 0. && bar.n[p].norm_square() == 0.)
+        continue;
       const ContactPair &pair    = contact.pairs[p];
       DieState<double>  &die_bar = dies_bar[pair.die];
       Vec3               at_point;

@@ -52,7 +52,7 @@ namespace retroforge
         {
           const auto geometry = geometry_of_cell(mesh, X, c);
           rates.volume.push_back(std::max(geometry.volume, 0.));
-          rates.at_corners.push_back(corner_strain_rates(geometry, pair.on_cell(spaces, W, c)));
+          rates.at_corners.push_back(corner_strain_rates(geometry, pair.at_nodes(spaces, W, c)));
           for (Symmetric<double> &e : rates.at_corners.back())
             remove_trace(e);
         }

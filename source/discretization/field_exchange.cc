@@ -49,9 +49,11 @@ namespace retroforge
                                const Ownership &velocities)
       : velocities_(velocities)
       , pressures_(partition.nodes())
-      , bubbles_(partition.cells())
       , velocity_ghosts_(velocities, velocities_read(mesh, topology, spaces, partition), 3)
       , pressure_ghosts_(pressures_, pressures_read(mesh, partition), 1)
   {
+    if (spaces.pair() == ElementPair::mini)
+      bubble_ghosts_.emplace(
+        partition.cells(), partition.visited_cells, 3, [&](const CellIndex c) { return spaces.bubble(c); });
   }
 } // namespace retroforge

@@ -4,7 +4,21 @@
 
 namespace retroforge
 {
-  Spaces::Spaces(const TetMesh &mesh, const Topology &topology, const ElementPair pair)
+  namespace
+  {
+    std::vector<unsigned int> places_of(const std::vector<CellIndex> &kept, const unsigned int n_cells)
+    {
+      std::vector<unsigned int> place(n_cells, invalid_index);
+      for (unsigned int i = 0; i < kept.size(); ++i)
+        place[kept[i]] = i;
+      return place;
+    }
+  } // namespace
+
+  Spaces::Spaces(const TetMesh                &mesh,
+                 const Topology               &topology,
+                 const ElementPair             pair,
+                 const std::vector<CellIndex> *visited)
       : pair_(pair)
       , n_nodes_(mesh.n_nodes())
       , n_cells_(mesh.n_cells())
@@ -12,6 +26,12 @@ namespace retroforge
       , edges_(pair == ElementPair::mini ? nullptr : std::make_shared<const MeshEdges>(mesh))
       , fixed_at_nodes_(topology.fixed_directions)
   {
+    if (pair == ElementPair::mini)
+    {
+      n_bubbles_ = visited ? visited->size() : n_cells_;
+      if (n_bubbles_ < n_cells_)
+        bubble_ = places_of(*visited, n_cells_);
+    }
     if (edges_)
       fixed_at_edges_ = fixed_directions_of_edges(mesh, *edges_);
     cell_nodes_.reserve(nodes_per_cell_ * n_cells_);

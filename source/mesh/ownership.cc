@@ -71,24 +71,47 @@ namespace retroforge
 
   GhostExchange::GhostExchange(const Ownership                 &ownership,
                                const std::vector<unsigned int> &ghosts,
-                               const unsigned int               width)
+                               const unsigned int               width,
+                               const Place                     &place)
       : owned_(ownership.owned())
       , ghosts_(of_others(ownership, ghosts))
       , width_(width)
       , partitioner_(ownership.range().dofs(width), dofs_of(ownership, ghosts_, width), ownership.comm())
   {
+    if (place)
+      for (auto *entries : {&owned_, &ghosts_})
+        std::transform(entries->begin(), entries->end(), entries->begin(), place);
   }
+
+  namespace
+  {
+    std::vector<double>
+    packed(const std::vector<unsigned int> &places, const unsigned int width, const double *values)
+    {
+      std::vector<double> packed;
+      packed.reserve(width * places.size());
+      for (const unsigned int place : places)
+        packed.insert(packed.end(), values + width * place, values + width * (place + 1));
+      return packed;
+    }
+
+    void unpack(const std::vector<double>       &packed,
+                const std::vector<unsigned int> &places,
+                const unsigned int               width,
+                double                          *values)
+    {
+      for (std::size_t i = 0; i < places.size(); ++i)
+        std::copy_n(&packed[width * i], width, values + width * places[i]);
+    }
+  } // namespace
 
   void GhostExchange::update(double *values) const
   {
     if (partitioner_.n_mpi_processes() == 1)
       return;
-    std::vector<double> owned, to_neighbours(partitioner_.n_import_indices()),
-      ghosts(width_ * ghosts_.size());
-    owned.reserve(width_ * owned_.size());
-    for (const unsigned int entry : owned_)
-      owned.insert(owned.end(), values + width_ * entry, values + width_ * (entry + 1));
-    std::vector<MPI_Request> requests;
+    const std::vector<double> owned = packed(owned_, width_, values);
+    std::vector<double>       to_neighbours(partitioner_.n_import_indices()), ghosts(width_ * ghosts_.size());
+    std::vector<MPI_Request>  requests;
     partitioner_.export_to_ghosted_array_start<double, dealii::MemorySpace::Host>(
       0,
       dealii::ArrayView<const double>(owned.data(), owned.size()),
@@ -97,7 +120,29 @@ namespace retroforge
       requests);
     partitioner_.export_to_ghosted_array_finish<double, dealii::MemorySpace::Host>(
       dealii::ArrayView<double>(ghosts.data(), ghosts.size()), requests);
-    for (std::size_t g = 0; g < ghosts_.size(); ++g)
-      std::copy_n(&ghosts[width_ * g], width_, values + width_ * ghosts_[g]);
+    unpack(ghosts, ghosts_, width_, values);
+  }
+
+  void GhostExchange::collect(double *values) const
+  {
+    if (partitioner_.n_mpi_processes() == 1)
+      return;
+    std::vector<double>      owned = packed(owned_, width_, values), ghosts = packed(ghosts_, width_, values);
+    std::vector<double>      from_neighbours(partitioner_.n_import_indices());
+    std::vector<MPI_Request> requests;
+    const auto               sum = dealii::VectorOperation::add;
+    partitioner_.import_from_ghosted_array_start<double, dealii::MemorySpace::Host>(
+      sum,
+      0,
+      dealii::ArrayView<double>(ghosts.data(), ghosts.size()),
+      dealii::ArrayView<double>(from_neighbours.data(), from_neighbours.size()),
+      requests);
+    partitioner_.import_from_ghosted_array_finish<double, dealii::MemorySpace::Host>(
+      sum,
+      dealii::ArrayView<const double>(from_neighbours.data(), from_neighbours.size()),
+      dealii::ArrayView<double>(owned.data(), owned.size()),
+      dealii::ArrayView<double>(ghosts.data(), ghosts.size()),
+      requests);
+    unpack(owned, owned_, width_, values);
   }
 } // namespace retroforge

@@ -46,8 +46,16 @@ namespace retroforge
       return pairs;
     }
 
-    /// Of each pair of a node: its force and its half of those of the edges at it, over a third of the
-    /// surface there [MPa].
+    /// Does pair p press one of the die's nodes of this rank?
+    template <typename Number>
+    bool is_seen(const StageView<Number> &view, const unsigned int p, const unsigned int die)
+    {
+      const ContactPair &pair = view.stage.contact.pairs[p];
+      return pair.die == die && view.stage.scene.partition.sees(pair.point.nodes);
+    }
+
+    /// Of each pair of a node of this rank: its force and its half of those of the edges at it, over a third
+    /// of the surface there [MPa].
     template <typename Number>
     std::vector<Number> nodal_pressures(const StageView<Number> &view, const unsigned int die)
     {
@@ -56,7 +64,7 @@ namespace retroforge
       const double                    larger = surface_over_S(stage);
       std::vector<Number>             pressure(stage.contact.pairs.size(), Number(0.));
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-        if (const ContactPair &pair = stage.contact.pairs[p]; pair.die == die)
+        if (const ContactPair &pair = stage.contact.pairs[p]; is_seen(view, p, die))
         {
           const Number force =
             pushing_force(stage.contact_node(p, view.W, view.active), stage.physics.contact.rho);
@@ -133,7 +141,7 @@ namespace retroforge
           force_bar[p] = weights[0] * exponent_ * whole / pressure[p];
       }
     for (unsigned int p = 0; p < pressure.size(); ++p)
-      if (const ContactPair &pair = stage.contact.pairs[p]; pair.die == die_)
+      if (const ContactPair &pair = stage.contact.pairs[p]; is_seen(view, p, die_))
       {
         double of_point = 0.;
         for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/shares.h>
 #include <retroforge/core/text.h>
 #include <retroforge/objective/filling.h>
 #include <retroforge/objective/sector.h>
@@ -35,7 +36,8 @@ namespace retroforge
       if (sector.contains(shift +
                           (vertices[triangle[0]] + vertices[triangle[1]] + vertices[triangle[2]]) / 3.))
         decisions_.target.push_back(triangle);
-    for (unsigned int l = 0; l < vertices.size(); ++l)
+    const auto [begin, end] = share_of_rank(vertices.size(), view.scene.partition.comm);
+    for (unsigned int l = begin; l < end; ++l)
     {
       const Vec3 x = vertices[l] + shift;
       if (!sector.contains(x) || (target_.region() && !is_inside(*target_.region(), x)))
@@ -73,16 +75,13 @@ namespace retroforge
         S[k] *= parts[k];
     }
     for (const SeenFeature &seen : decisions_.by_workpiece)
-      if (view.scene.partition.owns(seen.point))
-        sums[0] += rounded(target_.distance(view, view.X[seen.point], seen.feature)) * S[seen.point];
-    const auto vertices     = target_.vertices(view);
-    const auto workpiece    = decisions_.workpiece.vertices(view);
-    const auto S_target     = lumped_areas(decisions_.target, vertices);
-    const auto [begin, end] = share_of_rank(decisions_.by_target.size(), view.scene.partition.comm);
-    for (std::size_t l = begin; l < end; ++l)
+      sums[0] += rounded(target_.distance(view, view.X[seen.point], seen.feature)) * S[seen.point];
+    const auto vertices  = target_.vertices(view);
+    const auto workpiece = decisions_.workpiece.vertices(view);
+    const auto S_target  = lumped_areas(decisions_.target, vertices);
+    for (const SeenFeature &seen : decisions_.by_target)
     {
-      const SeenFeature    &seen = decisions_.by_target[l];
-      const Vector3<Number> x    = vertices[seen.point] + target_.displacement(view);
+      const Vector3<Number> x = vertices[seen.point] + target_.displacement(view);
       const auto            projection =
         project_on_feature(decisions_.workpiece.shape(), workpiece, seen.feature, x, Vector3<Number>());
       sums[1] += rounded(projection.delta) * S_target[seen.point];
@@ -100,19 +99,18 @@ namespace retroforge
     std::vector<double>   S_bar(S.size(), 0.), parts_bar(S.size(), 0.);
     const auto            parts = free_ ? free_->parts(view) : std::vector<double>(S.size(), 1.);
     for (const SeenFeature &seen : decisions_.by_workpiece)
-      if (view.scene.partition.owns(seen.point))
-      {
-        const double delta = target_.distance(view, view.X[seen.point], seen.feature);
-        S_bar[seen.point] += weight * rounded(delta) * parts[seen.point];
-        parts_bar[seen.point] += weight * rounded(delta) * S[seen.point];
-        target_.reverse_distance(view,
-                                 moved,
-                                 view.X[seen.point],
-                                 seen.feature,
-                                 weight * slope(delta) * S[seen.point] * parts[seen.point],
-                                 bar.X[seen.point],
-                                 bar);
-      }
+    {
+      const double delta = target_.distance(view, view.X[seen.point], seen.feature);
+      S_bar[seen.point] += weight * rounded(delta) * parts[seen.point];
+      parts_bar[seen.point] += weight * rounded(delta) * S[seen.point];
+      target_.reverse_distance(view,
+                               moved,
+                               view.X[seen.point],
+                               seen.feature,
+                               weight * slope(delta) * S[seen.point] * parts[seen.point],
+                               bar.X[seen.point],
+                               bar);
+    }
     reverse_lumped_areas(triangles, view.X, S_bar, bar.X);
     if (free_)
       free_->reverse(view, parts_bar, bar);
@@ -126,11 +124,9 @@ namespace retroforge
     const TriangleSurface workpiece = decisions_.workpiece.moved(view);
     NodalVectors<double>  workpiece_bar(workpiece.vertices().size()), vertices_bar(vertices.size());
     std::vector<double>   S_bar(S.size(), 0.);
-    const auto [begin, end] = share_of_rank(decisions_.by_target.size(), view.scene.partition.comm);
-    for (std::size_t l = begin; l < end; ++l)
+    for (const SeenFeature &seen : decisions_.by_target)
     {
-      const SeenFeature &seen = decisions_.by_target[l];
-      const Vec3         x    = vertices[seen.point] + target_.displacement(view);
+      const Vec3   x     = vertices[seen.point] + target_.displacement(view);
       const double delta = project_on_feature(workpiece, workpiece.vertices(), seen.feature, x, Vec3()).delta;
       Vec3         x_bar, unused;
       reverse_project_on_feature(workpiece,

@@ -10,7 +10,8 @@ namespace retroforge
     template <typename Number>
     ContactView<Number> contact_view(const FinalView<Number> &view)
     {
-      return {view.scene.mesh, view.scene.topology, view.scene.dies, view.dies, view.X};
+      const Scene &scene = view.scene;
+      return {scene.mesh, scene.topology, scene.dies, view.dies, view.X, nullptr, scene.partition.comm};
     }
 
     template <typename Number>

@@ -11,12 +11,11 @@ namespace retroforge
     std::vector<Number> sums(2, Number(0.));
     const auto          S = lumped_areas(surface_triangles(view.scene.mesh), view.X);
     for (const SeenFeature &seen : seen_)
-      if (view.scene.partition.owns(seen.point))
-      {
-        const Number delta = target_.distance(view, view.X[seen.point], seen.feature);
-        sums[0] += S[seen.point];
-        sums[1] += S[seen.point] * delta * delta;
-      }
+    {
+      const Number delta = target_.distance(view, view.X[seen.point], seen.feature);
+      sums[0] += S[seen.point];
+      sums[1] += S[seen.point] * delta * delta;
+    }
     return sums;
   }
 
@@ -29,18 +28,17 @@ namespace retroforge
     const TriangleSurface moved     = target_.moved(view);
     std::vector<double>   S_bar(S.size(), 0.);
     for (const SeenFeature &seen : seen_)
-      if (view.scene.partition.owns(seen.point))
-      {
-        const double delta = target_.distance(view, view.X[seen.point], seen.feature);
-        S_bar[seen.point]  = weights[0] + weights[1] * delta * delta;
-        target_.reverse_distance(view,
-                                 moved,
-                                 view.X[seen.point],
-                                 seen.feature,
-                                 weights[1] * 2. * delta * S[seen.point],
-                                 bar.X[seen.point],
-                                 bar);
-      }
+    {
+      const double delta = target_.distance(view, view.X[seen.point], seen.feature);
+      S_bar[seen.point]  = weights[0] + weights[1] * delta * delta;
+      target_.reverse_distance(view,
+                               moved,
+                               view.X[seen.point],
+                               seen.feature,
+                               weights[1] * 2. * delta * S[seen.point],
+                               bar.X[seen.point],
+                               bar);
+    }
     reverse_lumped_areas(triangles, view.X, S_bar, bar.X);
   }
 

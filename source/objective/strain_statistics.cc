@@ -36,19 +36,19 @@ namespace retroforge
 
   void StrainObjective::decide(const FinalView<double> &view)
   {
-    // Over all cells on every rank: the same bits everywhere.
     if (statistic_ == StrainStatistic::maximum)
     {
       reference_ = view.q.empty() ? 0. : *std::max_element(view.q.begin(), view.q.end());
       return;
     }
-    double strain = 0., volume = 0.;
-    for (CellIndex c = 0; c < view.scene.mesh.n_cells(); ++c)
+    const Partition &partition = view.scene.partition;
+    double           strain = 0., volume = 0.;
+    for (const CellIndex c : partition.cells().owned())
     {
       strain += cell_volume(view, c) * view.q[c];
       volume += cell_volume(view, c);
     }
-    reference_ = strain / volume;
+    reference_ = partition.sum(strain) / partition.sum(volume);
   }
 
   template <typename Number>

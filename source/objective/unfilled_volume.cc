@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/shares.h>
 #include <retroforge/core/text.h>
 #include <retroforge/objective/unfilled_volume.h>
 
@@ -84,7 +85,8 @@ namespace retroforge
     const NodalVectors<double> vertices = workpiece_.vertices(view);
     const Sector               sector(view.scene.mesh);
     samples_.clear();
-    for (unsigned int g = 0; g < n_[0] * n_[1] * n_[2]; ++g)
+    const auto [begin, end] = share_of_rank(n_[0] * n_[1] * n_[2], view.scene.partition.comm);
+    for (unsigned int g = begin; g < end; ++g)
     {
       const unsigned int i[3] = {g % n_[0], g / n_[0] % n_[1], g / n_[0] / n_[1]};
       Sample             sample;
@@ -111,10 +113,8 @@ namespace retroforge
   {
     const NodalVectors<Number> vertices = workpiece_.vertices(view);
     Number                     sum(0.);
-    const auto [begin, end] = share_of_rank(samples_.size(), view.scene.partition.comm);
-    for (std::size_t g = begin; g < end; ++g)
+    for (const Sample &sample : samples_)
     {
-      const Sample   &sample = samples_[g];
       Vector3<Number> x;
       for (unsigned int i = 0; i < 3; ++i)
         x[i] = Number(sample.x[i]);
@@ -134,12 +134,10 @@ namespace retroforge
     const TriangleSurface workpiece = workpiece_.moved(view), target = target_.moved(view);
     NodalVectors<double>  workpiece_bar(workpiece.vertices().size());
     Vec3                  unused; // samples stand still
-    const auto [begin, end] = share_of_rank(samples_.size(), view.scene.partition.comm);
-    for (std::size_t g = begin; g < end; ++g)
+    for (const Sample &sample : samples_)
     {
-      const Sample &sample = samples_[g];
-      const double  weight = weights[0] * sample.volume;
-      const double  u =
+      const double weight = weights[0] * sample.volume;
+      const double u =
         project_on_feature(workpiece, workpiece.vertices(), sample.workpiece, sample.x, Vec3()).delta;
       double c = 1.;
       if (sample.target.found())

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/base/mpi.h>
-
 #include <retroforge/objective/surface_areas.h>
 #include <retroforge/objective/workpiece_surface.h>
-
-#include <cstdint>
 
 namespace retroforge
 {
@@ -37,12 +33,5 @@ namespace retroforge
   {
     for (std::size_t v = 0; v < nodes_.size(); ++v)
       bar.X[nodes_[v]] += vertices_bar[v];
-  }
-
-  std::pair<std::size_t, std::size_t> share_of_rank(const std::size_t n, MPI_Comm comm)
-  {
-    const std::uint64_t ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
-    const std::uint64_t rank  = dealii::Utilities::MPI::this_mpi_process(comm);
-    return {n * rank / ranks, n * (rank + 1) / ranks};
   }
 } // namespace retroforge

@@ -36,6 +36,18 @@ namespace retroforge
       std::vector<SymmetricTensor> stress;
     };
 
+    void recover_bubble(const CellGeometry<double> &geometry,
+                        const MaterialLaw<double>  &law,
+                        CellValues<double>         &w)
+    {
+      w.beta = solve_bubble(geometry, w, law);
+    }
+
+    void recover_bubble(const CellGeometry<double> &, const MaterialLaw<double> &, TaylorHoodValues<double> &)
+    {
+    }
+
+    /// Bubbles of all cells follow from V and P.
     CellFields cell_fields(const TetMesh              &mesh,
                            const Spaces               &spaces,
                            const NodalVectors<double> &X,
@@ -47,7 +59,8 @@ namespace retroforge
         for (CellIndex c = 0; c < mesh.n_cells(); ++c)
         {
           const auto geometry = geometry_of_cell(mesh, X, c);
-          const auto w        = pair.on_cell(spaces, W, c);
+          auto       w        = pair.at_nodes(spaces, W, c);
+          recover_bubble(geometry, law, w);
           fields.strain_rate.push_back(cell_strain_rate(geometry, w));
           fields.stress.push_back(cell_deviatoric_stress(geometry, w, law));
           fields.von_mises.push_back(von_mises(fields.stress.back()));

@@ -89,7 +89,7 @@ namespace retroforge
     const auto &partition = scene_.partition;
     if (scene_.spaces.n_bubbles() > 0)
       for (const CellIndex c : partition.cells().owned())
-        bubble2 += r.beta[c].norm_square();
+        bubble2 += r.beta[scene_.spaces.bubble(c)].norm_square();
     const double momentum = std::sqrt(norm.first * norm.first + partition.sum(bubble2));
     return std::max(momentum / scale.first, norm.second / scale.second);
   }
@@ -103,7 +103,7 @@ namespace retroforge
       sum += r.V[k] * step.V[k];
     if (scene_.spaces.n_bubbles() > 0)
       for (const CellIndex c : partition.cells().owned())
-        sum += r.beta[c] * step.beta[c];
+        sum += r.beta[scene_.spaces.bubble(c)] * step.beta[scene_.spaces.bubble(c)];
     return partition.sum(sum);
   }
 

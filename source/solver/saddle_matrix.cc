@@ -147,7 +147,7 @@ namespace retroforge
     {
       const CellIndex    c    = partition.visited_cells[v];
       CellValues<double> cell = {};
-      cell.beta               = rhs.beta[c];
+      cell.beta               = rhs.beta[scene_.spaces.bubble(c)];
       sums_->eliminations()[v].condense(cell);
       MiniPair::add(scene_.spaces, cell, c, result);
     }
@@ -188,9 +188,10 @@ namespace retroforge
     scene_.exchange.update(solution);
     for (unsigned int v = 0; v < n_eliminated(); ++v)
     {
-      const CellIndex          c = scene_.partition.visited_cells[v];
-      const CellValues<double> w = MiniPair::on_cell(scene_.spaces, solution, c);
-      solution.beta[c]           = sums_->eliminations()[v].recover_bubble(rhs.beta[c], w.V, w.P);
+      const CellIndex          c      = scene_.partition.visited_cells[v];
+      const unsigned int       bubble = scene_.spaces.bubble(c);
+      const CellValues<double> w      = MiniPair::on_cell(scene_.spaces, solution, c);
+      solution.beta[bubble]           = sums_->eliminations()[v].recover_bubble(rhs.beta[bubble], w.V, w.P);
     }
   }
 

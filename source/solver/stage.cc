@@ -141,7 +141,7 @@ namespace retroforge
       }
       const auto beta = solve_bubbles(geometry, w, stage.physics.law);
       for (unsigned int lane = 0; lane < n; ++lane)
-        W.beta[visited[begin + lane]] = beta[lane];
+        W.beta[scene.spaces.bubble(visited[begin + lane])] = beta[lane];
     }
   }
 
@@ -151,7 +151,6 @@ namespace retroforge
       return;
     std::fill(W.beta.begin(), W.beta.end(), Vec3());
     settle_bubbles(stage, W);
-    stage.scene.partition.cells().gather(W.beta.data()->begin_raw(), 3);
   }
 
   void reverse_residual(const StageView<double> &view, const Field<double> &lambda, StageBar &bar)

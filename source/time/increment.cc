@@ -23,14 +23,6 @@ namespace retroforge
       MPI_Allreduce(MPI_IN_PLACE, x.data()->begin_raw(), 3 * x.size(), MPI_DOUBLE, MPI_SUM, comm);
     }
 
-    void sum_over_ranks(Field<double> &field, MPI_Comm comm)
-    {
-      sum_over_ranks(field.V, comm);
-      if (!field.beta.empty())
-        sum_over_ranks(field.beta, comm);
-      MPI_Allreduce(MPI_IN_PLACE, field.P.data(), field.P.size(), MPI_DOUBLE, MPI_SUM, comm);
-    }
-
     Vector3<Dual> make_dual(const Vec3 &value, const Vec3 &dot)
     {
       Vector3<Dual> x;
@@ -405,7 +397,7 @@ namespace retroforge
                                                       owned_part(costate.strain, scene_.partition),
                                                       rhs,
                                                       position_bar);
-          sum_over_ranks(rhs, comm);
+          scene_.exchange.collect(rhs);
         }
         NodalVectors<double> motion_bar(X.size());
         for (const auto &[weight, there] : led_to)
@@ -416,9 +408,10 @@ namespace retroforge
         minus_rhs.add(-1., rhs);
         auto &guesses = earlier_lambdas_[s][j];
         system_.solve(minus_rhs, model_.adjoint_tolerance, lambda, guesses, Transposition::transposed);
-        guesses.insert(guesses.begin(), lambda);
-        guesses.resize(std::min<std::size_t>(guesses.size(), 3));
         reverse_residual(view, lambda, stage_bar);
+        lambda.beta = {}; // a start is of velocities and pressures
+        guesses.insert(guesses.begin(), std::move(lambda));
+        guesses.resize(std::min<std::size_t>(guesses.size(), 3));
         if (s == 0)
           reverse_contact_set(scene_.view(start.physics.dies, X),
                               start.contact,

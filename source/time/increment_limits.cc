@@ -5,6 +5,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/mesh/parts_quality.h>
 #include <retroforge/mesh/self_crossing.h>
 #include <retroforge/time/increment_limits.h>
 
@@ -154,7 +155,8 @@ namespace retroforge
 
   void IncrementLimits::check_progress(const ForgingState &state) const
   {
-    const double       change = volume(state.leg->scene.mesh.cells, state.X) / state.volume - 1.;
+    const Scene       &scene  = state.leg->scene;
+    const double       change = volume(scene.mesh, state.X, scene.partition.cells()) / state.volume - 1.;
     std::ostringstream what;
     what.precision(4);
     if (!(std::abs(change) <= press_.largest_loss))

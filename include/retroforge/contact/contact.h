@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include <mpi.h>
+
 /// @file
 /// Unilateral contact at points of the surface, and Norton friction lumped at its nodes.
 ///
@@ -155,7 +157,8 @@ namespace retroforge
     const std::vector<Die>              &dies;
     const std::vector<DieState<Number>> &states; ///< of each die
     const NodalVectors<Number>          &X;
-    const MeshEdges                     *edges = nullptr; ///< null where velocities are linear
+    const MeshEdges                     *edges = nullptr;       ///< null where velocities are linear
+    MPI_Comm                             comm  = MPI_COMM_SELF; ///< ranks that look for contacts together
   };
 
   /// How points approach the dies in an increment, and where friction sets in.
@@ -171,13 +174,14 @@ namespace retroforge
   /// The nodes within `reach` of a die, at positions X. Where velocities are quadratic, the middles of the
   /// surface's edges within reach, too. Where they are linear and the die bulges into edges, their middles,
   /// and their ends if farther away. Deterministic order: by die, then nodes, edges, ends, each ascending.
+  /// Each rank looks at its share of the points, and all find the same. Collective.
   /// @param with_edges  whether middles count that have no velocity of their own
   std::vector<ContactPair> find_contact_pairs(const ContactView<double> &view,
                                               const FrictionRamp        &ramp,
                                               double                     reach,
                                               bool                       with_edges);
 
-  /// Gaps, normals and ramps of given pairs.
+  /// Gaps, normals and ramps of given pairs. Collective: each rank projects its share of them.
   template <typename Number>
   ContactSet<Number> make_contact_set(const ContactView<Number>      &view,
                                       const std::vector<ContactPair> &pairs,

@@ -5,6 +5,8 @@
 #include <retroforge/geometry/die.h>
 #include <retroforge/mesh/topology.h>
 
+#include <mpi.h>
+
 namespace retroforge
 {
   /// The deepest point of the workpiece's surface in a die.
@@ -16,10 +18,12 @@ namespace retroforge
   };
 
   /// Looks at the nodes, the middles of the edges and the centres of the faces of the surface. A point
-  /// farther inside than the edges there are long is not found: it is behind the die rather than in it.
+  /// farther inside than the edges there are long is not found: it is behind the die rather than in it. Each
+  /// rank looks at its share of the points, and all find the same. Collective.
   Penetration deepest_point(const TetMesh                       &mesh,
                             const Topology                      &topology,
                             const std::vector<Die>              &dies,
                             const std::vector<DieState<double>> &states,
-                            const NodalVectors<double>          &X);
+                            const NodalVectors<double>          &X,
+                            MPI_Comm                             comm = MPI_COMM_SELF);
 } // namespace retroforge

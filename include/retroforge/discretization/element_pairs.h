@@ -19,8 +19,9 @@ namespace retroforge
     template <typename Number>
     using Values = CellValues<Number>;
 
+    /// Without the bubble, which is zero: of any cell where V and P are complete.
     template <typename Number>
-    static CellValues<Number> on_cell(const Spaces &spaces, const Field<Number> &W, const CellIndex c)
+    static CellValues<Number> at_nodes(const Spaces &spaces, const Field<Number> &W, const CellIndex c)
     {
       const NodeIndex   *nodes = spaces.velocity_nodes(c);
       CellValues<Number> w;
@@ -29,7 +30,15 @@ namespace retroforge
         w.V[a] = W.V[nodes[a]];
         w.P[a] = W.P[nodes[a]];
       }
-      w.beta = W.beta[c];
+      return w;
+    }
+
+    /// Of a visited cell.
+    template <typename Number>
+    static CellValues<Number> on_cell(const Spaces &spaces, const Field<Number> &W, const CellIndex c)
+    {
+      CellValues<Number> w = at_nodes(spaces, W, c);
+      w.beta               = W.beta[spaces.bubble(c)];
       return w;
     }
 
@@ -43,7 +52,7 @@ namespace retroforge
         W.V[nodes[a]] += w.V[a];
         W.P[nodes[a]] += w.P[a];
       }
-      W.beta[c] += w.beta;
+      W.beta[spaces.bubble(c)] += w.beta;
     }
   };
 
@@ -51,6 +60,12 @@ namespace retroforge
   {
     template <typename Number>
     using Values = TaylorHoodValues<Number>;
+
+    template <typename Number>
+    static TaylorHoodValues<Number> at_nodes(const Spaces &spaces, const Field<Number> &W, const CellIndex c)
+    {
+      return on_cell(spaces, W, c);
+    }
 
     template <typename Number>
     static TaylorHoodValues<Number> on_cell(const Spaces &spaces, const Field<Number> &W, const CellIndex c)

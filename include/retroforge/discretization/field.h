@@ -7,12 +7,12 @@
 namespace retroforge
 {
   /// The unknowns W = (V, beta, P) of a pair's spaces, or anything dual to them. Every rank has room for
-  /// all of it, and is right where it works (FieldExchange).
+  /// all nodes and for the bubbles of the cells it visits, and is right where it works (FieldExchange).
   template <typename Number>
   struct Field
   {
     NodalVectors<Number>         V;    ///< one per velocity node
-    std::vector<Vector3<Number>> beta; ///< one per bubble
+    std::vector<Vector3<Number>> beta; ///< one per bubble kept, see Spaces::bubble
     std::vector<Number>          P;    ///< one per pressure node
 
     Field() = default;

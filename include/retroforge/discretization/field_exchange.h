@@ -5,14 +5,16 @@
 #include <retroforge/discretization/field.h>
 #include <retroforge/mesh/partition.h>
 
+#include <optional>
+
 namespace retroforge
 {
   /// Whose velocity nodes are: those of the mesh are the partition's, the middle of an edge goes with its
   /// smaller node.
   Ownership velocity_ownership(const Spaces &spaces, const Partition &partition);
 
-  /// Completes velocities and pressures whose owned entries are right. Bubbles are the cells' own: each rank
-  /// knows those of the cells it visits.
+  /// Completes velocities and pressures whose owned entries are right, and sums. Bubbles are the cells' own:
+  /// each rank knows those of the cells it visits.
   class FieldExchange
   {
   public:
@@ -35,17 +37,27 @@ namespace retroforge
     /// The same of an array of three doubles per velocity node.
     void update_components(std::vector<double> &x) const { velocity_ghosts_.update(x.data()); }
 
-    /// All of it, on all ranks. Collective.
+    /// Velocities and pressures on all ranks: positions, the record and new meshes need all of them. Bubbles
+    /// follow from them. Collective.
     void gather(Field<double> &W) const
     {
       velocities_.gather(W.V.data()->begin_raw(), 3);
       pressures_.gather(W.P.data(), 1);
-      if (!W.beta.empty())
-        bubbles_.gather(W.beta.data()->begin_raw(), 3);
+    }
+
+    /// Of what each rank has summed over its own cells and contacts, the whole sums, at owned nodes and in
+    /// visited cells; elsewhere nothing is right. Collective.
+    void collect(Field<double> &sums) const
+    {
+      velocity_ghosts_.collect(sums.V.data()->begin_raw());
+      pressure_ghosts_.collect(sums.P.data());
+      if (bubble_ghosts_)
+        bubble_ghosts_->update(sums.beta.data()->begin_raw());
     }
 
   private:
-    const Ownership &velocities_, &pressures_, &bubbles_;
-    GhostExchange    velocity_ghosts_, pressure_ghosts_;
+    const Ownership             &velocities_, &pressures_;
+    GhostExchange                velocity_ghosts_, pressure_ghosts_;
+    std::optional<GhostExchange> bubble_ghosts_;
   };
 } // namespace retroforge

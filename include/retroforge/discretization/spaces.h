@@ -21,12 +21,19 @@ namespace retroforge
   class Spaces
   {
   public:
-    Spaces(const TetMesh &mesh, const Topology &topology, ElementPair pair);
+    /// @param visited  cells whose bubbles this rank keeps, ascending; null: all
+    Spaces(const TetMesh                &mesh,
+           const Topology               &topology,
+           ElementPair                   pair,
+           const std::vector<CellIndex> *visited = nullptr);
 
     ElementPair  pair() const { return pair_; }
     unsigned int n_velocity_nodes() const { return n_nodes_ + (edges_ ? edges_->size() : 0); }
     unsigned int n_pressure_nodes() const { return n_nodes_; }
-    unsigned int n_bubbles() const { return pair_ == ElementPair::mini ? n_cells_ : 0; }
+    /// How many this rank keeps.
+    unsigned int n_bubbles() const { return n_bubbles_; }
+    /// Where the bubble of a cell stands, of those that this rank keeps; of others, invalid_index.
+    unsigned int bubble(const CellIndex c) const { return bubble_.empty() ? c : bubble_[c]; }
 
     unsigned int n_nodes_per_cell() const { return nodes_per_cell_; }
     /// Of a cell: the corners, then the middles of the edges where there are any. The first four are its
@@ -44,7 +51,8 @@ namespace retroforge
 
   private:
     ElementPair                      pair_;
-    unsigned int                     n_nodes_, n_cells_, nodes_per_cell_;
+    unsigned int                     n_nodes_, n_cells_, nodes_per_cell_, n_bubbles_ = 0;
+    std::vector<unsigned int>        bubble_; ///< of each cell; empty where all are kept, or none
     std::shared_ptr<const MeshEdges> edges_;
     std::vector<NodeIndex>           cell_nodes_;
     Rows<Vec3>                       fixed_at_nodes_, fixed_at_edges_;

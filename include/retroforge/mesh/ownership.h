@@ -6,6 +6,7 @@
 
 #include <retroforge/core/node_range.h>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -49,19 +50,28 @@ namespace retroforge
   class GhostExchange
   {
   public:
+    using Place = std::function<unsigned int(unsigned int)>;
+
     /// @param ghosts  entries that this rank reads; owned ones and repetitions are left out
     /// @param width   doubles per entry
-    GhostExchange(const Ownership &ownership, const std::vector<unsigned int> &ghosts, unsigned int width);
+    /// @param place   where an entry that is owned or read stands in arrays; null: they have all entries
+    GhostExchange(const Ownership                 &ownership,
+                  const std::vector<unsigned int> &ghosts,
+                  unsigned int                     width,
+                  const Place                     &place = {});
 
     /// Only entries of other ranks that this one reads change. Collective.
     void update(double *values) const;
+
+    /// The transpose of update but for the sum: adds what others have at their ghosts to owned entries, in
+    /// the order of ranks. Collective.
+    void collect(double *values) const;
 
     /// How many entries of other ranks this one reads.
     unsigned int size() const { return ghosts_.size(); }
 
   private:
-    std::vector<unsigned int>           owned_;
-    std::vector<unsigned int>           ghosts_; ///< in the order of their numbers
+    std::vector<unsigned int>           owned_, ghosts_; ///< their places, in the order of numbers
     unsigned int                        width_;
     dealii::Utilities::MPI::Partitioner partitioner_;
   };

@@ -11,10 +11,11 @@ namespace retroforge
   /// Which features the two projections of FillingObjective see, and the workpiece's surface at that moment.
   struct FillingDecisions
   {
-    std::vector<SeenFeature> by_workpiece; ///< nodes of the workpiece, features of the target
-    std::vector<SeenFeature> by_target;    ///< vertices of the target, features of the workpiece's surface
-    WorkpieceSurface         workpiece;
-    std::vector<Triangle>    target; ///< those of the target that face the model, by their centres
+    std::vector<SeenFeature> by_workpiece; ///< this rank's nodes of the workpiece, features of the target
+    std::vector<SeenFeature>
+                     by_target; ///< its share of the target's vertices, features of the workpiece's surface
+    WorkpieceSurface workpiece;
+    std::vector<Triangle> target; ///< those of the target that face the model, by their centres
   };
 
   /// Volume between the workpiece and the desired shape by double projection [mm^3],

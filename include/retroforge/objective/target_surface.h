@@ -31,8 +31,8 @@ namespace retroforge
     const TriangleSurface    &shape() const { return *shape_; }
     const std::optional<Box> &region() const { return region_; }
 
-    /// The features that the workpiece's surface nodes see, ascending by node. Nodes behind the rim of an
-    /// open target, or outside the region, see none and are left out.
+    /// The features that this rank's nodes of the workpiece's surface see, ascending by node. Nodes behind
+    /// the rim of an open target, or outside the region, see none and are left out.
     std::vector<SeenFeature> seen_by_workpiece(const FinalView<double> &view) const;
 
     /// Signed distance of a feature from x, > 0 on the side that the normals point to [mm].

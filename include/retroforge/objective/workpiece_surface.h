@@ -40,7 +40,4 @@ namespace retroforge
     std::vector<NodeIndex>                 nodes_; ///< of each vertex
     std::shared_ptr<const TriangleSurface> shape_;
   };
-
-  /// Entries that this rank works on, of n known to all: begin and end.
-  std::pair<std::size_t, std::size_t> share_of_rank(std::size_t n, MPI_Comm comm);
 } // namespace retroforge

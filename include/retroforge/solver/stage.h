@@ -9,22 +9,33 @@
 
 namespace retroforge
 {
+  /// For which bubbles a rank has room in fields: those of the cells it visits, or all of them.
+  enum class Bubbles
+  {
+    visited,
+    all
+  };
+
   /// What does not move: the mesh, the spaces on it, who works on what of it, and the shapes of the dies.
   struct Scene
   {
     TetMesh          mesh;
     Topology         topology;
-    Spaces           spaces;
     Partition        partition;
+    Spaces           spaces;
     Ownership        velocities;
     FieldExchange    exchange;
     std::vector<Die> dies;
 
-    Scene(TetMesh made_mesh, const ElementPair pair, std::vector<Die> dies, MPI_Comm comm)
+    Scene(TetMesh           made_mesh,
+          const ElementPair pair,
+          std::vector<Die>  dies,
+          MPI_Comm          comm,
+          const Bubbles     bubbles = Bubbles::visited)
         : mesh(std::move(made_mesh))
         , topology(mesh)
-        , spaces(mesh, topology, pair)
         , partition(mesh, topology, comm)
+        , spaces(mesh, topology, pair, bubbles == Bubbles::visited ? &partition.visited_cells : nullptr)
         , velocities(velocity_ownership(spaces, partition))
         , exchange(mesh, topology, spaces, partition, velocities)
         , dies(std::move(dies))
@@ -36,7 +47,7 @@ namespace retroforge
     template <typename Number>
     ContactView<Number> view(const std::vector<DieState<Number>> &states, const NodalVectors<Number> &X) const
     {
-      return {mesh, topology, dies, states, X, spaces.edges()};
+      return {mesh, topology, dies, states, X, spaces.edges(), partition.comm};
     }
   };
 
@@ -110,7 +121,7 @@ namespace retroforge
   /// The equilibrium of bubbles at given V and P, in the cells this rank visits; W.beta is where each starts.
   void settle_bubbles(const Stage<double> &stage, Field<double> &W);
 
-  /// beta of every cell from V and P alone (Field::beta is overwritten, and gathered).
+  /// The same from V and P alone (Field::beta is overwritten).
   void recover_bubbles(const Stage<double> &stage, Field<double> &W);
 
   /// A stage and its solution.

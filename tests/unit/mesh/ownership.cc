@@ -3,7 +3,7 @@
 
 // Who owns what. Proved, on one and on two ranks: every node and cell has one owner; numbers in matrices
 // follow each other rank by rank; what is gathered and what neighbours send is what the owner knows, and
-// nothing else changes; METIS' parts are of equal size, and fewer nodes are read from others than when
+// nothing else changes; parts of sums come together at the owner; METIS' parts are of equal size, and fewer nodes are read from others than when
 // numbers are cut into ranges.
 
 #include <deal.II/base/mpi.h>
@@ -97,6 +97,36 @@ namespace
         right = right && near[width * entry + i] == (there ? known(entry, i) : stale);
     }
     say("sent is what is read, and nothing else changes", right && exchange.size() == n_read);
+
+    // Each rank that has an entry adds one more than its number: the owner gets all of it.
+    std::vector<double> part(width * n), whole(width * n, 0.);
+    for (unsigned int e = 0; e < width * n; ++e)
+      if (ownership.owns(e / width) || reads[e / width])
+        whole[e] = part[e] = known(e / width, e % width) * (rank() + 1);
+    dealii::Utilities::MPI::sum(whole, MPI_COMM_WORLD, whole);
+    exchange.collect(part.data());
+    right = true;
+    for (const unsigned int entry : ownership.owned())
+      for (unsigned int i = 0; i < width; ++i)
+        right = right && part[width * entry + i] == whole[width * entry + i];
+    say("collected are the sums of those that read", right);
+
+    // The same with the entries that are there one behind the other.
+    std::vector<unsigned int> place(n, invalid_index), there;
+    for (unsigned int entry = 0; entry < n; ++entry)
+      if (ownership.owns(entry) || reads[entry])
+      {
+        place[entry] = there.size();
+        there.push_back(entry);
+      }
+    std::vector<double> dense;
+    for (const unsigned int entry : there)
+      dense.insert(dense.end(), &mine[width * entry], &mine[width * entry] + width);
+    GhostExchange(ownership, read, width, [&](const unsigned int e) { return place[e]; }).update(dense.data());
+    right = true;
+    for (unsigned int e = 0; e < dense.size(); ++e)
+      right = right && dense[e] == known(there[e / width], e % width);
+    say("without room for others the same", right);
   }
 
   /// How many nodes of other ranks all ranks read together, when `owner` says whose nodes are.

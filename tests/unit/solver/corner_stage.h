@@ -31,7 +31,7 @@ namespace retroforge
                 const double                       rho,
                 const ElementPair                  pair  = ElementPair::mini,
                 const std::array<unsigned int, 3> &cells = {{4, 6, 4}})
-        : scene(half_box_mesh(Vec3({10., 8., 6.}), cells), pair, make_dies(), MPI_COMM_WORLD)
+        : scene(half_box_mesh(Vec3({10., 8., 6.}), cells), pair, make_dies(), MPI_COMM_WORLD, Bubbles::all)
         , X(scene.mesh.X)
         , W(scene.spaces)
     {

@@ -76,6 +76,7 @@ namespace
       system.assemble(stage(), W, pressed);
       system.solve(rhs, 1e-12, solution);
       scene.exchange.gather(solution);
+      scene.partition.cells().gather(solution.beta.data()->begin_raw(), 3);
       return solution;
     }
 
