@@ -28,7 +28,8 @@ namespace retroforge
 
     TetMesh make_first_mesh(const Parameters &parameters, Timings &timings, MPI_Comm comm)
     {
-      if (dealii::Utilities::MPI::this_mpi_process(comm) == 0)
+      // The first rank of all that the program has: groups of them may each make the mesh.
+      if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
         print_meshing(parameters);
       const TetMesh mesh = make_billet(parameters.billet, comm);
       if (!parameters.remeshing.first_mesh)

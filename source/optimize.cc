@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
 #include <retroforge/core/stop_notice.h>
 #include <retroforge/core/version.h>
 #include <retroforge/geometry/stl_file.h>
@@ -25,7 +26,13 @@ namespace retroforge
     using Decision = TrialRow::Decision;
     using Stop     = SearchStop;
 
-    /// What gives the same bits for the same design.
+    unsigned int n_groups(const CommandLine &command)
+    {
+      std::string ignored;
+      return Parameters::read(command.case_file, command.settings(), ignored).optimisation.side_by_side;
+    }
+
+    /// What gives the same bits for the same design. @param comm  that it is forged on
     std::string program_on(MPI_Comm comm)
     {
       return std::string(version) + " " + commit + ", " +
@@ -63,6 +70,28 @@ namespace retroforge
       return text;
     }
 
+    std::map<std::string, std::string> parameters_of(const Operations &operations)
+    {
+      std::map<std::string, std::string> parameters;
+      for (std::size_t o = 1; o < operations.size(); ++o)
+        parameters[operations.name(o)] = operations.at(o).echo;
+      return parameters;
+    }
+
+    /// With elements and increments a part as large.
+    CommandLine finer(const Case &at, const double part)
+    {
+      CommandLine command = at.command;
+      const auto  set     = [&](const std::string &path, const double value) {
+        command.overrides.emplace_back(path, exact(value));
+      };
+      set("Billet/element size", part * at.parameters.billet.element_size);
+      if (at.parameters.remeshing.element_size > 0.)
+        set("Remeshing/element size", part * at.parameters.remeshing.element_size);
+      set("Press/increments", std::ceil(at.parameters.press.increments / part - 1e-9));
+      return command;
+    }
+
     std::vector<std::string> varied(const Case &at)
     {
       std::vector<std::string> names;
@@ -73,9 +102,9 @@ namespace retroforge
     }
 
     /// Objectives that may not be smaller than a limit.
-    std::vector<bool> from_below(const Case &at, const Criteria &criteria)
+    std::vector<bool> from_below(const Criteria &criteria)
     {
-      std::vector<bool> below(at.objectives.size(), false);
+      std::vector<bool> below(criteria.objective.weights.size(), false);
       for (const Limit &limit : criteria.limits)
         if (limit.at_least)
           below[limit.objective] = true;
@@ -86,6 +115,7 @@ namespace retroforge
 
   Optimize::Optimize(const CommandLine &command, MPI_Comm comm)
       : resume_(command.resume)
+      , groups_(comm, n_groups(command), "Optimisation/side by side")
       , case_(
           [&] {
             // A journal, not a record, is what it goes on with.
@@ -94,18 +124,27 @@ namespace retroforge
             return anew;
           }(),
           timings_,
-          comm)
-      , root_(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
+          groups_.comm())
+      , operations_(case_, commands_of_operations(case_), timings_)
+      , objectives_(operations_.objectives())
+      , root_(groups_.is_first_rank())
       , space_(case_.design.parameters(), varied(case_), case_.mu, case_.parameters.optimisation)
-      , criteria_(case_.objectives, case_.parameters.optimisation)
-      , scatter_(case_.design.parameters(), case_.parameters.optimisation, from_below(case_, criteria_))
+      , criteria_(objectives_, case_.parameters.optimisation)
+      , scatter_(case_.design.parameters(), case_.parameters.optimisation, from_below(criteria_))
       , journal_(make_journal())
-      , trials_(case_, journal_, scatter_)
+      , trials_(operations_, journal_, scatter_, groups_)
       , search_(space_, criteria_, case_.parameters.optimisation, search_task())
-      , results_{space_, criteria_, names_of(case_.objectives), units_of(case_.objectives)}
+      , results_{space_, criteria_, names_of(objectives_), units_of(objectives_)}
   {
-    // A start of which nothing can come is refused before anything is written.
-    Trial(case_, case_.process, case_.X_0, Trial::Keep::nothing).check();
+    for (std::size_t o = 0; o < operations_.size(); ++o)
+    {
+      // A start of which nothing can come is refused before anything is written.
+      const Case               &at = operations_.at(o);
+      const std::vector<double> mu = operations_.values(o, case_.mu);
+      Trial(at, at.design.process(mu), at.design.positions(mu), Trial::Keep::nothing).check();
+      if (o > 0)
+        results_.operations[operations_.name(o)] = operations_.common(o);
+    }
   }
 
   SearchTask Optimize::search_task()
@@ -137,7 +176,7 @@ namespace retroforge
   {
     const std::string program = program_on(case_.comm), file = path_of("journal.jsonl");
     if (!resume_)
-      return Journal({program, case_.echo});
+      return Journal({program, case_.echo, parameters_of(operations_)});
     if (!std::filesystem::exists(file))
       throw Error(case_.command.output_directory,
                   "holds no journal of an optimisation",
@@ -145,10 +184,11 @@ namespace retroforge
                   "leave --resume out to begin, or name the folder with --output DIR");
     Journal journal = Journal::read(file);
     if (journal.header().program != program)
-      throw Error(file,
-                  "was written by Retroforge " + journal.header().program + ", and this is " + program,
-                  "another version, or another number of ranks, may give other values for the same design",
-                  "go on with that one, or begin anew with --overwrite");
+      throw Error(
+        file,
+        "was written by Retroforge " + journal.header().program + ", and this is " + program,
+        "another version, or another number of ranks of a group, may give other values for the same design",
+        "go on with that one, or begin anew with --overwrite");
     if (!make_same_results(journal.header().parameters, case_.echo))
       throw Error(
         file,
@@ -157,21 +197,36 @@ namespace retroforge
         "Output and Scan may differ",
         "restore the parameters (" + path_of("parameters.prm") +
           " has them), or begin anew with --overwrite");
+    std::map<std::string, std::string> operations = journal.header().operations;
+    for (const auto &[name, parameters] : parameters_of(operations_))
+      if (!make_same_results(operations.emplace(name, parameters).first->second, parameters))
+        throw Error(file,
+                    "has forgings of another operation " + name,
+                    "an optimisation goes on with the operations it began with, and may get more of them",
+                    "restore its parameters (" + path_of("parameters_" + name + ".prm") +
+                      " has them), or begin anew with --overwrite");
+    journal.set_operations(std::move(operations));
     return journal;
   }
 
   void Optimize::prepare_folder()
   {
-    MPI_Barrier(case_.comm); // all have read the journal before anything changes
+    MPI_Barrier(groups_.all()); // all have read the journal before anything changes
     if (!root_)
       return;
     const std::string &folder = case_.command.output_directory;
     if (!resume_)
       make_results_folder(folder, case_.command.overwrite);
     make_directory(folder + "/designs");
-    for (const char *file : {"parameters.prm", "optimisation.csv", "optimisation.json", "best.prm"})
+    for (const char *file : {"optimisation.csv", "optimisation.json"})
       check_writable(path_of(file));
-    write_file(path_of("parameters.prm"), case_.echo);
+    for (std::size_t o = 0; o < operations_.size(); ++o)
+    {
+      const std::string parameters = path_of(operations_.titled("parameters", o) + ".prm");
+      for (const std::string &file : {parameters, path_of(operations_.titled("best", o) + ".prm")})
+        check_writable(file);
+      write_file(parameters, operations_.at(o).echo);
+    }
     journal_.write_to(path_of("journal.jsonl"));
   }
 
@@ -217,6 +272,12 @@ namespace retroforge
                   case_.parameters.optimisation.scattered.c_str(),
                   case_.parameters.optimisation.scatter_range[0],
                   case_.parameters.optimisation.scatter_range[1]);
+    for (const auto &[name, parameters] : results_.operations)
+      std::printf("  each design is forged in operation %s, too, which has its %s\n",
+                  name.c_str(),
+                  join(parameters).c_str());
+    if (groups_.n() > 1)
+      std::printf("  by %u groups of ranks side by side\n", groups_.n());
     if (journal_.size() > 0)
       std::printf("  %zu designs are forged already, and taken from the journal\n", journal_.size());
     for (const std::string &name : results_.objectives)
@@ -331,60 +392,69 @@ namespace retroforge
     const double part = case_.parameters.optimisation.confirmation;
     if (part == 0.)
       return;
-    if (case_.parameters.billet.shape == "file")
+    if (const std::string reason = no_finer_mesh(); !reason.empty())
     {
       if (root_)
-        std::printf("  not confirmed: a billet from a file has no finer mesh\n");
+        std::printf("  not confirmed: %s\n", reason.c_str());
       return;
     }
-    const std::string mode = "billet/free form ";
-    for (const DesignParameter &parameter : space_.parameters())
-      if (parameter.name.rfind(mode, 0) == 0)
-      {
-        if (root_)
-          std::printf("  not confirmed: the modes of a free form belong to their mesh\n");
-        return;
-      }
-    CommandLine finer = case_.command;
-    const auto  set   = [&](const std::string &path, const double value) {
-      finer.overrides.emplace_back(path, exact(value));
-    };
-    set("Billet/element size", part * case_.parameters.billet.element_size);
-    if (case_.parameters.remeshing.element_size > 0.)
-      set("Remeshing/element size", part * case_.parameters.remeshing.element_size);
-    set("Press/increments", std::ceil(case_.parameters.press.increments / part - 1e-9));
     if (root_)
       std::printf("  confirming with elements and increments %.3g times as large ...\n", part);
     std::fflush(stdout);
+    Timings                     timings;
+    std::unique_ptr<Case>       fine;
+    std::unique_ptr<Operations> operations;
+    std::optional<Journal>      journal;
     try
     {
-      Timings    timings;
-      const Case fine(finer, timings, case_.comm);
-      Journal    journal = confirmation_journal(fine.echo);
-      MPI_Barrier(case_.comm);
-      if (root_)
-        journal.write_to(path_of("confirmation.jsonl"));
-      Trials trials(fine, journal, scatter_);
-      results_.confirmation = Confirmation{trials.evaluate(results_.start.mu),
-                                           trials.evaluate(results_.best.mu),
-                                           fine.billet.n_nodes(),
-                                           fine.parameters.press.increments};
+      fine = std::make_unique<Case>(finer(case_, part), timings, case_.comm);
+      std::vector<CommandLine> others;
+      for (std::size_t o = 1; o < operations_.size(); ++o)
+        others.push_back(finer(operations_.at(o), part));
+      operations = std::make_unique<Operations>(*fine, others, timings);
+      journal    = confirmation_journal(*operations);
     }
     catch (const Error &error)
     {
       // What was found must not be lost with it.
       if (root_)
         std::printf("  not confirmed: %s\n", error.what());
+      return;
     }
+    MPI_Barrier(groups_.all());
+    if (root_)
+      journal->write_to(path_of("confirmation.jsonl"));
+    Trials trials(*operations, *journal, scatter_, groups_);
+    results_.confirmation = Confirmation{trials.evaluate(results_.start.mu),
+                                         trials.evaluate(results_.best.mu),
+                                         fine->billet.n_nodes(),
+                                         fine->parameters.press.increments};
   }
 
-  Journal Optimize::confirmation_journal(const std::string &parameters) const
+  std::string Optimize::no_finer_mesh() const
+  {
+    const std::string mode = "billet/free form ";
+    for (std::size_t o = 0; o < operations_.size(); ++o)
+    {
+      if (operations_.at(o).parameters.billet.shape == "file")
+        return "a billet from a file has no finer mesh";
+      for (const DesignParameter &parameter : operations_.at(o).design.parameters())
+        if (parameter.name.rfind(mode, 0) == 0)
+          return "the modes of a free form belong to their mesh";
+    }
+    return "";
+  }
+
+  Journal Optimize::confirmation_journal(const Operations &fine) const
   {
     const std::string file = path_of("confirmation.jsonl");
+    Journal           begun({program_on(case_.comm), fine.at(0).echo, parameters_of(fine)});
     if (resume_ && std::filesystem::exists(file))
-      if (Journal kept = Journal::read(file); make_same_results(kept.header().parameters, parameters))
+      if (Journal kept = Journal::read(file);
+          make_same_results(kept.header().parameters, begun.header().parameters) &&
+          kept.header().operations == begun.header().operations)
         return kept;
-    return Journal({program_on(case_.comm), parameters});
+    return begun;
   }
 
   void Optimize::add_row(TrialRow row)
@@ -438,18 +508,28 @@ namespace retroforge
 
   void Optimize::write_shapes(const Evaluation &evaluation, const std::string &name)
   {
-    const std::string base  = path_of("designs/" + name);
-    const bool        there = dealii::Utilities::MPI::broadcast(
-      case_.comm, root_ && name != "best" && std::filesystem::exists(base + "_forged.stl"), 0);
-    if (there)
+    for (std::size_t o = 0; o < operations_.size(); ++o)
+      write_shapes_of(o, evaluation.mu, name);
+  }
+
+  void Optimize::write_shapes_of(const std::size_t          operation,
+                                 const std::vector<double> &mu,
+                                 const std::string         &name)
+  {
+    // The group that has the middle sample in memory writes it.
+    const Case       &at     = operations_.at(operation);
+    const std::string base   = path_of("designs/" + operations_.titled(name, operation));
+    const bool        writes = dealii::Utilities::MPI::this_mpi_process(case_.comm) == 0;
+    const bool        there  = dealii::Utilities::MPI::broadcast(
+      case_.comm, writes && name != "best" && std::filesystem::exists(base + "_forged.stl"), 0);
+    const Trial *forged = there ? nullptr : trials_.forged(mu, operation);
+    if (forged == nullptr || !writes)
       return;
-    const Trial &trial = trials_.forged(evaluation.mu);
-    if (!root_)
-      return;
+    const Trial &trial = *forged;
     if (case_.parameters.optimisation.keep_records)
-      trial.write_record(base, parameters_at(trials_.middle_sample(evaluation.mu)));
-    write_msh(base + "_billet.msh", case_.billet, trial.X_0());
-    write_boundary_stl(base + "_billet.stl", case_.billet, trial.X_0());
+      trial.write_record(base, parameters_at(at, trials_.middle_sample(mu, operation)));
+    write_msh(base + "_billet.msh", at.billet, trial.X_0());
+    write_boundary_stl(base + "_billet.stl", at.billet, trial.X_0());
     write_boundary_stl(base + "_forged.stl", trial.end().leg->scene.mesh, trial.end().X);
     for (const Die &die : trial.dies())
       if (die.surface())
@@ -460,14 +540,16 @@ namespace retroforge
   {
     results_.write_csv(path_of("optimisation.csv"));
     results_.write_json(path_of("optimisation.json"));
-    write_file(path_of("best.prm"), parameters_at(results_.best.mu));
+    for (std::size_t o = 0; o < operations_.size(); ++o)
+      write_file(path_of(operations_.titled("best", o) + ".prm"),
+                 parameters_at(operations_.at(o), operations_.values(o, results_.best.mu)));
   }
 
-  std::string Optimize::parameters_at(const std::vector<double> &mu) const
+  std::string Optimize::parameters_at(const Case &at, const std::vector<double> &mu) const
   {
-    CommandLine there = case_.command;
+    CommandLine there = at.command;
     there.at.clear();
-    there.overrides.emplace_back("Design/at", values_by_name(space_.parameters(), mu));
+    there.overrides.emplace_back("Design/at", values_by_name(at.design.parameters(), mu));
     std::string parameters;
     Parameters::read(there.case_file, there.overrides, parameters);
     return parameters;

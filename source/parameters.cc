@@ -291,13 +291,13 @@ namespace retroforge
 
     /// A relative name of a file that stands beside the case's parameter file is that file, wherever the
     /// program is started; others are left as they are.
-    void look_beside(const std::string &case_file, dealii::ParameterHandler &prm, const std::string &entry)
+    std::string beside(const std::string &case_file, const std::filesystem::path &name)
     {
-      const std::filesystem::path name   = prm.get(entry),
-                                  beside = std::filesystem::path(case_file).parent_path() / name;
-      std::error_code ignored;
-      if (!name.empty() && name.is_relative() && std::filesystem::is_regular_file(beside, ignored))
-        prm.set(entry, beside.lexically_normal().string());
+      const std::filesystem::path there = std::filesystem::path(case_file).parent_path() / name;
+      std::error_code             ignored;
+      return !name.empty() && name.is_relative() && std::filesystem::is_regular_file(there, ignored)
+               ? there.lexically_normal().string()
+               : name.string();
     }
 
     void look_beside(const std::string        &case_file,
@@ -306,7 +306,17 @@ namespace retroforge
                      const std::string        &entry)
     {
       prm.enter_subsection(section);
-      look_beside(case_file, prm, entry);
+      prm.set(entry, beside(case_file, prm.get(entry)));
+      prm.leave_subsection();
+    }
+
+    void look_beside_for_operations(const std::string &case_file, dealii::ParameterHandler &prm)
+    {
+      prm.enter_subsection("Optimisation");
+      std::vector<std::string> files = dealii::Utilities::split_string_list(prm.get("operations"));
+      for (std::string &file : files)
+        file = beside(case_file, file);
+      prm.set("operations", join(files));
       prm.leave_subsection();
     }
   } // namespace
@@ -361,6 +371,7 @@ end
       look_beside(file, prm, "Die " + die.name, "file");
     for (const ObjectiveParameters &objective : parameters.objectives.all)
       look_beside(file, prm, "Objective " + objective.name, "target");
+    look_beside_for_operations(file, prm);
     parameters.check_all();
     parameters.find_without_effect(declared_parameters(prm));
     std::ostringstream text;

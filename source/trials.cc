@@ -1,34 +1,43 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/core/error.h>
+#include <retroforge/core/told_error.h>
 #include <retroforge/trials.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 namespace retroforge
 {
   namespace
   {
-    double seconds_since(const std::chrono::steady_clock::time_point &begin)
+    /// Of a group's work in a wave.
+    struct Outcome
     {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    }
+      Evaluation  evaluation;
+      std::string problem; ///< message of an Error, or empty
+      double      seconds = 0.;
 
-    /// Ranks follow the first one's numbers, whatever the order of their sums.
-    template <typename T>
-    T of_first_rank(const T &x, MPI_Comm comm)
-    {
-      return dealii::Utilities::MPI::broadcast(comm, x, 0);
-    }
+      template <typename Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &evaluation &problem &seconds;
+      }
+    };
   } // namespace
 
-  Trials::Trials(const Case &at, Journal &journal, Scatter scatter)
-      : case_(at), journal_(journal), scatter_(std::move(scatter)), each_(each(at.objectives))
+  Trials::Trials(const Operations &operations, Journal &journal, Scatter scatter, const RankGroups &groups)
+      : operations_(operations), journal_(journal), scatter_(std::move(scatter)), groups_(groups)
   {
+    for (std::size_t o = 0; o < operations.size(); ++o)
+      kept_.emplace_back(operations.at(o));
+    const std::size_t n = jobs(operations.at(0).mu).size();
+    if (groups_.n() > n)
+      throw Error("Optimisation/side by side",
+                  "is " + std::to_string(groups_.n()) + ", and each design is forged " +
+                    (n == 1 ? "once" : std::to_string(n) + " times"),
+                  "a group of ranks has one of these forgings at least, or it would only wait",
+                  "use " + std::to_string(n) +
+                    " at most, and give the groups more ranks; or scatter a parameter, or name operations");
   }
 
   double Trials::seconds_each() const
@@ -36,115 +45,157 @@ namespace retroforge
     return n_forged_ == 0 ? 0. : seconds_ / n_forged_;
   }
 
+  Trials::Jobs Trials::jobs(const std::vector<double> &mu) const
+  {
+    Jobs all;
+    for (std::size_t i = 0; i < scatter_.n_samples(); ++i)
+      for (std::size_t o = 0; o < operations_.size(); ++o)
+        if (Job job{o, operations_.values(o, scatter_.sample(mu, i))};
+            std::find(all.begin(), all.end(), job) == all.end())
+          all.push_back(std::move(job));
+    return all;
+  }
+
+  const Evaluation *Trials::known(const Job &job) const
+  {
+    return journal_.find(job.mu, operations_.name(job.operation));
+  }
+
+  std::vector<Trials::Jobs> Trials::waves(const std::vector<double> &mu) const
+  {
+    std::vector<Jobs> waves;
+    const Jobs        all = jobs(mu);
+    for (std::size_t k = 0; k < all.size(); ++k)
+    {
+      if (k % groups_.n() == 0)
+        waves.emplace_back();
+      waves.back().push_back(all[k]);
+    }
+    return waves;
+  }
+
   Evaluation Trials::evaluate(const std::vector<double> &mu)
   {
-    std::vector<Evaluation> samples;
-    for (std::size_t i = 0; i < scatter_.n_samples(); ++i)
-    {
-      samples.push_back(evaluate_one(scatter_.sample(mu, i)));
-      if (samples.back().failed())
+    for (const Jobs &wave : waves(mu))
+      if (!forge(wave))
         break; // the rest would not make it better
-    }
-    return scatter_.combined(mu, samples);
+    return combined(mu);
   }
 
   Evaluation Trials::differentiate(const std::vector<double> &mu)
   {
+    evaluate(mu);
+    const std::vector<Jobs> all = waves(mu);
+    // What was forged last is still in memory.
+    std::for_each(all.rbegin(), all.rend(), [&](const Jobs &wave) { sweep(wave); });
+    return combined(mu);
+  }
+
+  Evaluation Trials::combined(const std::vector<double> &mu) const
+  {
     std::vector<Evaluation> samples;
-    // The sample forged last is still in memory.
-    for (std::size_t i = scatter_.n_samples(); i-- > 0;)
-      samples.insert(samples.begin(), differentiate_one(scatter_.sample(mu, i)));
+    for (std::size_t i = 0; i < scatter_.n_samples(); ++i)
+    {
+      const std::vector<double> sample = scatter_.sample(mu, i);
+      std::vector<Evaluation>   each;
+      for (std::size_t o = 0; o < operations_.size() && (each.empty() || !each.back().failed()); ++o)
+      {
+        each.push_back(*known({o, operations_.values(o, sample)}));
+        if (i > 0 && each.back().mu == operations_.values(o, scatter_.sample(mu, 0)))
+          each.back().seconds = 0.; // it was forged once
+      }
+      samples.push_back(operations_.joined(sample, each));
+      if (samples.back().failed())
+        break;
+    }
     return scatter_.combined(mu, samples);
   }
 
-  const Trial &Trials::forged(const std::vector<double> &mu)
+  bool Trials::forge(const Jobs &wave)
   {
-    return forged_one(middle_sample(mu));
+    std::vector<bool> is_open;
+    bool              fails = false; // one is known to: those behind it are not asked for
+    for (const Job &job : wave)
+    {
+      const Evaluation *there = known(job);
+      is_open.push_back(there == nullptr && !fails);
+      fails = fails || (there != nullptr && there->failed());
+    }
+    std::vector<Evaluation> found =
+      shared_out(wave, is_open, [&](const Job &job) { return kept_[job.operation].forge(job.mu); });
+    // As one group would have it: what others have forged behind a failure is forgotten.
+    for (std::size_t k = 0; k < wave.size(); ++k)
+    {
+      if (std::find(asked_.begin(), asked_.end(), wave[k]) == asked_.end())
+        asked_.push_back(wave[k]);
+      if (is_open[k])
+      {
+        found[k].operation = operations_.name(wave[k].operation);
+        journal_.add(std::move(found[k]));
+        ++n_forged_;
+      }
+      if (known(wave[k])->failed())
+        return false;
+    }
+    return true;
   }
 
-  Evaluation Trials::evaluate_one(const std::vector<double> &mu)
+  void Trials::sweep(const Jobs &wave)
   {
-    if (std::find(asked_.begin(), asked_.end(), mu) == asked_.end())
-      asked_.push_back(mu);
-    if (const Evaluation *known = journal_.find(mu))
-      return *known;
-    Evaluation evaluation;
-    evaluation.mu = mu;
-    forge(mu, evaluation);
-    return journal_[journal_.add(std::move(evaluation))];
+    std::vector<bool> is_open;
+    for (const Job &job : wave)
+      is_open.push_back(known(job)->gradients.empty());
+    std::vector<Evaluation> found = shared_out(wave, is_open, [&](const Job &job) {
+      Evaluation evaluation;
+      evaluation.gradients = kept_[job.operation].gradients(*known(job));
+      return evaluation;
+    });
+    for (std::size_t k = wave.size(); k-- > 0;)
+      if (is_open[k])
+        journal_.add_gradients(journal_.place_of(wave[k].mu, operations_.name(wave[k].operation)),
+                               std::move(found[k].gradients));
   }
 
-  void Trials::forge(const std::vector<double> &mu, Evaluation &evaluation)
+  std::vector<Evaluation> Trials::shared_out(const Jobs                                   &wave,
+                                             const std::vector<bool>                      &is_open,
+                                             const std::function<Evaluation(const Job &)> &work)
   {
+    std::vector<Evaluation> found(wave.size());
+    if (std::find(is_open.begin(), is_open.end(), true) == is_open.end())
+      return found;
+    Outcome    mine;
     const auto begin = std::chrono::steady_clock::now();
-    trial_.reset(); // two would be in memory
-    forged_mu_ = mu;
     try
     {
-      case_.design.check_values(mu);
-      trial_ = std::make_unique<Trial>(
-        case_, case_.design.process(mu), case_.design.positions(mu), Trial::Keep::increments);
-      trial_->check();
-      trial_->forge([&](const IncrementEvent &event) { evaluation.increments = event.state.increments; });
-      evaluation.values = of_first_rank(trial_->values(), case_.comm);
+      if (groups_.number() < wave.size() && is_open[groups_.number()])
+        mine.evaluation = work(wave[groups_.number()]);
     }
     catch (const Error &error)
     {
-      trial_.reset();
-      evaluation.failure = error.what();
+      mine.problem = error.what();
     }
-    evaluation.seconds = of_first_rank(seconds_since(begin), case_.comm);
-    seconds_ += evaluation.seconds;
-    ++n_forged_;
+    mine.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const std::vector<Outcome> all     = groups_.gathered(mine);
+    double                     slowest = 0.;
+    for (std::size_t k = 0; k < all.size(); ++k)
+    {
+      if (!all[k].problem.empty())
+        throw told_error(all[k].problem);
+      slowest = std::max(slowest, all[k].seconds);
+      if (k < wave.size())
+        found[k] = all[k].evaluation;
+    }
+    seconds_ += slowest;
+    return found;
   }
 
-  Trial &Trials::forged_one(const std::vector<double> &mu)
+  const Trial *Trials::forged(const std::vector<double> &mu, const std::size_t operation)
   {
-    if (!trial_ || forged_mu_ != mu)
-    {
-      const Evaluation known = evaluate_one(mu);
-      Evaluation       again;
-      if (!trial_ || forged_mu_ != mu)
-        forge(mu, again);
-      if (!trial_)
-        throw Error("optimize",
-                    "forged a design again, which now fails: " + again.failure,
-                    "a design gives the same twice on one machine",
-                    "begin anew with --overwrite");
-      if (known.values != again.values && !again.values.empty())
-        throw Error("optimize",
-                    "forged a design again, and found other values than the journal has",
-                    "a journal belongs to the program, the machine and the number of ranks that wrote it",
-                    "go on there, or begin anew with --overwrite");
-    }
-    return *trial_;
-  }
-
-  Evaluation Trials::differentiate_one(const std::vector<double> &mu)
-  {
-    Evaluation evaluation = evaluate_one(mu);
-    if (!evaluation.gradients.empty())
-      return evaluation;
-    Trial             &trial = forged_one(mu);
-    const auto         begin = std::chrono::steady_clock::now();
-    const AdjointSweep sweep = trial.sweep(each_);
-    for (const AdjointResult &of : sweep.of)
-    {
-      evaluation.gradients.push_back(
-        of_first_rank(case_.design.pull_back(mu, of.X_0, of.process), case_.comm));
-      for (const double derivative : evaluation.gradients.back())
-        if (!std::isfinite(derivative))
-          throw Error("optimize",
-                      "found a derivative that is " + as_text(derivative),
-                      "results must be finite numbers",
-                      "use values of the usual size: exponents and sharpness above all");
-    }
-    ++n_swept_;
-    seconds_ += of_first_rank(seconds_since(begin), case_.comm);
-    std::size_t i = 0;
-    while (journal_[i].mu != mu)
-      ++i;
-    journal_.add_gradients(i, evaluation.gradients);
-    return evaluation;
+    const Jobs        all   = jobs(mu);
+    const Job         job   = {operation, middle_sample(mu, operation)};
+    const std::size_t place = std::find(all.begin(), all.end(), job) - all.begin();
+    if (place % groups_.n() != groups_.number())
+      return nullptr;
+    return &kept_[operation].forged(*known(job));
   }
 } // namespace retroforge

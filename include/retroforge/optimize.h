@@ -26,7 +26,9 @@ namespace retroforge
     /// With what an earlier run left, where this one goes on.  @throws Error  for one of another case
     Journal make_journal() const;
     /// With the forgings of the finer case that are done, where it is still the same.
-    Journal confirmation_journal(const std::string &parameters) const;
+    Journal confirmation_journal(const Operations &fine) const;
+    /// Why the optimum is not forged on finer meshes; empty where it is.
+    std::string no_finer_mesh() const;
 
     /// What the search forges, and what becomes of its decisions.
     SearchTask search_task();
@@ -49,19 +51,24 @@ namespace retroforge
     /// Collective.
     void write_shapes(const Evaluation &evaluation, const std::string &name);
     void write_results() const;
-    /// The case's, at another design.
-    std::string parameters_at(const std::vector<double> &mu) const;
+    /// The shapes of one operation. Collective over its ranks.
+    void write_shapes_of(std::size_t operation, const std::vector<double> &mu, const std::string &name);
+    /// A case's, at another design. @param mu  parameters of that case
+    std::string parameters_at(const Case &at, const std::vector<double> &mu) const;
     std::string path_of(const std::string &file) const { return case_.command.output_directory + "/" + file; }
 
-    const bool  resume_;
-    Timings     timings_;
-    Case        case_;
-    const bool  root_; ///< this rank writes
-    DesignSpace space_;
-    Criteria    criteria_;
-    Scatter     scatter_;
-    Journal     journal_;
-    Trials      trials_;
+    const bool       resume_;
+    const RankGroups groups_;
+    Timings          timings_;
+    Case             case_; ///< on the ranks of this rank's group
+    const Operations operations_;
+    const Objectives objectives_; ///< of all operations
+    const bool       root_;       ///< this rank prints and writes
+    DesignSpace      space_;
+    Criteria         criteria_;
+    Scatter          scatter_;
+    Journal          journal_;
+    Trials           trials_;
 
     Search              search_;
     OptimisationResults results_;

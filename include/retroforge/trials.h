@@ -2,21 +2,31 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/core/rank_groups.h>
+#include <retroforge/kept_trial.h>
+#include <retroforge/operations.h>
 #include <retroforge/optimisation/scatter.h>
-#include <retroforge/trial.h>
 
-#include <memory>
+#include <functional>
 
 namespace retroforge
 {
-  /// Forgings of a case at one design after another. What the journal has is not forged again; what fails is
-  /// an answer, too. The last one forged stays in memory, where it can be swept back and looked at.
+  /// Forgings of one or more operations at one design after another. What the journal has is not forged
+  /// again; what fails is an answer, too. The forgings of a design, one for each sample and operation, are
+  /// dealt out to groups of ranks: each group forges one of a wave of as many as there are groups, and all of
+  /// them get what came of it, so that they take the same decisions and their journals are the same, in the
+  /// order of one group.
+  ///
+  /// Collective over all groups. An Error that one of them meets is thrown by all; another exception
+  /// leaves the rest waiting, so it has to end the program.
   class Trials
   {
   public:
-    /// @param at  its case; it and the journal must live as long
+    /// @param operations  on the ranks of this rank's group; they, the groups and the journal must live as
+    /// long
     /// @param scatter  over which each design is forged several times
-    Trials(const Case &at, Journal &journal, Scatter scatter);
+    /// @throws Error  for more groups than forgings of a design
+    Trials(const Operations &operations, Journal &journal, Scatter scatter, const RankGroups &groups);
 
     /// What comes of a design, over its samples: values, or why there are none.
     Evaluation evaluate(const std::vector<double> &mu);
@@ -25,36 +35,54 @@ namespace retroforge
     Evaluation differentiate(const std::vector<double> &mu);
 
     /// The forging of a design that does not fail, in its middle sample, made again where it is not in
-    /// memory.
-    const Trial &forged(const std::vector<double> &mu);
+    /// memory; null in the groups that do not have that sample of the operation. Not collective over groups.
+    const Trial *forged(const std::vector<double> &mu, std::size_t operation);
 
-    /// The design as it is forged in its middle sample.
-    std::vector<double> middle_sample(const std::vector<double> &mu) const
+    /// The parameters of an operation as it is forged in the middle sample.
+    std::vector<double> middle_sample(const std::vector<double> &mu, const std::size_t operation) const
     {
-      return scatter_.sample(mu, scatter_.n_samples() / 2);
+      return operations_.values(operation, scatter_.sample(mu, scatter_.n_samples() / 2));
     }
 
-    /// Forgings that were asked for, each once, and those of them that were forged here.
+    /// Forgings that were asked for, each once.
     unsigned int n_asked() const { return asked_.size(); }
-    unsigned int n_forged() const { return n_forged_; }
-    unsigned int n_swept() const { return n_swept_; }
-    /// Mean time of a forging, sweep included [s].
+    /// Mean time between the ends of two forgings, sweeps included [s].
     double seconds_each() const;
 
   private:
-    Evaluation evaluate_one(const std::vector<double> &mu);
-    Evaluation differentiate_one(const std::vector<double> &mu);
-    Trial     &forged_one(const std::vector<double> &mu);
-    void       forge(const std::vector<double> &mu, Evaluation &evaluation);
+    /// A forging that a design asks for.
+    struct Job
+    {
+      std::size_t         operation;
+      std::vector<double> mu; ///< its parameters
 
-    const Case                      &case_;
-    Journal                         &journal_;
-    const Scatter                    scatter_;
-    const std::vector<Combination>   each_;
-    std::unique_ptr<Trial>           trial_; ///< the last one forged; null where that failed
-    std::vector<double>              forged_mu_;
-    std::vector<std::vector<double>> asked_;
-    unsigned int                     n_forged_ = 0, n_swept_ = 0;
-    double                           seconds_ = 0.;
+      bool operator==(const Job &other) const { return operation == other.operation && mu == other.mu; }
+    };
+    using Jobs = std::vector<Job>;
+
+    const Evaluation *known(const Job &job) const;
+    /// In the order in which they are asked for, each once: without the scattered parameter an operation is
+    /// the same in all samples.
+    Jobs jobs(const std::vector<double> &mu) const;
+    /// Those that go on at a time, one for each group.
+    std::vector<Jobs> waves(const std::vector<double> &mu) const;
+    /// @return whether all of the wave succeeded
+    bool forge(const Jobs &wave);
+    void sweep(const Jobs &wave);
+    /// What comes of those of a wave that are open, each done by its group.
+    std::vector<Evaluation> shared_out(const Jobs                                   &wave,
+                                       const std::vector<bool>                      &is_open,
+                                       const std::function<Evaluation(const Job &)> &work);
+    /// Of samples that are known, up to the first that fails.
+    Evaluation combined(const std::vector<double> &mu) const;
+
+    const Operations      &operations_;
+    Journal               &journal_;
+    const Scatter          scatter_;
+    const RankGroups      &groups_;
+    std::vector<KeptTrial> kept_; ///< the last one of each operation in this group
+    Jobs                   asked_;
+    unsigned int           n_forged_ = 0;
+    double                 seconds_  = 0.;
   };
 } // namespace retroforge

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/core/error.h>
+#include <retroforge/core/told_error.h>
 #include <retroforge/mesh/broadcast.h>
 
 #include <cstring>
@@ -59,18 +59,6 @@ namespace retroforge
       for (auto &patch : mesh.patches)
         broadcast_patch(patch, communicator);
     }
-
-    // The same message on every rank: the four parts are found again by their separators.
-    [[noreturn]] void throw_error(const std::string &message)
-    {
-      const auto third  = message.rfind("; ");
-      const auto second = message.rfind("; ", third - 1);
-      const auto first  = message.find(": ");
-      throw Error(message.substr(0, first),
-                  message.substr(first + 2, second - first - 2),
-                  message.substr(second + 2, third - second - 2),
-                  message.substr(third + 2));
-    }
   } // namespace
 
   TetMesh make_on_root(const std::string              &where,
@@ -95,7 +83,7 @@ namespace retroforge
       }
     broadcast_text(failure, communicator);
     if (!failure.empty())
-      throw_error(failure);
+      throw told_error(failure);
     broadcast_mesh(mesh, communicator);
     if (with_it)
       broadcast_array(*with_it, communicator);

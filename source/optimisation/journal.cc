@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -47,13 +48,18 @@ namespace retroforge
 
     std::string line_of(const Journal::Header &header)
     {
-      return Json{{"retroforge", header.program}, {"parameters", header.parameters}}.dump();
+      Json json = {{"retroforge", header.program}, {"parameters", header.parameters}};
+      if (!header.operations.empty())
+        json["operations"] = header.operations;
+      return json.dump();
     }
 
     std::string line_of(const Evaluation &evaluation)
     {
       Json json = {
         {"mu", exact(evaluation.mu)}, {"increments", evaluation.increments}, {"seconds", evaluation.seconds}};
+      if (!evaluation.operation.empty())
+        json["operation"] = evaluation.operation;
       if (evaluation.failed())
         json["failure"] = legible(evaluation.failure);
       else
@@ -75,6 +81,7 @@ namespace retroforge
       evaluation.mu         = numbers(json.at("mu"));
       evaluation.increments = json.at("increments");
       evaluation.seconds    = json.at("seconds");
+      evaluation.operation  = json.value("operation", "");
       if (json.contains("failure"))
         evaluation.failure = json.at("failure");
       else
@@ -104,7 +111,9 @@ namespace retroforge
       {
         const Json json = Json::parse(line);
         if (++n == 1)
-          journal.header_ = {json.at("retroforge"), json.at("parameters")};
+          journal.header_ = {json.at("retroforge"),
+                             json.at("parameters"),
+                             json.value("operations", std::map<std::string, std::string>())};
         else if (json.contains("gradients"))
           read_gradients(json, journal.evaluations_);
         else
@@ -124,12 +133,20 @@ namespace retroforge
     return journal;
   }
 
-  const Evaluation *Journal::find(const std::vector<double> &mu) const
+  std::size_t Journal::place_of(const std::vector<double> &mu, const std::string &operation) const
   {
-    for (const Evaluation &evaluation : evaluations_)
-      if (evaluation.mu == mu)
-        return &evaluation;
-    return nullptr;
+    return std::find_if(evaluations_.begin(),
+                        evaluations_.end(),
+                        [&](const Evaluation &evaluation) {
+                          return evaluation.mu == mu && evaluation.operation == operation;
+                        }) -
+           evaluations_.begin();
+  }
+
+  const Evaluation *Journal::find(const std::vector<double> &mu, const std::string &operation) const
+  {
+    const std::size_t i = place_of(mu, operation);
+    return i < size() ? &evaluations_[i] : nullptr;
   }
 
   void Journal::write_to(const std::string &file)

@@ -106,6 +106,19 @@ namespace retroforge
                       "How many standard deviations are added to the mean of an objective (taken from it "
                       "where a limit is a lower one). Units: none.",
                       Double(0., 10.));
+    prm.add_parameter(
+      "operations",
+      operations,
+      "Parameter files of other cases, beside this one, that are forged with each design, too: the "
+      "design parameters that they have in common with this case have the same values there, their "
+      "objectives are called `OBJECTIVE of FILE', without the file's ending. Units: none.");
+    prm.add_parameter(
+      "side by side",
+      side_by_side,
+      "Groups into which the ranks of `mpirun -np N' are divided: each forges its share of "
+      "the samples and operations of a design, all at a time. Numbers are those of one group with as many "
+      "ranks as each of them has. Units: none.",
+      Integer(1, 10000));
     prm.leave_subsection();
   }
 

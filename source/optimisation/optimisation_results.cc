@@ -254,6 +254,8 @@ namespace retroforge
                  {"sweeps", n_sweeps},
                  {"failed", n_failed},
                  {"trials", trials}};
+    for (const auto &[name, of_design] : operations)
+      json["operations"].push_back({{"name", name}, {"parameters", of_design}});
     if (confidence)
       json["identification"] = as_json(*this);
     if (confirmation)

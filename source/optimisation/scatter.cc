@@ -68,10 +68,14 @@ namespace retroforge
 
   namespace
   {
-    /// Mean and standard deviation of one objective.
+    /// Mean and standard deviation of one objective, which rounding leaves alone where it is the same in all.
     std::pair<double, double>
     moments(const std::vector<Evaluation> &samples, const std::vector<double> &weights, const std::size_t o)
     {
+      const double first = samples.front().values[o];
+      if (std::all_of(
+            samples.begin(), samples.end(), [&](const Evaluation &of) { return of.values[o] == first; }))
+        return {first, 0.};
       double mean = 0., variance = 0.;
       for (std::size_t i = 0; i < samples.size(); ++i)
         mean += weights[i] * samples[i].values[o];

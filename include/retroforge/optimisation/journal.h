@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,16 @@ namespace retroforge
     double              seconds    = 0.;
     /// Of each objective by the parameters; empty where nobody has asked.
     std::vector<std::vector<double>> gradients;
+    std::string                      operation = {}; ///< that was forged; of the main one empty
 
     bool failed() const { return values.empty(); }
+
+    /// To another rank.
+    template <typename Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &mu &values &failure &increments &seconds &gradients &operation;
+    }
   };
 
   /// The forgings of an optimisation, kept as they are done: one line of JSON for each, and one for its
@@ -31,7 +40,8 @@ namespace retroforge
     /// Of the case and the program that forge.
     struct Header
     {
-      std::string program, parameters;
+      std::string                        program, parameters;
+      std::map<std::string, std::string> operations = {}; ///< parameters of others, by their names
     };
 
     /// Reads what is there; a line that was cut short by the program's end does not count.
@@ -41,9 +51,17 @@ namespace retroforge
     /// An empty one.
     explicit Journal(Header header) : header_(std::move(header)) {}
 
-    const Header     &header() const { return header_; }
-    std::size_t       size() const { return evaluations_.size(); }
-    const Evaluation *find(const std::vector<double> &mu) const;
+    /// Into the header, in place of those there.
+    void set_operations(std::map<std::string, std::string> operations)
+    {
+      header_.operations = std::move(operations);
+    }
+
+    const Header &header() const { return header_; }
+    std::size_t   size() const { return evaluations_.size(); }
+    /// Number of a design in an operation; size() where it is not here.
+    std::size_t       place_of(const std::vector<double> &mu, const std::string &operation = "") const;
+    const Evaluation *find(const std::vector<double> &mu, const std::string &operation = "") const;
     const Evaluation &operator[](const std::size_t i) const { return evaluations_[i]; }
 
     /// From here on what is added is written to `file`, too, which is made anew with what is here.

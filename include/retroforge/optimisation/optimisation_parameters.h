@@ -39,6 +39,10 @@ namespace retroforge
     unsigned int        samples    = 3;  ///< of it
     double              deviations = 1.; ///< lambda in mean + lambda sigma
 
+    std::vector<std::string> operations; ///< files of other cases that are forged with each design
+
+    unsigned int side_by_side = 1; ///< groups of ranks, each with its share of a design's forgings
+
     void add_parameters(dealii::ParameterHandler &prm);
     /// @throws Error
     void check() const;

@@ -6,6 +6,7 @@
 #include <retroforge/optimisation/search.h>
 
 #include <iosfwd>
+#include <map>
 #include <optional>
 
 namespace retroforge
@@ -41,6 +42,9 @@ namespace retroforge
     const Criteria                &criteria;
     const std::vector<std::string> objectives; ///< names of all of the case
     const std::vector<std::string> units;      ///< theirs
+
+    std::map<std::string, std::vector<std::string>> operations =
+      {}; ///< others: parameters of the design they have
 
     std::vector<TrialRow>       rows  = {};
     double                      noise = 0.; ///< of the objective, in its unit

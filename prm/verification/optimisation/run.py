@@ -9,6 +9,7 @@ material  three of them
 starts    the straight side from three starts, and on a finer mesh
 free_form the straight side by 39 and 104 modes, on two meshes
 die_form  the straight side by the free form of a round die
+two_billets  one round die for two billets, against the die that is best for one of them
 robust    a contour that bears friction from 0.2 to 0.6, against the nominal one, at 20 unseen frictions
 searches  against gradient-free searches of scipy, with 3 and 10 parameters
 ring      friction from the bores of the ring test's calibration
@@ -176,17 +177,40 @@ def free_form():
     case_tools.figure("free_form_steps_ratio", max(steps) / min(steps))
 
 
-def die_form():
-    """The die is one of rings, a flat cone: where flat meets flat, the least change says which node touches first. Its offset, the first
-    mode, stays."""
+def write_cone():
+    """A die of rings, a flat cone: where flat meets flat, the least change says which node touches first."""
     make_die.FACETS_PER_TURN = 32
     make_die.write_stl(pathlib.Path("cone.stl"), make_die.revolved([(2.0 * i, 0.08 * i) for i in range(17)]))
+
+
+def die_form():
+    """The die's offset, its first mode, stays."""
+    write_cone()
     found = optimize(os.path.join(HERE, "round_die.prm"), {}, "die_form")
     objective, confirmation = found["objective"], found["confirmation"]
     print(f"straight side by a die: {objective['start']:.4g} -> {objective['best']:.4g} mm^2 in {found['simulations']} designs; "
           f"finer mesh {confirmation['start']:.4g} -> {confirmation['best']:.4g} mm^2")
     case_tools.figure("die_form_residual", objective["best"] / objective["start"])
     case_tools.figure("die_form_confirmed", confirmation["best"] / confirmation["start"])
+
+
+def two_billets():
+    """The die that is best for the stout billet, and the one that is best for both."""
+    write_cone()
+    both, slim = os.path.join(HERE, "two_billets.prm"), os.path.join(HERE, "slim_billet.prm")
+    settings = {"Optimisation/noise runs": 0, "Optimisation/gradient tolerance": 0.02, "Optimisation/iterations": 12, "Optimisation/confirmation": 0}
+    found = optimize(both, settings, "two_billets")
+    alone = optimize(both, {**settings, "Optimisation/operations": "", "Optimisation/objective": "barrel"}, "stout_alone")
+    print("| die | barrel, stout [mm^2] | slim |\n| --- | --- | --- |")
+    sums = {}
+    for name, design in (("start", {}), ("best for the stout one", best_of(alone)), ("best for both", best_of(found))):
+        stout = forge(both, {"Optimisation/operations": "", "Optimisation/objective": "barrel"}, design)["barrel"]
+        sums[name] = stout, forge(slim, {}, design)["barrel"]
+        print(f"| {name} | {sums[name][0]:.4g} | {sums[name][1]:.4g} |", flush=True)
+    print(f"{found['simulations']} forgings for both, {alone['simulations']} for the stout one")
+    case_tools.figure("two_billets_residual", sum(sums["best for both"]) / sum(sums["start"]))
+    case_tools.figure("two_billets_against_one", sum(sums["best for both"]) / sum(sums["best for the stout one"]))
+    case_tools.figure("two_billets_alone", abs(sum(sums["best for both"]) / found["objective"]["best"] - 1))
 
 
 def robust():
@@ -295,5 +319,5 @@ def killed():
 
 
 if __name__ == "__main__":
-    parts = (quick, identify, material, starts, free_form, die_form, robust, searches, ring, killed)
+    parts = (quick, identify, material, starts, free_form, die_form, two_billets, robust, searches, ring, killed)
     {part.__name__: part for part in parts}[sys.argv[2]]()

@@ -3,8 +3,6 @@
 """An optimisation: the contour of a billet that ends with a straight side, free and with limits and bounds; its results are
 those of runs a user would make by hand; killed and resumed it is the same; failing designs are refused and told.
 Usage: optimize.py RETROFORGE"""
-import csv
-import json
 import os
 import pathlib
 import signal
@@ -15,40 +13,8 @@ import time
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from scene import SCENE, best_of, found_in, lines_of, optimize, rows_of  # noqa: E402
 from whole_runs import ENVIRONMENT, ROOT, changed, command, judge, main, prm, run, start, summary_of, text_of, write  # noqa: E402
-
-SCENE = {
-    "Billet": {"shape": "profile", "control points": "10, 0; 10, 5; 10, 10; 10, 15", "element size": 5,
-               "symmetry planes": "-1, 0, 0; 0, -1, 0; 0, 0, -1", "volume held by": "control point 4 r"},
-    "Dies": {"names": "upper"},
-    "Die upper": {"point": "0, 0, 15", "facing": "0, 0, -1", "velocity": "0, 0, -100", "friction": 0.3},
-    "Press": {"stroke": 5, "increments": 10},
-    "Objectives": {"names": "barrel, energy"},
-    "Objective barrel": {"type": "cylinder distance", "patches": "side outer"},
-    "Design": {"parameters": "billet/control point 1 r, billet/control point 2 r"},
-    "Optimisation": {"objective": "barrel", "noise runs": 2, "confirmation": 0},
-    "Output": {"fields every": 0}}
-
-
-def optimize(output, *more, **where):
-    done = run("optimize", output, *more, **where)
-    if done.returncode:
-        sys.exit(done.stdout + done.stderr)
-    return found_in(output), done.stdout
-
-
-def found_in(output):
-    return json.loads(text_of(output, "optimisation.json"))
-
-
-def rows_of(output):
-    """Without what differs from run to run: the seconds."""
-    return [{name: text for name, text in row.items() if name != "seconds"}
-            for row in csv.DictReader(text_of(output, "optimisation.csv").splitlines())]
-
-
-def best_of(found):
-    return [parameter["best"] for parameter in found["parameters"]]
 
 
 def whole():
@@ -99,13 +65,6 @@ def killed():
         judge(f"killed after {lines} lines: the same rows", rows_of("killed") == reference)
         judge("and the same optimum", best_of(found) == best_of(expected) and found["limits"] == expected["limits"])
     judge("it says what it takes from the journal", "taken from the journal" in printed)
-
-
-def lines_of(output):
-    try:
-        return len(text_of(output, "journal.jsonl").splitlines())
-    except OSError:
-        return 0
 
 
 def limited():

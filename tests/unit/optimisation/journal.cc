@@ -36,6 +36,25 @@ namespace
     }
     std::remove("wrong.jsonl");
   }
+
+  /// Designs are told apart by the operation, too.
+  void operations()
+  {
+    Journal journal({"1.0 abc", "", {{"small", "subsection B\nend\n"}}});
+    journal.write_to("operations.jsonl");
+    journal.add({{1.}, {2.}, "", 1, 0.5, {}});
+    journal.add({{1.}, {3.}, "", 1, 0.5, {}, "small"});
+    journal.add_gradients(journal.place_of({1.}, "small"), {{7.}});
+    const Journal     again = Journal::read("operations.jsonl");
+    const Evaluation *main = again.find({1.}), *small = again.find({1.}, "small");
+    std::cout << "operations: "
+              << answer(again.header().operations == journal.header().operations && main != nullptr &&
+                        main->values[0] == 2. && main->gradients.empty() && small != nullptr &&
+                        small->values[0] == 3. && small->gradients[0][0] == 7. &&
+                        again.find({1.}, "other") == nullptr)
+              << "\n";
+    std::remove("operations.jsonl");
+  }
 } // namespace
 
 int main()
@@ -61,6 +80,10 @@ int main()
             << answer(second != nullptr && second->failed() &&
                       second->failure == "Increment 3: is \"too\" \\ long")
             << "\nother designs: " << answer(again.find({third}) == nullptr) << "\n";
+
+  std::cout << "no word of operations where there is one: "
+            << answer(read_file("journal.jsonl").find("operation") == std::string::npos) << "\n";
+  operations();
 
   const std::string whole = read_file("journal.jsonl");
   write_file("journal.jsonl", whole.substr(0, whole.size() - 10));

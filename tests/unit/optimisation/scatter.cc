@@ -77,6 +77,17 @@ int main()
   const Evaluation reasons = scatter.combined(mu, {forged(mu), failed});
   std::cout << "failed: " << answer(reasons.failed()) << ", " << reasons.failure << "\n";
 
+  // What does not depend on the scattered parameter has no deviation, whatever rounding makes of its mean.
+  Evaluation constant;
+  constant.values          = {0.1, 1. / 3.};
+  constant.gradients       = {{1. / 7., 0.}, {0.3, 0.}};
+  const Evaluation without = scatter.combined(mu, {constant, constant, constant});
+  std::cout << "the same in all samples: "
+            << answer(without.values == constant.values &&
+                      std::abs(without.gradients[0][0] - 1. / 7.) < 1e-15 &&
+                      std::abs(without.gradients[1][0] - 0.3) < 1e-15)
+            << "\n";
+
   const Evaluation as_it_is = over(Scatter(), mu);
   std::cout << "no scatter: " << answer(as_it_is.values == forged(mu).values && Scatter().sample(mu, 0) == mu)
             << "\n";
