@@ -141,10 +141,7 @@ namespace retroforge
     }
     ++n_swept_;
     seconds_ += of_first_rank(seconds_since(begin), case_.comm);
-    std::size_t i = 0;
-    while (journal_[i].mu != mu)
-      ++i;
-    journal_.add_gradients(i, evaluation.gradients);
+    journal_.add_gradients(journal_.number_of(mu), evaluation.gradients);
     return evaluation;
   }
 } // namespace retroforge

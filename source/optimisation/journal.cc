@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -50,7 +51,12 @@ namespace retroforge
       return Json{{"retroforge", header.program}, {"parameters", header.parameters}}.dump();
     }
 
-    std::string line_of(const Evaluation &evaluation)
+    std::string line_of(const unsigned int mesh, const std::string &made_at)
+    {
+      return Json{{"new mesh", mesh}, {"made at", made_at}}.dump();
+    }
+
+    std::string line_of(const Evaluation &evaluation, const unsigned int mesh)
     {
       Json json = {
         {"mu", exact(evaluation.mu)}, {"increments", evaluation.increments}, {"seconds", evaluation.seconds}};
@@ -58,6 +64,8 @@ namespace retroforge
         json["failure"] = legible(evaluation.failure);
       else
         json["values"] = exact(evaluation.values);
+      if (mesh > 0)
+        json["mesh"] = mesh;
       return json.dump();
     }
 
@@ -107,8 +115,14 @@ namespace retroforge
           journal.header_ = {json.at("retroforge"), json.at("parameters")};
         else if (json.contains("gradients"))
           read_gradients(json, journal.evaluations_);
+        else if (json.contains("new mesh"))
+          journal.meshes_.push_back(json.at("made at"));
         else
+        {
           journal.evaluations_.push_back(evaluation_of(json));
+          journal.mesh_of_.push_back(json.contains("mesh") ? json.at("mesh").get<unsigned int>() : 0);
+          journal.meshes_.at(journal.mesh_of_.back());
+        }
       }
     }
     catch (const std::exception &problem)
@@ -126,18 +140,37 @@ namespace retroforge
 
   const Evaluation *Journal::find(const std::vector<double> &mu) const
   {
-    for (const Evaluation &evaluation : evaluations_)
-      if (evaluation.mu == mu)
-        return &evaluation;
-    return nullptr;
+    const std::size_t i = number_of(mu);
+    return i < evaluations_.size() ? &evaluations_[i] : nullptr;
+  }
+
+  std::size_t Journal::number_of(const std::vector<double> &mu) const
+  {
+    std::size_t i = 0;
+    while (i < evaluations_.size() && !(mesh_of_[i] == mesh_ && evaluations_[i].mu == mu))
+      ++i;
+    return i;
+  }
+
+  unsigned int Journal::use_mesh(const std::string &made_at)
+  {
+    mesh_ = std::find(meshes_.begin(), meshes_.end(), made_at) - meshes_.begin();
+    if (mesh_ == meshes_.size())
+    {
+      append(line_of(mesh_, made_at));
+      meshes_.push_back(made_at);
+    }
+    return mesh_;
   }
 
   void Journal::write_to(const std::string &file)
   {
     std::string text = line_of(header_) + "\n";
+    for (unsigned int m = 1; m < meshes_.size(); ++m)
+      text += line_of(m, meshes_[m]) + "\n";
     for (std::size_t i = 0; i < evaluations_.size(); ++i)
     {
-      text += line_of(evaluations_[i]) + "\n";
+      text += line_of(evaluations_[i], mesh_of_[i]) + "\n";
       if (!evaluations_[i].gradients.empty())
         text += line_of(i, evaluations_[i].gradients) + "\n";
     }
@@ -147,8 +180,9 @@ namespace retroforge
 
   std::size_t Journal::add(Evaluation evaluation)
   {
-    append(line_of(evaluation));
+    append(line_of(evaluation, mesh_));
     evaluations_.push_back(std::move(evaluation));
+    mesh_of_.push_back(mesh_);
     return evaluations_.size() - 1;
   }
 

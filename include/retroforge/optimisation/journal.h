@@ -25,6 +25,9 @@ namespace retroforge
   /// gradients, with numbers as they are, bit for bit. An optimiser that begins again with the same case asks
   /// for the same designs in the same order, and gets them from here, until it comes to those that are still
   /// to be forged.
+  ///
+  /// Designs are forged on one mesh of the billet or another: each mesh has a line, and each forging on
+  /// another than the first one names it. What is asked for and added is of the mesh in use.
   class Journal
   {
   public:
@@ -41,10 +44,18 @@ namespace retroforge
     /// An empty one.
     explicit Journal(Header header) : header_(std::move(header)) {}
 
-    const Header     &header() const { return header_; }
+    const Header &header() const { return header_; }
+    /// Of a design on the mesh in use; size() where it is not here.
+    std::size_t       number_of(const std::vector<double> &mu) const;
     std::size_t       size() const { return evaluations_.size(); }
     const Evaluation *find(const std::vector<double> &mu) const;
     const Evaluation &operator[](const std::size_t i) const { return evaluations_[i]; }
+
+    /// @param made_at  what tells the mesh from others: the designs it was made at, one after the other;
+    /// empty
+    ///                 for the first mesh
+    /// @return its number, 0 for the first one   @throws Error  if a new one cannot be written
+    unsigned int use_mesh(const std::string &made_at);
 
     /// From here on what is added is written to `file`, too, which is made anew with what is here.
     /// @throws Error  if it cannot be written
@@ -57,8 +68,11 @@ namespace retroforge
   private:
     void append(const std::string &line) const;
 
-    Header                  header_;
-    std::vector<Evaluation> evaluations_;
-    std::string             file_; ///< empty: not written
+    Header                    header_;
+    std::vector<Evaluation>   evaluations_;
+    std::vector<std::string>  meshes_ = {""};
+    std::vector<unsigned int> mesh_of_;  ///< each of the evaluations
+    unsigned int              mesh_ = 0; ///< in use
+    std::string               file_;     ///< empty: not written
   };
 } // namespace retroforge
