@@ -3,6 +3,8 @@
 #include <retroforge/case.h>
 #include <retroforge/run_messages.h>
 
+#include <algorithm>
+
 namespace retroforge
 {
   namespace
@@ -26,11 +28,8 @@ namespace retroforge
       return dies;
     }
 
-    TetMesh make_first_mesh(const Parameters &parameters, Timings &timings, MPI_Comm comm)
+    TetMesh make_mesh(const Parameters &parameters, Timings &timings, MPI_Comm comm)
     {
-      // The first rank of all that the program has: groups of them may each make the mesh.
-      if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-        print_meshing(parameters);
       const TetMesh mesh = make_billet(parameters.billet, comm);
       if (!parameters.remeshing.first_mesh)
         return mesh;
@@ -41,6 +40,39 @@ namespace retroforge
       return Remesher(parameters.remeshing, parameters.edge_length(mesh), dies, mesh.patches, comm)
         .remesh(mesh, mesh.X, states, {}, 0., timings)
         ->mesh;
+    }
+
+    TetMesh make_nominal_mesh(const Parameters &parameters, Timings &timings, MPI_Comm comm)
+    {
+      // The first rank of all that the program has: groups of them may each make the mesh.
+      if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+        print_meshing(parameters);
+      return make_mesh(parameters, timings, comm);
+    }
+
+    /// Meshed anew at each of the designs in Design/meshed at, if any.
+    FirstMesh
+    make_first_mesh(const Parameters &parameters, const TetMesh &nominal, Timings &timings, MPI_Comm comm)
+    {
+      const BilletParameters &billet = parameters.billet;
+      FirstMesh               first  = first_mesh(billet, nominal);
+      const auto              make   = [&](const BilletParameters &measured) {
+        Parameters there = parameters;
+        there.billet     = measured;
+        // Those that follow the billet are elsewhere then.
+        there.dies.erase(std::remove_if(there.dies.begin(),
+                                        there.dies.end(),
+                                        [](const DieParameters &die) { return die.follows_billet; }),
+                         there.dies.end());
+        return make_mesh(there, timings, comm);
+      };
+      for (const ShapeValues &given : parameters.design.meshed_at)
+      {
+        const std::vector<double> values = shape_values(billet, first, given);
+        first                            = has_measures(billet) ? meshed_anew(first, values, make)
+                                                                : remeshed(first, values, parameters.remeshing, timings, comm);
+      }
+      return first;
     }
 
     /// "check" solves all systems as well as they can be, or differences would measure the solvers.
@@ -97,13 +129,15 @@ namespace retroforge
       , comm(communicator)
       , parameters(read(command, echo))
       , resumption(resumption_of(command, echo, parameters))
-      , billet(make_first_mesh(first_parameters(parameters, resumption), timings, comm))
+      , nominal_billet(make_nominal_mesh(first_parameters(parameters, resumption), timings, comm))
+      , first(make_first_mesh(first_parameters(parameters, resumption), nominal_billet, timings, comm))
+      , billet(first.mesh)
       , nominal(parameters.settle(size()).process(size()))
       , design(parameters.design.all_names(),
                parameters.billet,
                parameters.dies,
                nominal,
-               billet,
+               first,
                parameters.press.stroke)
       , mu(design.at(parameters.design.at))
       , process(design.process(mu))

@@ -53,7 +53,7 @@ namespace retroforge
   }
 
   Operations::Operations(const Case &main, const std::vector<CommandLine> &others, Timings &timings)
-      : main_(main), names_{""}, places_{places_in(main.design, main.design)}
+      : main_(&main), names_{""}, places_{places_in(main.design, main.design)}
   {
     for (const CommandLine &command : others)
       add(command, timings);
@@ -69,7 +69,7 @@ namespace retroforge
   void Operations::add(const CommandLine &command, Timings &timings)
   {
     const std::string name = stem_of(command.case_file);
-    if (name == stem_of(main_.command.case_file) ||
+    if (name == stem_of(main_->command.case_file) ||
         std::find(names_.begin(), names_.end(), name) != names_.end())
       throw Error(entry,
                   "names '" + command.case_file + "', and another file is called " + name + ", too",
@@ -80,10 +80,10 @@ namespace retroforge
                   "names '" + command.case_file + "', with ':' or ',' in it",
                   "the name stands in lists of objectives",
                   "rename the file");
-    others_.push_back(std::make_unique<const Case>(command, timings, main_.comm));
+    others_.push_back(std::make_unique<const Case>(command, timings, main_->comm));
     names_.push_back(name);
-    places_.push_back(places_in(main_.design, others_.back()->design));
-    const std::vector<std::string> varied = main_.design.expanded(main_.parameters.design.names);
+    places_.push_back(places_in(main_->design, others_.back()->design));
+    const std::vector<std::string> varied = main_->design.expanded(main_->parameters.design.names);
     const std::vector<std::string> shared = common(size() - 1);
     if (std::find_first_of(varied.begin(), varied.end(), shared.begin(), shared.end()) == varied.end())
       throw Error(entry,
@@ -97,7 +97,7 @@ namespace retroforge
     std::vector<std::string> names;
     for (const std::optional<std::size_t> &place : places_[o])
       if (place)
-        names.push_back(main_.design.parameters()[*place].name);
+        names.push_back(main_->design.parameters()[*place].name);
     return names;
   }
 
@@ -125,7 +125,7 @@ namespace retroforge
 
   std::vector<double> Operations::pull_back(const std::size_t o, const std::vector<double> &by_own) const
   {
-    std::vector<double> by_mu(main_.mu.size(), 0.);
+    std::vector<double> by_mu(main_->mu.size(), 0.);
     for (std::size_t k = 0; k < by_own.size(); ++k)
       if (places_[o][k])
         by_mu[*places_[o][k]] += by_own[k];

@@ -132,7 +132,8 @@ namespace retroforge
       , criteria_(objectives_, case_.parameters.optimisation)
       , scatter_(case_.design.parameters(), case_.parameters.optimisation, from_below(criteria_))
       , journal_(make_journal())
-      , trials_(operations_, journal_, scatter_, groups_)
+      , meshes_(case_, case_.parameters.optimisation.mesh_quality)
+      , trials_(std::make_unique<Trials>(operations_, journal_, scatter_, groups_))
       , search_(space_, criteria_, case_.parameters.optimisation, search_task())
       , results_{space_, criteria_, names_of(objectives_), units_of(objectives_)}
   {
@@ -150,16 +151,16 @@ namespace retroforge
   SearchTask Optimize::search_task()
   {
     SearchTask task;
-    task.evaluate      = [&](const std::vector<double> &mu) { return trials_.evaluate(mu); };
-    task.differentiate = [&](const std::vector<double> &mu) { return trials_.differentiate(mu); };
-    task.n_evaluated   = [&] { return trials_.n_asked(); };
+    task.evaluate      = [&](const std::vector<double> &mu) { return trials_->evaluate(mu); };
+    task.differentiate = [&](const std::vector<double> &mu) { return trials_->differentiate(mu); };
+    task.n_evaluated   = [&] { return n_asked(); };
+    task.mesh_is_bad   = [&](const Evaluation &now) { return mesh_is_bad(now); };
+    task.renew_mesh    = [&](const Evaluation &now) { return renew_mesh(now); };
     task.decided       = [&](const Evaluation &evaluation, const bool accepted) {
+      meshes_.tell(evaluation.mu, accepted, evaluation.failed());
       if (accepted)
         write_shapes(evaluation, "trial_" + std::to_string(results_.rows.size()));
-      add_row({accepted ? Decision::accepted : Decision::refused,
-               evaluation,
-               search_.merit_of(evaluation),
-               search_.radius()});
+      add_row(accepted ? Decision::accepted : Decision::refused, evaluation, search_.radius());
     };
     task.renewed = [&](const double excess) {
       if (!root_)
@@ -170,6 +171,55 @@ namespace retroforge
       std::printf("\n");
     };
     return task;
+  }
+
+  bool Optimize::mesh_is_bad(const Evaluation &now)
+  {
+    const bool is_due = meshes_.due(now.mu);
+    if (root_ && !is_due && !meshes_.complaint().empty())
+      std::printf("  mesh not made anew: %s\n", meshes_.complaint().c_str());
+    return is_due;
+  }
+
+  void Optimize::forge_on(const Case &at, const std::string &made_at)
+  {
+    n_asked_before_ += trials_->n_asked();
+    trials_.reset(); // its forging, of the other mesh, need not stay in memory
+    journal_.use_mesh(made_at);
+    operations_.use_main(at);
+    trials_ = std::make_unique<Trials>(operations_, journal_, scatter_, groups_);
+  }
+
+  std::optional<Evaluation> Optimize::renew_mesh(const Evaluation &now)
+  {
+    NewMesh mesh;
+    mesh.made_at        = meshes_.candidate().made_at;
+    mesh.quality_before = meshes_.quality(now.mu);
+    mesh.volume_before  = meshes_.volume_at(now.mu);
+    mesh.before         = now.values;
+    forge_on(*meshes_.candidate().made, mesh.made_at);
+    Evaluation again = trials_->evaluate(now.mu);
+    if (again.failed())
+    {
+      if (root_)
+        std::printf("  mesh not made anew: on it the same design fails: %s\n", again.failure.c_str());
+      forge_on(meshes_.now(), meshes_.made_at());
+      meshes_.refuse_candidate(now.mu);
+      return {};
+    }
+    meshes_.use_candidate();
+    again              = trials_->differentiate(now.mu);
+    mesh.quality_after = meshes_.quality(now.mu);
+    mesh.volume_after  = meshes_.volume_at(now.mu);
+    mesh.after         = again.values;
+    mesh.n_nodes       = meshes_.now().billet.n_nodes();
+    mesh.row           = results_.rows.size();
+    results_.meshes.push_back(mesh);
+    if (root_)
+      results_.print(results_.meshes.back(), std::cout);
+    write_shapes(again, "trial_" + std::to_string(mesh.row));
+    add_row(Decision::renewed, again, search_.radius());
+    return again;
   }
 
   Journal Optimize::make_journal() const
@@ -289,17 +339,17 @@ namespace retroforge
 
   void Optimize::begin()
   {
-    const Evaluation start = trials_.evaluate(case_.mu);
+    const Evaluation start = trials_->evaluate(case_.mu);
     if (start.failed())
       throw Error("optimize",
                   "cannot forge the design it begins with, in increment " +
                     std::to_string(start.increments + 1) + ": " + start.failure,
                   "the first design must succeed",
                   "begin elsewhere with --at, or cure what the message says");
-    results_.start = results_.best = trials_.differentiate(case_.mu);
+    results_.start = results_.best = trials_->differentiate(case_.mu);
     criteria_.set_sizes(results_.start.values);
     search_.begin(results_.start);
-    add_row({Decision::start, results_.start, search_.merit_of(results_.start), search_.radius()});
+    add_row(Decision::start, results_.start, search_.radius());
     write_shapes(results_.start, "start");
   }
 
@@ -334,8 +384,8 @@ namespace retroforge
       for (double &entry : x)
         entry = part * (2. * (generator() / 4294967295.) - 1.);
       const std::vector<double> mu         = space_.values(space_.projected(x));
-      const Evaluation          evaluation = trials_.evaluate(mu);
-      add_row({Decision::noise, evaluation, search_.merit_of(evaluation), part});
+      const Evaluation          evaluation = trials_->evaluate(mu);
+      add_row(Decision::noise, evaluation, part);
       if (evaluation.failed())
         continue;
       const Evaluation         &start     = results_.start;
@@ -364,16 +414,17 @@ namespace retroforge
                    excess_b = std::max(tolerance, criteria_.largest_excess(b.values));
       return excess_a < excess_b || (excess_a == excess_b && results_.value(a) < results_.value(b));
     };
-    Evaluation best = results_.start;
+    std::optional<Evaluation> best;
     for (const TrialRow &row : results_.rows)
-      if (row.decision == Decision::accepted && is_better(row.evaluation, best))
+      if (row.mesh == meshes_.number() && row.becomes_the_next() &&
+          (!best || is_better(row.evaluation, *best)))
         best = row.evaluation;
-    return best;
+    return *best;
   }
 
   void Optimize::report_best()
   {
-    results_.best = trials_.differentiate(results_.best.mu);
+    results_.best = trials_->differentiate(results_.best.mu);
     // Multipliers are those of the design accepted last, which the rounds ended with.
     results_.multipliers = search_.multipliers();
     if (!criteria_.data.empty())
@@ -381,7 +432,7 @@ namespace retroforge
     results_.by_moving_relation =
       slopes_of_relations(space_, results_.best.mu, lagrangian_slopes(results_.best));
     write_shapes(results_.best, "best");
-    results_.n_simulations = trials_.n_asked();
+    results_.n_simulations = n_asked();
     results_.n_sweeps      = 0;
     for (std::size_t i = 0; i < journal_.size(); ++i)
       results_.n_sweeps += journal_[i].gradients.empty() ? 0 : 1;
@@ -402,12 +453,16 @@ namespace retroforge
       std::printf("  confirming with elements and increments %.3g times as large ...\n", part);
     std::fflush(stdout);
     Timings                     timings;
-    std::unique_ptr<Case>       fine;
+    std::unique_ptr<const Case> fine, there;
     std::unique_ptr<Operations> operations;
     std::optional<Journal>      journal;
     try
     {
-      fine = std::make_unique<Case>(finer(case_, part), timings, case_.comm);
+      const CommandLine command = finer(case_, part);
+      fine                      = make_case(command, "", case_.comm);
+      // The best design on a mesh made where that of the search was.
+      if (meshes_.number() > 0)
+        there = make_case(command, meshes_.made_at(), case_.comm);
       std::vector<CommandLine> others;
       for (std::size_t o = 1; o < operations_.size(); ++o)
         others.push_back(finer(operations_.at(o), part));
@@ -424,11 +479,19 @@ namespace retroforge
     MPI_Barrier(groups_.all());
     if (root_)
       journal->write_to(path_of("confirmation.jsonl"));
-    Trials trials(*operations, *journal, scatter_, groups_);
-    results_.confirmation = Confirmation{trials.evaluate(results_.start.mu),
-                                         trials.evaluate(results_.best.mu),
-                                         fine->billet.n_nodes(),
-                                         fine->parameters.press.increments};
+    const auto evaluate = [&](const std::vector<double> &mu) {
+      return Trials(*operations, *journal, scatter_, groups_).evaluate(mu);
+    };
+    const Evaluation start = evaluate(results_.start.mu);
+    if (there)
+    {
+      operations->use_main(*there);
+      journal->use_mesh(meshes_.made_at());
+    }
+    results_.confirmation = Confirmation{start,
+                                         evaluate(results_.best.mu),
+                                         operations->at(0).billet.n_nodes(),
+                                         operations->at(0).parameters.press.increments};
   }
 
   std::string Optimize::no_finer_mesh() const
@@ -457,13 +520,13 @@ namespace retroforge
     return begun;
   }
 
-  void Optimize::add_row(TrialRow row)
+  void Optimize::add_row(const Decision decision, const Evaluation &evaluation, const double radius)
   {
-    results_.n_failed += row.evaluation.failed() ? 1 : 0;
-    results_.rows.push_back(std::move(row));
+    results_.n_failed += evaluation.failed() ? 1 : 0;
+    results_.rows.push_back({decision, evaluation, search_.merit_of(evaluation), radius, meshes_.number()});
     if (results_.stop == Stop::running)
       results_.best = best_so_far();
-    results_.n_simulations = trials_.n_asked();
+    results_.n_simulations = n_asked();
     if (!root_)
       return;
     print_row(results_.rows.back());
@@ -491,7 +554,7 @@ namespace retroforge
     const unsigned int most = case_.parameters.optimisation.simulations;
     std::printf("  %.1f s, at most %.0f s left\n",
                 evaluation.seconds,
-                trials_.seconds_each() * (most > trials_.n_asked() ? most - trials_.n_asked() : 0));
+                trials_->seconds_each() * (most > n_asked() ? most - n_asked() : 0));
     std::fflush(stdout);
   }
 
@@ -522,12 +585,12 @@ namespace retroforge
     const bool        writes = dealii::Utilities::MPI::this_mpi_process(case_.comm) == 0;
     const bool        there  = dealii::Utilities::MPI::broadcast(
       case_.comm, writes && name != "best" && std::filesystem::exists(base + "_forged.stl"), 0);
-    const Trial *forged = there ? nullptr : trials_.forged(mu, operation);
+    const Trial *forged = there ? nullptr : trials_->forged(mu, operation);
     if (forged == nullptr || !writes)
       return;
     const Trial &trial = *forged;
     if (case_.parameters.optimisation.keep_records)
-      trial.write_record(base, parameters_at(at, trials_.middle_sample(mu, operation)));
+      trial.write_record(base, parameters_at(at, trials_->middle_sample(mu, operation)));
     write_msh(base + "_billet.msh", at.billet, trial.X_0());
     write_boundary_stl(base + "_billet.stl", at.billet, trial.X_0());
     write_boundary_stl(base + "_forged.stl", trial.end().leg->scene.mesh, trial.end().X);

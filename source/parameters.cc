@@ -141,6 +141,29 @@ namespace retroforge
     prm.leave_subsection();
   }
 
+  namespace
+  {
+    /// `NAME: VALUE, NAME: VALUE; NAME: VALUE'.
+    std::vector<std::multimap<std::string, double>> designs_in(const std::string &text)
+    {
+      using Values = std::multimap<std::string, double>;
+      std::vector<Values> designs;
+      try
+      {
+        for (const std::string &design : dealii::Utilities::split_string_list(text, ';'))
+          designs.push_back(Tools::Convert<Values>::to_value(design));
+      }
+      catch (const dealii::ExceptionBase &)
+      {
+        throw Error("Design/meshed at",
+                    "is '" + legible(text) + "'",
+                    "it holds `NAME: VALUE, NAME: VALUE', and semicolons between designs",
+                    "correct it, or leave it empty for a mesh at the nominal values");
+      }
+      return designs;
+    }
+  } // namespace
+
   void DesignParameters::add_parameters(dealii::ParameterHandler &prm)
   {
     prm.enter_subsection("Design");
@@ -162,6 +185,16 @@ namespace retroforge
       "penalty and sizes that follow from the nominal design. Their gradients come along. Units: those of "
       "the "
       "parameters.");
+    prm.declare_entry(
+      "meshed at",
+      "",
+      Anything(),
+      "Parameters of the billet's shape and values at which the billet is meshed instead of at the nominal "
+      "ones, `NAME: VALUE, NAME: VALUE': for designs that the nominal mesh cannot follow. A billet with "
+      "measures is meshed with these; one from a file or with a free form is remeshed there, with edges as "
+      "long as they were, and by designs in between where several stand one after the other, separated by "
+      "semicolons. Values of design parameters mean what they meant. Units: those of the parameters.");
+    prm.add_action("meshed at", [this](const std::string &text) { meshed_at = designs_in(text); });
     prm.leave_subsection();
   }
 

@@ -36,7 +36,8 @@ namespace retroforge
 
     Kind kind_of(const std::string &path)
     {
-      if (path == "Design/at" || path == "Press/leading die" || path == "Remeshing/first mesh")
+      if (path == "Design/at" || path == "Design/meshed at" || path == "Press/leading die" ||
+          path == "Remeshing/first mesh")
         return Kind::scene;
       if (begins_with(path,
                       {"Adjoint/", "Check/", "Design/", "Objective", "Optimisation/", "Output/", "Scan/"}))

@@ -9,12 +9,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from retroforge_report.curves import BLUE, INK, ORANGE
+from retroforge_report.curves import BLUE, GREEN, INK, ORANGE
 from retroforge_report.document import Document, number
 from retroforge_report.units import bracketed, pretty
 
 SCHEMA = 1
-COLORS = {"start": INK, "noise": "#999999", "accepted": BLUE, "refused": ORANGE, "failed": "#b00020"}
+COLORS = {"start": INK, "noise": "#999999", "accepted": BLUE, "refused": ORANGE, "failed": "#b00020", "new mesh": GREEN}
 FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])
 
 
@@ -49,7 +49,15 @@ class OptimisationPage:
             rows.append((f"confirmed: {confirmed['nodes']} nodes, {confirmed['increments']} increments", *self.pair(confirmed), ""))
         self.to.table(("", f"#start {pretty(objective['unit'])}", "#best", "#change", "#noise"), rows)
         self.to.note(f"Ended because {self.found['stop']}. {self.found['simulations']} forgings, {self.found['sweeps']} swept back, "
-                     f"{self.found['failed']} failed." + ("" if self.found["finished"] else " The search is not finished."))
+                     f"{self.found['failed']} failed." + self.meshes() + ("" if self.found["finished"] else " The search is not finished."))
+
+    def meshes(self):
+        made = self.found.get("new_meshes")
+        if not made:
+            return ""
+        change = sum(mesh["objective"] - mesh["objective_before"] for mesh in made)
+        return (f" The billet's mesh was made anew, {len(made)} time(s), so start and best were forged on meshes of their own; at the "
+                f"changes from one to the next the objective changed by {number(change)} in all.")
 
     @staticmethod
     def pair(values):
@@ -104,7 +112,7 @@ class OptimisationPage:
         left.set_xlabel("design")
         left.set_ylabel("merit: gain in scaled units" if column == "merit" else bracketed(objective["name"], objective["unit"]))
         left.legend(fontsize=9)
-        taken = [(i, row) for i, row in enumerate(tried) if row["decision"] in ("start", "accepted")]
+        taken = [(i, row) for i, row in enumerate(tried) if row["decision"] in ("start", "accepted", "new mesh")]
         for name, scale in zip(names[:12], scales):
             start = float(tried[0][name])
             right.plot([i for i, _ in taken], [(float(row[name]) - start) / scale for _, row in taken], "-o", markersize=3,

@@ -4,6 +4,7 @@
 
 #include <retroforge/core/command_line.h>
 #include <retroforge/core/timer.h>
+#include <retroforge/design/mesh_anew.h>
 #include <retroforge/parameters.h>
 #include <retroforge/resume.h>
 
@@ -32,9 +33,11 @@ namespace retroforge
     std::string                     echo; ///< the parameters as understood
     Parameters                      parameters;
     const std::optional<Resumption> resumption; ///< of a run that goes on
-    const TetMesh                   billet;
-    const Process<double>           nominal;
-    const Design                    design;
+    const TetMesh         nominal_billet; ///< meshed at the nominal design: what is left open follows from it
+    const FirstMesh       first;          ///< meshed there or at Design/meshed at
+    const TetMesh        &billet;         ///< that mesh
+    const Process<double> nominal;
+    const Design          design;
 
     const std::vector<double>  mu; ///< values of the design parameters
     const Process<double>      process;
@@ -45,15 +48,15 @@ namespace retroforge
     const std::vector<Combination> combinations; ///< of the objectives, each of which is differentiated
     std::vector<Stretch>           stretches;    ///< one more where a run that goes on changes its numerics
 
-    BilletSize size() const { return parameters.size_of(billet); }
+    BilletSize size() const { return parameters.size_of(nominal_billet); }
 
     /// Wanted length of the edges [mm].
-    double edge_length() const { return parameters.edge_length(billet); }
+    double edge_length() const { return parameters.edge_length(nominal_billet); }
 
     /// What is asked of remeshing, for dies of that shape, which must live as long.
     Remesher remesher(const Parameters &numerics, const std::vector<Die> &dies) const
     {
-      return {numerics.remeshing, numerics.edge_length(billet), dies, billet.patches, comm};
+      return {numerics.remeshing, numerics.edge_length(nominal_billet), dies, billet.patches, comm};
     }
 
     /// The combinations of objectives that are differentiated, at given values of the objectives.

@@ -24,7 +24,9 @@ namespace retroforge
 
     std::size_t size() const { return others_.size() + 1; }
     /// The first is the main case.
-    const Case &at(const std::size_t o) const { return o == 0 ? main_ : *others_[o - 1]; }
+    const Case &at(const std::size_t o) const { return o == 0 ? *main_ : *others_[o - 1]; }
+    /// The main case from here on, which must live as long: the same but for its first mesh.
+    void use_main(const Case &main) { main_ = &main; }
     /// Of its file; of the main case empty.
     const std::string &name(const std::size_t o) const { return names_[o]; }
     /// Of a file: `best`, `best_NAME`.
@@ -50,7 +52,7 @@ namespace retroforge
     /// Derivative by the design from that by the parameters of an operation.
     std::vector<double> pull_back(std::size_t o, const std::vector<double> &by_own) const;
 
-    const Case                              &main_;
+    const Case                              *main_;
     std::vector<std::unique_ptr<const Case>> others_;
     std::vector<std::string>                 names_;
     /// Of each operation: of each of its parameters the number in the design, if it is there.

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/meshes.h>
 #include <retroforge/optimisation/optimisation_results.h>
 #include <retroforge/optimisation/search.h>
 #include <retroforge/trials.h>
@@ -33,18 +34,27 @@ namespace retroforge
     /// What the search forges, and what becomes of its decisions.
     SearchTask search_task();
 
+    /// Whether the search is to go on with a new mesh; says why it does not where one was asked for.
+    bool mesh_is_bad(const Evaluation &now);
+    /// Forges the design again on the new mesh, and stays with the old one where that fails.
+    std::optional<Evaluation> renew_mesh(const Evaluation &now);
+    void                      forge_on(const Case &at, const std::string &made_at);
+    /// Forgings that were asked for, on all meshes.
+    unsigned int n_asked() const { return n_asked_before_ + trials_->n_asked(); }
+
     void begin();
     /// The gradient at the start by differences, for a user who asks.
     void check();
     void measure_noise();
-    /// Accepted, within the limits, and the least of those; the least beyond its limits where none is.
+    /// Accepted, within the limits, and the least of those; the least beyond its limits where none is. Of
+    /// those forged on the present mesh: values of another one differ by the scatter of meshes.
     Evaluation best_so_far() const;
     /// Derivative by the parameters of the objective and of the limits by their multipliers.
     std::vector<double> lagrangian_slopes(const Evaluation &at) const;
     void                report_best();
     void                confirm();
 
-    void add_row(TrialRow row);
+    void add_row(TrialRow::Decision decision, const Evaluation &evaluation, double radius);
     void print_search() const;
     void print_row(const TrialRow &row) const;
     /// Billet and forged shape of a design, for the eye and for other programs.
@@ -57,18 +67,20 @@ namespace retroforge
     std::string parameters_at(const Case &at, const std::vector<double> &mu) const;
     std::string path_of(const std::string &file) const { return case_.command.output_directory + "/" + file; }
 
-    const bool       resume_;
-    const RankGroups groups_;
-    Timings          timings_;
-    Case             case_; ///< on the ranks of this rank's group
-    const Operations operations_;
-    const Objectives objectives_; ///< of all operations
-    const bool       root_;       ///< this rank prints and writes
-    DesignSpace      space_;
-    Criteria         criteria_;
-    Scatter          scatter_;
-    Journal          journal_;
-    Trials           trials_;
+    const bool              resume_;
+    const RankGroups        groups_;
+    Timings                 timings_;
+    Case                    case_;       ///< on the ranks of this rank's group
+    Operations              operations_; ///< the main one on the present mesh
+    const Objectives        objectives_; ///< of all operations
+    const bool              root_;       ///< this rank prints and writes
+    DesignSpace             space_;
+    Criteria                criteria_;
+    Scatter                 scatter_;
+    Journal                 journal_;
+    Meshes                  meshes_;
+    std::unique_ptr<Trials> trials_; ///< on the present mesh
+    unsigned int            n_asked_before_ = 0;
 
     Search              search_;
     OptimisationResults results_;

@@ -57,6 +57,8 @@ namespace retroforge
   {
     std::vector<std::string>           names = {"material/K"};
     std::multimap<std::string, double> at;
+    /// Of the billet, where it is meshed anew, one after the other.
+    std::vector<std::multimap<std::string, double>> meshed_at;
 
     void add_parameters(dealii::ParameterHandler &prm);
 

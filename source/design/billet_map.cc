@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/physics/transformations.h>
-
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/design/billet_map.h>
-#include <retroforge/design/free_form.h>
 #include <retroforge/element/mini_element.h>
 #include <retroforge/mesh/mesh_quality.h>
 
@@ -15,33 +12,6 @@ namespace retroforge
 {
   namespace
   {
-    dealii::Tensor<2, 3> rotation_of(const BilletParameters &billet)
-    {
-      if (billet.rotation_angle == 0.)
-        return dealii::unit_symmetric_tensor<3>();
-      return dealii::Physics::Transformations::Rotations::rotation_matrix_3d(
-        dealii::Point<3>(billet.rotation_axis / billet.rotation_axis.norm()),
-        billet.rotation_angle * dealii::numbers::PI / 180.);
-    }
-
-    NodalVectors<double> in_own_axes(const BilletParameters &billet, const NodalVectors<double> &X)
-    {
-      const auto           back = transpose(rotation_of(billet));
-      NodalVectors<double> own;
-      for (const Vec3 &x : X)
-        own.push_back(back * (x - billet.translation) - billet.base_centre);
-      return own;
-    }
-
-    BilletShapes shapes_of(const BilletParameters &billet, const NodalVectors<double> &own)
-    {
-      return billet.shape == "box"        ? box_shapes(billet, own)
-             : billet.shape == "cylinder" ? cylinder_shapes(billet, own)
-             : billet.shape == "ring"     ? ring_shapes(billet, own)
-             : billet.shape == "profile"  ? profile_shapes(billet, own)
-                                          : BilletShapes();
-    }
-
     // Every node of a symmetry plane stays on it.
     bool keeps_symmetry(const ShapeParameter &parameter, const TetMesh &mesh)
     {
@@ -134,23 +104,22 @@ namespace retroforge
   } // namespace
 
   BilletMap::BilletMap(const BilletParameters &billet, const TetMesh &mesh)
-      : X_(mesh.X)
-      , cells_(mesh.cells)
-      , volume_(volume_along(mesh.cells, mesh.X, NodalVectors<double>(mesh.n_nodes())).val())
-      , shapes_(shapes_of(billet, in_own_axes(billet, mesh.X)))
+      : BilletMap(billet, first_mesh(billet, mesh))
   {
-    n_of_kind_                        = shapes_.parameters.size();
-    const auto               rotation = rotation_of(billet);
+  }
+
+  BilletMap::BilletMap(const BilletParameters &billet, const FirstMesh &first)
+      : X_(first.mesh.X)
+      , cells_(first.mesh.cells)
+      , volume_(volume_along(cells_, X_, NodalVectors<double>(X_.size())).val())
+      , shapes_(first.shapes)
+      , at_(first.at)
+  {
     std::vector<std::string> names;
-    for (ShapeParameter &parameter : shapes_.parameters)
-      for (Vec3 &d : parameter.direction)
-        d = rotation * d;
-    for (ShapeParameter &parameter : free_form_shapes(billet.free_form, mesh))
-      shapes_.parameters.push_back(std::move(parameter));
     for (unsigned int j = 0; j < shapes_.parameters.size(); ++j)
     {
       const ShapeParameter &parameter = shapes_.parameters[j];
-      if (!keeps_symmetry(parameter, mesh))
+      if (!keeps_symmetry(parameter, first.mesh))
         continue;
       names.push_back(parameter.name);
       if (parameter.name == billet.volume_held_by)
@@ -177,7 +146,7 @@ namespace retroforge
       for (unsigned int i = 0; i < 3; ++i)
         X[k][i] = X_[k][i];
     for (unsigned int j = 0; j < mu.size(); ++j)
-      add<Number>(X, mu[j] - free_[j].nominal, free_[j].direction);
+      add<Number>(X, mu[j] - at_[place_[j]], free_[j].direction);
     return X;
   }
 
@@ -214,7 +183,7 @@ namespace retroforge
     const ShapeParameter &held = shapes_.parameters[*held_];
     NodalVectors<double>  X    = moved(values_of(mu));
     const double          d    = held_by_newton(X);
-    Number                result(held.nominal + d);
+    Number                result(at_[*held_] + d);
     if constexpr (std::is_same_v<Number, Dual>)
     {
       add(X, d, held.direction);
@@ -238,7 +207,6 @@ namespace retroforge
       all[place_[j]] = mu[j];
     if (held_)
       all[*held_] = held;
-    all.resize(n_of_kind_);
     if (const std::string complaint = shapes_.complaint(all); !complaint.empty())
       throw Error("Design/billet",
                   complaint +
@@ -258,7 +226,7 @@ namespace retroforge
   }
 
   template <typename Number>
-  NodalVectors<Number> BilletMap::positions(const std::vector<Number> &mu) const
+  NodalVectors<Number> BilletMap::positions(const std::vector<Number> &mu, const bool checked) const
   {
     NodalVectors<Number> X    = moved(mu);
     double               held = 0.;
@@ -267,11 +235,45 @@ namespace retroforge
       const ShapeParameter &parameter = shapes_.parameters[*held_];
       const Number          value     = held_value(mu);
       held                            = value_of(value);
-      add<Number>(X, value - parameter.nominal, parameter.direction);
+      add<Number>(X, value - at_[*held_], parameter.direction);
     }
-    check(values_of(mu), held);
-    check_cells(values_of(X));
+    if (checked)
+    {
+      check(values_of(mu), held);
+      check_cells(values_of(X));
+    }
     return X;
+  }
+
+  template <typename Number>
+  NodalVectors<Number> BilletMap::positions(const std::vector<Number> &mu) const
+  {
+    return positions(mu, true);
+  }
+
+  double BilletMap::mesh_quality(const std::vector<double> &mu) const
+  {
+    return minimum_quality(cells_, positions(mu, false));
+  }
+
+  NodalVectors<double> BilletMap::nominal_positions() const
+  {
+    NodalVectors<double> X = X_;
+    for (unsigned int j = 0; j < at_.size(); ++j)
+      add(X, shapes_.parameters[j].nominal - at_[j], shapes_.parameters[j].direction);
+    return X;
+  }
+
+  std::vector<double> BilletMap::all_values(const std::vector<double> &mu) const
+  {
+    std::vector<double> all;
+    for (const ShapeParameter &parameter : shapes_.parameters)
+      all.push_back(parameter.nominal);
+    for (unsigned int j = 0; j < mu.size(); ++j)
+      all[place_[j]] = mu[j];
+    if (held_)
+      all[*held_] = held_value(mu);
+    return all;
   }
 
   std::vector<double> BilletMap::pull_back(const std::vector<double>  &mu,

@@ -43,9 +43,9 @@ namespace retroforge
       return planes;
     }
 
-    double extent_in_x(const TetMesh &mesh)
+    double extent_in_x(const NodalVectors<double> &X)
     {
-      const auto [low, high] = bounding_box(mesh.X);
+      const auto [low, high] = bounding_box(X);
       return high[0] - low[0];
     }
   } // namespace
@@ -54,19 +54,19 @@ namespace retroforge
                  const BilletParameters           &billet,
                  const std::vector<DieParameters> &dies,
                  const Process<double>            &nominal_process,
-                 const TetMesh                    &nominal_billet,
+                 const FirstMesh                  &first,
                  const double                      stroke)
       : dies_(dies)
       , process_(nominal_process)
-      , nominal_X_(nominal_billet.X)
       , stroke_(stroke)
-      , billet_map_(billet, nominal_billet)
-      , width_(billet.shape == "file" ? extent_in_x(nominal_billet) : billet.whole_width())
+      , billet_map_(billet, first)
+      , nominal_X_(billet_map_.nominal_positions())
+      , width_(billet.shape == "file" ? extent_in_x(nominal_X_) : billet.whole_width())
   {
     for (const DieParameters &die : dies_)
     {
       followed_.push_back(followed_node(die, nominal_X_));
-      die_forms_.emplace_back(die, symmetry_planes(nominal_billet));
+      die_forms_.emplace_back(die, symmetry_planes(first.mesh));
     }
     const std::vector<DesignParameter> all = offered();
     for (const std::string &name : expanded(names))
@@ -298,6 +298,21 @@ namespace retroforge
   NodalVectors<Number> Design::positions(const std::vector<Number> &mu) const
   {
     return billet_map_.positions(shape_of(mu));
+  }
+
+  double Design::mesh_quality(const std::vector<double> &mu) const
+  {
+    return billet_map_.mesh_quality(shape_of(mu));
+  }
+
+  std::vector<std::pair<std::string, double>> Design::billet_at(const std::vector<double> &mu) const
+  {
+    std::vector<std::pair<std::string, double>> values;
+    const std::vector<double>                   all = billet_map_.all_values(shape_of(mu));
+    for (std::size_t j = 0; j < all.size(); ++j)
+      if (const ShapeParameter &parameter = billet_map_.shape_parameters()[j]; all[j] != parameter.nominal)
+        values.emplace_back("billet/" + parameter.name, all[j]);
+    return values;
   }
 
   template <typename Number>

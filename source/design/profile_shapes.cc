@@ -67,8 +67,14 @@ namespace retroforge
           component == 0 ? s * B[i] * outwards : (s * B[i] + (1. - s) * start) * Vec3({0., 0., 1.}));
       }
     }
-    return {parameters, [profile, coordinates](const std::vector<double> &mu) {
+    return {parameters,
+            [profile, coordinates](const std::vector<double> &mu) {
               return profile.complaint(moved_points(profile, coordinates, mu));
+            },
+            [billet, coordinates](const std::vector<double> &mu) {
+              BilletParameters measured       = billet;
+              measured.profile.control_points = moved_points(billet.profile, coordinates, mu);
+              return measured;
             }};
   }
 } // namespace retroforge

@@ -62,8 +62,14 @@ namespace retroforge
       parameters[2].direction.push_back(rate.z_mu3 * upwards);
       parameters[3].direction.push_back(rate.r_mu4 * outwards);
     }
-    return {parameters, [ring](const std::vector<double> &mu) {
+    return {parameters,
+            [ring](const std::vector<double> &mu) {
               return ring.complaint({{mu[0], mu[1], mu[2], mu[3]}});
+            },
+            [billet](const std::vector<double> &mu) {
+              BilletParameters measured = billet;
+              std::copy_n(mu.begin(), 4, measured.ring.mu.begin());
+              return measured;
             }};
   }
 } // namespace retroforge

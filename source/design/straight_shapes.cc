@@ -35,6 +35,13 @@ namespace retroforge
             [a](const std::vector<double> &mu) {
               const std::string complaint = not_positive("a/2 + stretch", a / 2. + mu[0]);
               return complaint.empty() ? not_positive("height", mu[1]) : complaint;
+            },
+            [billet](const std::vector<double> &mu) {
+              BilletParameters measured = billet;
+              for (unsigned int i = 0; i < 2; ++i)
+                measured.size[i] *= 1. + 2. * mu[0] / billet.size[0];
+              measured.size[2] = mu[1];
+              return measured;
             }};
   }
 
@@ -46,6 +53,12 @@ namespace retroforge
             [](const std::vector<double> &mu) {
               const std::string complaint = not_positive("radius", mu[0]);
               return complaint.empty() ? not_positive("height", mu[1]) : complaint;
+            },
+            [billet](const std::vector<double> &mu) {
+              BilletParameters measured = billet;
+              measured.radius           = mu[0];
+              measured.height           = mu[1];
+              return measured;
             }};
   }
 } // namespace retroforge

@@ -54,7 +54,12 @@ namespace retroforge
       return json.dump();
     }
 
-    std::string line_of(const Evaluation &evaluation)
+    std::string line_of(const unsigned int mesh, const std::string &made_at)
+    {
+      return Json{{"new mesh", mesh}, {"made at", made_at}}.dump();
+    }
+
+    std::string line_of(const Evaluation &evaluation, const unsigned int mesh)
     {
       Json json = {
         {"mu", exact(evaluation.mu)}, {"increments", evaluation.increments}, {"seconds", evaluation.seconds}};
@@ -64,6 +69,8 @@ namespace retroforge
         json["failure"] = legible(evaluation.failure);
       else
         json["values"] = exact(evaluation.values);
+      if (mesh > 0)
+        json["mesh"] = mesh;
       return json.dump();
     }
 
@@ -116,8 +123,14 @@ namespace retroforge
                              json.value("operations", std::map<std::string, std::string>())};
         else if (json.contains("gradients"))
           read_gradients(json, journal.evaluations_);
+        else if (json.contains("new mesh"))
+          journal.meshes_.push_back(json.at("made at"));
         else
+        {
           journal.evaluations_.push_back(evaluation_of(json));
+          journal.mesh_of_.push_back(json.contains("mesh") ? json.at("mesh").get<unsigned int>() : 0);
+          journal.meshes_.at(journal.mesh_of_.back());
+        }
       }
     }
     catch (const std::exception &problem)
@@ -135,12 +148,12 @@ namespace retroforge
 
   std::size_t Journal::place_of(const std::vector<double> &mu, const std::string &operation) const
   {
-    return std::find_if(evaluations_.begin(),
-                        evaluations_.end(),
-                        [&](const Evaluation &evaluation) {
-                          return evaluation.mu == mu && evaluation.operation == operation;
-                        }) -
-           evaluations_.begin();
+    const unsigned int mesh = mesh_in(operation);
+    std::size_t        i    = 0;
+    while (i < size() &&
+           !(mesh_of_[i] == mesh && evaluations_[i].mu == mu && evaluations_[i].operation == operation))
+      ++i;
+    return i;
   }
 
   const Evaluation *Journal::find(const std::vector<double> &mu, const std::string &operation) const
@@ -149,12 +162,25 @@ namespace retroforge
     return i < size() ? &evaluations_[i] : nullptr;
   }
 
+  unsigned int Journal::use_mesh(const std::string &made_at)
+  {
+    mesh_ = std::find(meshes_.begin(), meshes_.end(), made_at) - meshes_.begin();
+    if (mesh_ == meshes_.size())
+    {
+      append(line_of(mesh_, made_at));
+      meshes_.push_back(made_at);
+    }
+    return mesh_;
+  }
+
   void Journal::write_to(const std::string &file)
   {
     std::string text = line_of(header_) + "\n";
+    for (unsigned int m = 1; m < meshes_.size(); ++m)
+      text += line_of(m, meshes_[m]) + "\n";
     for (std::size_t i = 0; i < evaluations_.size(); ++i)
     {
-      text += line_of(evaluations_[i]) + "\n";
+      text += line_of(evaluations_[i], mesh_of_[i]) + "\n";
       if (!evaluations_[i].gradients.empty())
         text += line_of(i, evaluations_[i].gradients) + "\n";
     }
@@ -164,8 +190,10 @@ namespace retroforge
 
   std::size_t Journal::add(Evaluation evaluation)
   {
-    append(line_of(evaluation));
+    const unsigned int mesh = mesh_in(evaluation.operation);
+    append(line_of(evaluation, mesh));
     evaluations_.push_back(std::move(evaluation));
+    mesh_of_.push_back(mesh);
     return evaluations_.size() - 1;
   }
 

@@ -75,6 +75,13 @@ namespace retroforge
                       "Forgings around the start, 0.001 scales away, that measure how rough the objective "
                       "is: steps that promise less than this are not taken. 0 for no noise. Units: none.",
                       Integer(0, 100));
+    prm.add_parameter(
+      "mesh quality",
+      mesh_quality,
+      "The billet is meshed anew at a design that was accepted when its cells there, moved from where they "
+      "were made, have become worse than this: the least sine of an angle between two faces of a cell, 0.94 "
+      "for the regular tetrahedron. 0 leaves the first mesh as it is. Units: none.",
+      Double(0., 0.5));
     prm.add_parameter("confirmation",
                       confirmation,
                       "Start and optimum are forged again with elements and increments this much smaller; 0 "

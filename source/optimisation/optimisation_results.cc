@@ -146,6 +146,8 @@ namespace retroforge
         return failed ? "failed" : "noise";
       case TrialRow::Decision::accepted:
         return "accepted";
+      case TrialRow::Decision::renewed:
+        return "new mesh";
       default:
         return failed ? "failed" : "refused";
     }
@@ -157,6 +159,23 @@ namespace retroforge
     return multiplier == 0. ? 0. : -multiplier / criteria.limits[limit].size;
   }
 
+  double OptimisationResults::by_meshes() const
+  {
+    double sum = 0.;
+    for (const NewMesh &mesh : meshes)
+      sum += criteria.value(mesh.after) - criteria.value(mesh.before);
+    return sum;
+  }
+
+  void OptimisationResults::print(const NewMesh &mesh, std::ostream &out) const
+  {
+    out << std::setprecision(3) << "  mesh made anew, of " << mesh.n_nodes << " nodes: worst cell "
+        << mesh.quality_before << " -> " << mesh.quality_after << ", volume " << std::setprecision(6)
+        << mesh.volume_before << " -> " << mesh.volume_after << " mm^3, " << criteria.objective.name << ' '
+        << std::setprecision(7) << criteria.value(mesh.before) << " -> " << criteria.value(mesh.after)
+        << (criteria.objective.unit.empty() ? "" : " ") << criteria.objective.unit << std::endl;
+  }
+
   void OptimisationResults::write_csv(const std::string &file) const
   {
     std::ostringstream out;
@@ -165,7 +184,7 @@ namespace retroforge
       out << ',' << quoted(objectives[o] + " [" + units[o] + "]");
     for (const DesignParameter &parameter : space.parameters())
       out << ',' << quoted(parameter.name + " [" + parameter.unit + "]");
-    out << ",increments,seconds,failure\n";
+    out << ",mesh,increments,seconds,failure\n";
     for (std::size_t i = 0; i < rows.size(); ++i)
     {
       const TrialRow   &row        = rows[i];
@@ -182,7 +201,7 @@ namespace retroforge
       }
       for (const double x : evaluation.mu)
         out << ',' << x;
-      out << ',' << evaluation.increments << ',' << evaluation.seconds << ','
+      out << ',' << row.mesh << ',' << evaluation.increments << ',' << evaluation.seconds << ','
           << (evaluation.failed() ? quoted(evaluation.failure) : "") << '\n';
     }
     write_file(file, out.str());
@@ -231,10 +250,24 @@ namespace retroforge
       trials.push_back({{"decision", in_words(row.decision, row.evaluation.failed())},
                         {"merit", number(row.merit)},
                         {"radius", number(row.radius)},
+                        {"mesh", row.mesh},
                         {"values", values_by_name(objectives, row.evaluation.values)},
                         {"failure", row.evaluation.failure},
                         {"increments", row.evaluation.increments},
                         {"seconds", row.evaluation.seconds}});
+    Json made = Json::array();
+    for (const NewMesh &mesh : meshes)
+      made.push_back({{"trial", mesh.row},
+                      {"meshed_at", mesh.made_at},
+                      {"nodes", mesh.n_nodes},
+                      {"quality_before", number(mesh.quality_before)},
+                      {"quality", number(mesh.quality_after)},
+                      {"volume_before", number(mesh.volume_before)},
+                      {"volume", number(mesh.volume_after)},
+                      {"objective_before", number(criteria.value(mesh.before))},
+                      {"objective", number(criteria.value(mesh.after))},
+                      {"values_before", values_by_name(objectives, mesh.before)},
+                      {"values", values_by_name(objectives, mesh.after)}});
     Json json = {{"schema", 1},
                  {"command", "optimize"},
                  {"version", version},
@@ -253,6 +286,7 @@ namespace retroforge
                  {"simulations", n_simulations},
                  {"sweeps", n_sweeps},
                  {"failed", n_failed},
+                 {"new_meshes", made},
                  {"trials", trials}};
     for (const auto &[name, of_design] : operations)
       json["operations"].push_back({{"name", name}, {"parameters", of_design}});
@@ -276,6 +310,12 @@ namespace retroforge
     if (value(start) != 0.)
       out << std::setprecision(4) << " (" << std::showpos << 100. * (value(best) / value(start) - 1.)
           << std::noshowpos << " %)";
+    if (!meshes.empty())
+      out << std::setprecision(3)
+          << "\n  start and best are forged on meshes of their own: the mesh was made anew "
+          << (meshes.size() == 1 ? "once" : std::to_string(meshes.size()) + " times")
+          << ", which\n  changed the objective by " << std::showpos << by_meshes() << std::noshowpos << unit
+          << (meshes.size() == 1 ? "" : " in all") << "; the rest is by the design";
     out << "\n  stopped: " << in_words(stop) << "\n  " << n_simulations << " designs forged, " << n_failed
         << " of which failed; " << n_sweeps << " swept back\n";
     if (noise > 0.)
@@ -306,7 +346,7 @@ namespace retroforge
                 : "not felt")
           << '\n';
     const auto accepted = std::find_if(rows.rbegin(), rows.rend(), [](const TrialRow &row) {
-      return row.decision == TrialRow::Decision::accepted;
+      return row.decision == TrialRow::Decision::accepted || row.decision == TrialRow::Decision::renewed;
     });
     if (stop != Stop::running && accepted != rows.rend() && accepted->evaluation.mu != best.mu)
       out << "  the search ended at another design, of " << std::setprecision(7)

@@ -57,6 +57,7 @@ namespace retroforge
   void Search::begin(const Evaluation &start)
   {
     now_   = start;
+    x_     = space_.scaled(now_.mu);
     merit_ = {&criteria_, criteria_.value(now_.values), 1., {}, 0.};
     // A unit of merit is what the first step promises where nothing bends: so the first guess of the Hessian,
     // which is one, is of the right size.
@@ -137,12 +138,13 @@ namespace retroforge
   BoundedProblem Search::problem()
   {
     BoundedProblem problem;
-    problem.start     = space_.scaled(now_.mu);
+    problem.start     = x_;
     problem.lower     = space_.scaled_lower();
     problem.upper     = space_.scaled_upper();
     problem.relations = space_.scaled_relations();
     problem.value = [&](const std::vector<double> &x) { return merit_of(task_.evaluate(space_.values(x))); };
     problem.gradient = [&](const std::vector<double> &x) {
+      x_   = x;
       now_ = task_.differentiate(space_.values(x));
       return space_.pull_back(merit_.gradient(now_.values, now_.gradients));
     };
@@ -155,6 +157,19 @@ namespace retroforge
   }
 
   void Search::minimise_merit()
+  {
+    for (;;)
+    {
+      minimise_on_one_mesh();
+      if (stop_ != SearchStop::mesh)
+        return;
+      stop_ = SearchStop::running;
+      if (const std::optional<Evaluation> again = task_.renew_mesh(now_))
+        now_ = *again;
+    }
+  }
+
+  void Search::minimise_on_one_mesh()
   {
     // A step shorter than the noise lets see tells nothing: the first one promises several times as much,
     // where the largest step can. A round before may have ended with steps as short as its noise.
@@ -176,7 +191,12 @@ namespace retroforge
     // While a limit presses, multipliers are renewed as soon as most of what the last ones changed is done.
     constexpr double part   = 0.1;
     const double     enough = pressing().empty() ? 0. : part * begun_with_;
-    if (state.gradient <= std::max(enough, parameters_.gradient_tolerance * parameters_.first_step))
+    const bool       may_go_on =
+      iterations_ < parameters_.iterations && task_.n_evaluated() < parameters_.simulations;
+    // First of all: what a bad mesh says of the others is not worth much.
+    if (may_go_on && task_.mesh_is_bad && task_.mesh_is_bad(now_))
+      stop_ = SearchStop::mesh;
+    else if (state.gradient <= std::max(enough, parameters_.gradient_tolerance * parameters_.first_step))
       stop_ = SearchStop::gradient;
     else if (state.gradient * state.radius <= noise_)
       stop_ = SearchStop::noise;

@@ -29,6 +29,8 @@ namespace retroforge
     std::vector<ShapeParameter> parameters;
     /// Which rule the values of all parameters break, in words; empty when none.
     std::function<std::string(const std::vector<double> &)> complaint;
+    /// The billet whose measures are such values; null where a shape has no measures.
+    std::function<BilletParameters(const std::vector<double> &)> measured;
   };
 
   /// @param X  positions of the nodes in the billet's own axes, from the centre of its base

@@ -54,7 +54,7 @@ namespace retroforge
            const BilletParameters           &billet,
            const std::vector<DieParameters> &dies,
            const Process<double>            &nominal_process,
-           const TetMesh                    &nominal_billet,
+           const FirstMesh                  &first,
            double                            stroke);
 
     const std::vector<DesignParameter> &parameters() const { return parameters_; }
@@ -71,6 +71,14 @@ namespace retroforge
 
     template <typename Number>
     Process<Number> process(const std::vector<Number> &mu) const;
+
+    /// Smallest quality of the billet's cells at a design, zero or less where one is turned inside out.
+    /// @throws Error  where no value of the parameter that holds the volume keeps it
+    double mesh_quality(const std::vector<double> &mu) const;
+
+    /// Values of the parameters of the billet's shape that differ from the nominal ones, by name; the one
+    /// that holds the volume too.
+    std::vector<std::pair<std::string, double>> billet_at(const std::vector<double> &mu) const;
 
     /// dPhi/dmu from dPhi/dX_0 and the derivatives in the process: one number per parameter.
     std::vector<double> pull_back(const std::vector<double>  &mu,
@@ -102,11 +110,11 @@ namespace retroforge
     std::vector<DieParameters>   dies_;
     std::vector<DieFreeForm>     die_forms_; ///< of each die
     Process<double>              process_;
-    NodalVectors<double>         nominal_X_;
     double                       stroke_;
-    std::vector<NodeIndex>       followed_; ///< by each die: the billet's first node in its way; or none
     BilletMap                    billet_map_;
-    double                       width_; ///< the billet's extent in x, before cuts; of a file, its mesh's
+    NodalVectors<double>         nominal_X_; ///< where the nodes stand in the nominal shape
+    std::vector<NodeIndex>       followed_;  ///< by each die: the billet's first node in its way; or none
+    double                       width_;     ///< the billet's extent in x, before cuts; of a file, its mesh's
     std::vector<DesignParameter> parameters_;
   };
 } // namespace retroforge

@@ -34,6 +34,9 @@ namespace retroforge
   /// gradients, with numbers as they are, bit for bit. An optimiser that begins again with the same case asks
   /// for the same designs in the same order, and gets them from here, until it comes to those that are still
   /// to be forged.
+  ///
+  /// Designs are forged on one mesh of the billet or another: each mesh has a line, and each forging on
+  /// another than the first one names it. What is asked for and added is of the mesh in use.
   class Journal
   {
   public:
@@ -59,10 +62,16 @@ namespace retroforge
 
     const Header &header() const { return header_; }
     std::size_t   size() const { return evaluations_.size(); }
-    /// Number of a design in an operation; size() where it is not here.
+    /// Number of a design in an operation; size() where it is not here. Of the main one on the mesh in use.
     std::size_t       place_of(const std::vector<double> &mu, const std::string &operation = "") const;
     const Evaluation *find(const std::vector<double> &mu, const std::string &operation = "") const;
     const Evaluation &operator[](const std::size_t i) const { return evaluations_[i]; }
+
+    /// @param made_at  what tells the mesh from others: the designs it was made at, one after the other;
+    /// empty
+    ///                 for the first mesh
+    /// @return its number, 0 for the first one   @throws Error  if a new one cannot be written
+    unsigned int use_mesh(const std::string &made_at);
 
     /// From here on what is added is written to `file`, too, which is made anew with what is here.
     /// @throws Error  if it cannot be written
@@ -74,9 +83,14 @@ namespace retroforge
 
   private:
     void append(const std::string &line) const;
+    /// Other operations stay on the meshes of their own.
+    unsigned int mesh_in(const std::string &operation) const { return operation.empty() ? mesh_ : 0; }
 
-    Header                  header_;
-    std::vector<Evaluation> evaluations_;
-    std::string             file_; ///< empty: not written
+    Header                    header_;
+    std::vector<Evaluation>   evaluations_;
+    std::vector<std::string>  meshes_ = {""};
+    std::vector<unsigned int> mesh_of_;  ///< each of the evaluations
+    unsigned int              mesh_ = 0; ///< in use
+    std::string               file_;     ///< empty: not written
   };
 } // namespace retroforge

@@ -31,8 +31,9 @@ namespace retroforge
     double                   gradient_tolerance = 1e-3;
     double                   limit_tolerance    = 1e-4;
     unsigned int             noise_runs         = 3;
-    double                   confirmation       = 0.7;
-    bool                     keep_records       = false;
+    double                   mesh_quality = 0.1; ///< least, of the billet's cells before forging; 0: any
+    double                   confirmation = 0.7;
+    bool                     keep_records = false;
 
     std::string         scattered;       ///< a design parameter that is not known exactly; empty: none
     std::vector<double> scatter_range;   ///< from, to

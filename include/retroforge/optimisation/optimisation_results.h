@@ -19,13 +19,28 @@ namespace retroforge
       start,
       noise, ///< forged to measure the noise
       accepted,
-      refused
+      refused,
+      renewed ///< forged again, on a new mesh
     };
 
-    Decision   decision;
-    Evaluation evaluation;
-    double     merit  = 0.; ///< what the optimiser compares; infinite where the forging failed
-    double     radius = 0.; ///< of the trust region it was taken from, in scales
+    Decision     decision;
+    Evaluation   evaluation;
+    double       merit  = 0.; ///< what the optimiser compares; infinite where the forging failed
+    double       radius = 0.; ///< of the trust region it was taken from, in scales
+    unsigned int mesh   = 0;  ///< that it was forged on, the first one 0
+
+    bool becomes_the_next() const { return decision != Decision::noise && decision != Decision::refused; }
+  };
+
+  /// A mesh of the billet made anew at a design, which was forged on the one before and on this one.
+  struct NewMesh
+  {
+    std::size_t         row = 0; ///< of the second forging
+    std::string         made_at; ///< as in Design/meshed at
+    unsigned int        n_nodes        = 0;
+    double              quality_before = 0., quality_after = 0.; ///< of the worst cell: tet_quality()
+    double              volume_before = 0., volume_after = 0.;   ///< of the billet [mm^3]
+    std::vector<double> before, after;                           ///< values of the objectives
   };
 
   /// Start and optimum forged with smaller elements and increments.
@@ -46,9 +61,10 @@ namespace retroforge
     std::map<std::string, std::vector<std::string>> operations =
       {}; ///< others: parameters of the design they have
 
-    std::vector<TrialRow>       rows  = {};
-    double                      noise = 0.; ///< of the objective, in its unit
-    SearchStop                  stop  = SearchStop::running;
+    std::vector<TrialRow>       rows   = {};
+    std::vector<NewMesh>        meshes = {}; ///< after the first
+    double                      noise  = 0.; ///< of the objective, in its unit
+    SearchStop                  stop   = SearchStop::running;
     Evaluation                  start = {}, best = {};   ///< with gradients
     std::vector<double>         multipliers        = {}; ///< of the limits, per unit of the limit's excess
     std::vector<double>         by_moving_relation = {}; ///< objective per unit of each relation's bound
@@ -60,9 +76,14 @@ namespace retroforge
     /// What the objective would change by, per unit by which a limit is relaxed.
     double by_relaxing(std::size_t limit) const;
 
+    /// What new meshes changed of the objective, in all.
+    double by_meshes() const;
+
     void write_csv(const std::string &file) const;
     void write_json(const std::string &file) const;
     void print(std::ostream &out) const;
+    /// A line on a new mesh.
+    void print(const NewMesh &mesh, std::ostream &out) const;
   };
 
   std::string in_words(SearchStop stop);

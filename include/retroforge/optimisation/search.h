@@ -19,7 +19,8 @@ namespace retroforge
     noise,
     step,
     iterations,
-    simulations
+    simulations,
+    mesh ///< which is to be made anew before the search goes on
   };
 
   /// What a search asks for, and whom it tells.
@@ -34,6 +35,12 @@ namespace retroforge
     std::function<void(const Evaluation &evaluation, bool accepted)> decided;
     /// Multipliers are renewed, and a round begins. @param excess  the largest one of the limits
     std::function<void(double excess)> renewed;
+    /// Whether forgings should go on with another mesh, asked after each step at the design accepted last;
+    /// null: never.
+    std::function<bool(const Evaluation &now)> mesh_is_bad = {};
+    /// Changes to that mesh. @return the same design on it, with gradients; nothing where it stays as it was,
+    /// of which mesh_is_bad() then says no more at this design
+    std::function<std::optional<Evaluation>(const Evaluation &now)> renew_mesh = {};
   };
 
   /// The design with the least objective within bounds, relations and limits. Limits are kept by an augmented
@@ -73,7 +80,10 @@ namespace retroforge
     /// felt most at the present design; none where none is felt.
     std::optional<double> curving_penalty() const;
     /// One minimisation with the multipliers there are; from the present design, to the last accepted one.
+    /// Where the mesh is made anew it begins again there: with values of the new mesh, and all that was
+    /// learned of the Hessian, which other chords of the same shape change little.
     void minimise_merit();
+    void minimise_on_one_mesh();
     bool go_on(const MinimiserState &state);
     /// J^T J v: of the misfit of data, its Hessian where they agree with the forging; of the penalty of
     /// limits, what does not come from their curvature.
@@ -89,13 +99,14 @@ namespace retroforge
     const OptimisationParameters &parameters_;
     const SearchTask              task_;
 
-    Merit        merit_;
-    Minimiser    minimiser_;
-    Evaluation   now_;
-    double       noise_      = 0.; ///< of the merit
-    double       radius_     = 0.;
-    double       begun_with_ = 0.; ///< the merit's gradient where the present round began
-    unsigned int iterations_ = 0;
-    SearchStop   stop_       = SearchStop::running;
+    Merit                  merit_;
+    Minimiser              minimiser_;
+    Evaluation             now_;
+    BoundedProblem::Vector x_; ///< of the present design, as it was tried: its values come back bit for bit
+    double                 noise_      = 0.; ///< of the merit
+    double                 radius_     = 0.;
+    double                 begun_with_ = 0.; ///< the merit's gradient where the present round began
+    unsigned int           iterations_ = 0;
+    SearchStop             stop_       = SearchStop::running;
   };
 } // namespace retroforge

@@ -5,6 +5,7 @@ those of runs a user would make by hand; killed and resumed it is the same; fail
 Usage: optimize.py RETROFORGE"""
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -205,6 +206,64 @@ def failing():
     judge("the first must succeed", done.returncode == 1 and "in increment 1" in done.stderr, done.stderr)
 
 
+FAR = {"billet/control point 1 r": 18.0, "billet/control point 2 r": 3.0}
+
+
+def far_away():
+    """A billet meshed at a shape far from the optimum: on the way there its cells become flat, and the mesh is made anew. The optimum is that
+    of a search which begins near it, on that mesh to the tolerance, and on the nominal one but for the scatter of meshes."""
+    there = ", ".join(f"{name}: {value!r}" for name, value in FAR.items())
+    settings = (*FAR.items(), f"Design/meshed at={there}", "Optimisation/noise runs=0")
+    found, printed = optimize("far", *settings, "Optimisation/confirmation=0.9")
+    rows, made = rows_of("far"), found["new_meshes"]
+    judge("the mesh is made anew", made and [row["mesh"] for row in rows] == sorted(row["mesh"] for row in rows), made)
+    judge("and better", all(mesh["quality"] > 1.5 * mesh["quality_before"] and mesh["quality_before"] < 0.2 for mesh in made), made)
+    for i, mesh in enumerate(made):
+        before, after = rows[mesh["trial"] - 1], rows[mesh["trial"]]
+        judge(f"mesh {i + 1}: the same design", after["decision"] == "new mesh" and int(after["mesh"]) == i + 1 and before["decision"] != "refused"
+              and all(after[f"{name} [mm]"] == before[f"{name} [mm]"] for name in FAR), [before, after])
+        judge("it is told", f"{mesh['objective']:.7g}" in printed and mesh["values"]["barrel"] == float(after["barrel [mm^2]"]), mesh)
+    judge("so is what it changed", "start and best are forged on meshes of their own" in printed)
+    journal = [json.loads(line) for line in text_of("far", "journal.jsonl").splitlines()]
+    judge("its line in the journal", [line["made at"] for line in journal if "new mesh" in line] == [mesh["meshed_at"] for mesh in made])
+    scatter = sum(abs(a - b) for a, b in zip(best_of(found), best_of(found_in("whole"))))
+    judge("the optimum of a start near it, but for the meshes", scatter < 0.5, f"{best_of(found)} {best_of(found_in('whole'))}")
+    judge("the side is straight", found["objective"]["best"] < 0.01 * found["objective"]["start"], found["objective"])
+    judge("confirmed where the mesh was made", found["confirmation"]["best"] < 0.1 * found["confirmation"]["start"], found.get("confirmation"))
+    last = made[-1]["meshed_at"]
+    near, _ = optimize("near", ("billet/control point 1 r", 10.0), ("billet/control point 2 r", 9.5), f"Design/meshed at={last}", *settings[3:])
+    judge("to the tolerance on its mesh", max(abs(a - b) for a, b in zip(best_of(found), best_of(near))) < 0.02, f"{best_of(found)} {best_of(near)}")
+    done = run("gradient", "far_hand", case="far/best.prm")
+    value = summary_of("far_hand")["objectives"][0]["value"] if done.returncode == 0 else None
+    judge("the best by hand", value == found["objective"]["best"], f"{value} {done.stderr}")
+
+
+def resumed_through_meshes():
+    reference = rows_of("far")
+    there = ", ".join(f"{name}: {value!r}" for name, value in FAR.items())
+    settings = (*FAR.items(), f"Design/meshed at={there}", "Optimisation/noise runs=0", "Optimisation/confirmation=0")
+    lines = text_of("far", "journal.jsonl").splitlines()
+    new = next(i for i, line in enumerate(lines) if "new mesh" in line)
+    for n in (new, new + 1, new + 2, len(lines) - 1):
+        shutil.copytree("far", f"cut{n}", ignore=shutil.ignore_patterns("best.prm", "confirmation.jsonl"))
+        write(f"cut{n}/journal.jsonl", "".join(line + "\n" for line in lines[:n]))
+        found, _ = optimize(f"cut{n}", "--resume", *settings)
+        judge(f"resumed after {n} lines", rows_of(f"cut{n}") == reference and found["new_meshes"] == found_in("far")["new_meshes"])
+        same = [line for line in text_of(f"cut{n}", "journal.jsonl").splitlines() if "new mesh" in line]
+        judge("the same line of the mesh", same == [line for line in lines if "new mesh" in line])
+
+
+def gradient_on_a_new_mesh():
+    """At the design where the mesh was made, and at another one on it: adjoint, tangent and replayed differences, Taylor's order."""
+    exact = ("Contact/penetration=1e-2", "Contact/slip regularisation=0.1", "Linear solver/method=direct", "Check/steps=1e-4, 1e-5, 1e-6",
+             "Check/taylor halvings=2", "Check/free differences=false")
+    made = found_in("far")["new_meshes"][0]
+    for name, at in (("there", made["meshed_at"]), ("best", None)):
+        more = [f"Design/at={', '.join(part for part in at.split(', ') if 'point 4' not in part)}"] if at else []
+        done = run("check", f"checked_{name}", f"Design/meshed at={made['meshed_at']}", *more, *exact, case="far/best.prm")
+        judge(f"derivatives on the new mesh, {name}", done.returncode == 0, done.stdout[-3000:] + done.stderr)
+
+
 def from_elsewhere():
     found, _ = optimize("elsewhere", ("billet/control point 1 r", 9.0), ("material/K", 2))
     at_nominal = best_of(found_in("whole"))
@@ -324,4 +383,4 @@ def refused():
     judge("resumed with another tolerance", "taken from the journal" in printed and found["simulations"] >= len(before.splitlines()) // 3)
 
 
-main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, free_form, die_free_form, bounded, related, recorded, failing, from_elsewhere, identified, scattered, confirmed, on_two_ranks, reported, refused))
+main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, free_form, die_free_form, bounded, related, recorded, failing, far_away, resumed_through_meshes, gradient_on_a_new_mesh, from_elsewhere, identified, scattered, confirmed, on_two_ranks, reported, refused))

@@ -2,7 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 
 // A journal gives back what was written, bit for bit, with failures and gradients; a line that the program's
-// end cut short does not count, and is overwritten; what is no journal is refused.
+// end cut short does not count, and is overwritten; a design on another mesh is another forging; what is no
+// journal is refused.
 
 #include <retroforge/core/error.h>
 #include <retroforge/optimisation/journal.h>
@@ -93,12 +94,35 @@ int main()
   cut.add_gradients(0, journal[0].gradients);
   std::cout << "and completed: "
             << answer(Journal::read("journal.jsonl")[0].gradients == journal[0].gradients) << "\n";
+
+  // The same design on another mesh is another forging; a mesh asked for again is the one there is.
+  const std::vector<double> design  = {third, 0.};
+  const unsigned int        number  = cut.use_mesh("a: 1");
+  const bool                unknown = cut.find(design) == nullptr;
+  cut.add_gradients(cut.add({design, {7.}, "", 1, 0., {}}), {{8.}});
+  Journal            meshes       = Journal::read("journal.jsonl");
+  const bool         on_the_first = meshes.find(design)->values.size() == 2;
+  const unsigned int other = meshes.use_mesh("b: 2"), same = meshes.use_mesh("a: 1");
+  std::cout << "meshes: "
+            << answer(number == 1 && unknown && on_the_first && other == 2 && same == 1 &&
+                      meshes.find(design)->values == std::vector<double>({7.}) &&
+                      meshes.find(design)->gradients[0][0] == 8.)
+            << ", the first again: "
+            << answer(meshes.use_mesh("") == 0 && meshes.find(design)->values.size() == 2) << "\n";
+  meshes.write_to("journal.jsonl");
+  std::cout << "written anew: "
+            << answer(Journal::read("journal.jsonl").use_mesh("b: 2") == 2 &&
+                      Journal::read("journal.jsonl").size() == 3)
+            << "\n";
   std::remove("journal.jsonl");
 
   refuse("empty", "");
   refuse("other text", "subsection A\n");
   refuse("a number that is none", R"({"retroforge":"1","parameters":""}
 {"mu":["0x1p+0"],"increments":1,"seconds":1,"values":["nan"]}
+)");
+  refuse("a mesh that is not there", R"({"retroforge":"1","parameters":""}
+{"mu":["0x1p+0"],"increments":1,"seconds":1,"values":["0x1p+0"],"mesh":1}
 )");
   refuse("gradients of what is not there", R"({"retroforge":"1","parameters":""}
 {"of":0,"gradients":[]}

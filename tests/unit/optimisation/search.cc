@@ -4,7 +4,8 @@
 // The search on functions in place of forgings, whose optimum is known on paper: the point of a disk nearest
 // to one outside of it, from inside and outside, with the multiplier of the disk's limit; the same where a
 // limit does not press; with a relation beside it; where a part of the plane has no values; among data; in
-// noise, and with few designs allowed. Its gradient check, and what it asks for and tells.
+// noise, on meshes made anew on the way, and with few designs allowed. Its gradient check, and what it asks
+// for and tells.
 
 #include <retroforge/objective/energy.h>
 #include <retroforge/optimisation/search.h>
@@ -28,6 +29,7 @@ namespace
   struct Functions
   {
     double noise = 0., fails_above = INFINITY; ///< of f; no values where a + b is larger
+    double by_mesh = 0.;                       ///< added to f
 
     Evaluation operator()(const Vector &mu, const bool with_gradients) const
     {
@@ -40,7 +42,7 @@ namespace
         return evaluation;
       }
       const double rough = noise * std::sin(1e7 * (a + 3. * b));
-      evaluation.values  = {std::pow(a - 1., 2) + 2. * std::pow(b - 2., 2) + rough, a * a + b * b};
+      evaluation.values  = {std::pow(a - 1., 2) + 2. * std::pow(b - 2., 2) + rough + by_mesh, a * a + b * b};
       if (with_gradients)
         evaluation.gradients = {{2. * (a - 1.), 4. * (b - 2.)}, {2. * a, 2. * b}};
       return evaluation;
@@ -56,6 +58,9 @@ namespace
     std::vector<Vector>    evaluated;
     unsigned int           n_swept = 0, n_accepted = 0, n_refused = 0, n_failed = 0, n_renewed = 0;
     bool                   tells_in_turn = true;
+    double                 mesh_reach    = INFINITY; ///< of f's mesh, in a and b from where it was made
+    unsigned int           n_meshes = 0, n_refused_meshes = 0;
+    bool                   meshes_fail = false;
     Evaluation             end;
     Vector                 multipliers;
     SearchStop             stop    = SearchStop::running;
@@ -110,7 +115,25 @@ namespace
         ++(accepted ? n_accepted : n_refused);
         n_failed += evaluation.failed() ? 1 : 0;
       };
-      task.renewed = [&](double) { ++n_renewed; };
+      task.renewed     = [&](double) { ++n_renewed; };
+      Vector made_at   = start, settled_at;
+      task.mesh_is_bad = [&](const Evaluation &now) {
+        return std::hypot(now.mu[0] - made_at[0], now.mu[1] - made_at[1]) > mesh_reach &&
+               now.mu != settled_at;
+      };
+      task.renew_mesh = [&](const Evaluation &now) -> std::optional<Evaluation> {
+        if (meshes_fail)
+        {
+          ++n_refused_meshes;
+          settled_at = now.mu;
+          return {};
+        }
+        ++n_meshes;
+        made_at = now.mu;
+        functions.by_mesh += 0.01;
+        evaluated.push_back(now.mu);
+        return functions(now.mu, true);
+      };
       task.evaluate(start);
       const Evaluation at_start = task.differentiate(start);
       criteria.set_sizes(at_start.values);
@@ -222,6 +245,27 @@ int main()
     problem.run({0.2, 0.3});
     std::cout << "noise: ended for it " << answer(problem.stop == SearchStop::noise) << ", within some of it "
               << answer(problem.end.values[0] < 10. * 1e-3) << "\n";
+  }
+  {
+    // Each mesh adds something of its own to the values: nothing of that is taken for a step's.
+    Problem problem;
+    problem.mesh_reach = 0.7;
+    problem.run({0.2, 0.3});
+    Problem limited;
+    limited.mesh_reach         = 0.3;
+    limited.parameters.at_most = {{"g", 1.}};
+    limited.run({0.2, 0.3});
+    Problem failing;
+    failing.mesh_reach  = 0.7;
+    failing.meshes_fail = true;
+    failing.run({0.2, 0.3});
+    std::cout << "meshes made anew: " << answer(problem.n_meshes > 1) << ", optimum to 1e-6 "
+              << answer(problem.distance({1., 2.}) < 1e-6) << ", at most 18 designs "
+              << answer(problem.evaluated.size() <= 18) << ", with a limit " << answer(limited.n_meshes > 0)
+              << ", settled " << answer(limited.settled) << "\n"
+              << "meshes that fail: asked for once at a design "
+              << answer(failing.n_refused_meshes > 0 && failing.n_refused_meshes <= failing.n_accepted)
+              << ", optimum to 1e-6 " << answer(failing.distance({1., 2.}) < 1e-6) << "\n";
   }
   {
     Problem problem;
