@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/level_gaps.h>
 #include <retroforge/contact/penetration.h>
 #include <retroforge/mesh/parts_quality.h>
 #include <retroforge/output/console.h>
@@ -41,6 +42,7 @@ namespace retroforge
     for (std::size_t p = 0; p < event.record.pairs.size(); ++p)
       if (event.record.solves.back().active[p])
         touched_.insert(event.record.pairs[p].die);
+    watch_edges(event);
     if (is_due(event.state, case_.parameters.objectives.every))
       add_objectives(event.state);
     const auto       timing = timings_.scope("output");
@@ -72,6 +74,18 @@ namespace retroforge
     }
     if (objectives_)
       objectives_->add(state.stroke, columns);
+  }
+
+  void RunOutput::watch_edges(const IncrementEvent &event)
+  {
+    const EdgeFit fit = edge_fit(event.X_before, event.record.contact.ramp, event.solved.start->contact);
+    if (fit.spanning > spanned_.spanning)
+      spanned_ = {fit.touching,
+                  fit.spanning,
+                  fit.largest,
+                  event.state.stroke,
+                  {{fit.place[0], fit.place[1], fit.place[2]}},
+                  case_.model.dies[fit.die].name};
   }
 
   HistoryRow RunOutput::row_of(const IncrementEvent &event)

@@ -160,6 +160,7 @@ namespace retroforge
     summarise_objectives(case_, trace_, forged_, values_, summary_);
     summarise_gradients(case_, judged_, summary_);
     summary_.deepest      = output_->deepest();
+    summary_.spanned      = output_->spanned();
     summary_.record_bytes = recording_.bytes();
     if (command == "check")
       passed = check();

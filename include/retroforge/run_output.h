@@ -35,6 +35,9 @@ namespace retroforge
     /// The deepest that the surface has been in a die.
     const Summary::Depth &deepest() const { return deepest_; }
 
+    /// The increment in which most edges of quadratic velocities spanned corners.
+    const Summary::Spanned &spanned() const { return spanned_; }
+
     /// Names of the dies that pressed no node.
     std::vector<std::string> untouched_dies() const;
 
@@ -42,6 +45,7 @@ namespace retroforge
     void       add_objectives(const ForgingState &state);
     HistoryRow row_of(const IncrementEvent &event);
     void       print(const IncrementEvent &event, const HistoryRow &row) const;
+    void       watch_edges(const IncrementEvent &event);
     /// Every so many increments, and at the end.
     bool is_due(const ForgingState &state, unsigned int every) const;
 
@@ -52,6 +56,7 @@ namespace retroforge
 
     std::set<unsigned int> touched_; ///< dies that some node was pressed by
     Summary::Depth         deepest_;
+    Summary::Spanned       spanned_;
     /// Where increments began to be solved: stroke [mm], and seconds of the run by then.
     double begin_stroke_ = 0., begin_seconds_ = Summary::unknown;
 

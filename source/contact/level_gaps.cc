@@ -79,6 +79,33 @@ namespace retroforge
     }
   } // namespace
 
+  EdgeFit edge_fit(const NodalVectors<double> &X, const FrictionRamp &ramp, const ContactSet<double> &contact)
+  {
+    constexpr double half   = 0.5;
+    const auto       bulges = bulges_of(X, ramp, contact);
+    EdgeFit          fit;
+    for (std::size_t e = 0; e < bulges.size(); ++e)
+    {
+      const Chord &chord   = contact.chords[e];
+      const auto   touches = [&](const unsigned int p) {
+        return ramp(contact.own_gaps[p], contact.pairs[p].touching) >= half;
+      };
+      if (!touches(chord.middle) && !(touches(chord.ends[0]) && touches(chord.ends[1])))
+        continue;
+      ++fit.touching;
+      const double relative = std::abs(bulges[e].b) / bulges[e].length;
+      if (relative >= sharp_bulge)
+        ++fit.spanning;
+      if (relative <= fit.largest)
+        continue;
+      const ContactPair &pair = contact.pairs[chord.middle];
+      fit.largest             = relative;
+      fit.die                 = pair.die;
+      fit.place               = 0.5 * (X[pair.point.nodes[0]] + X[pair.point.nodes[1]]);
+    }
+    return fit;
+  }
+
   template <typename Number>
   void level_gaps(const NodalVectors<Number> &X, const FrictionRamp &ramp, ContactSet<Number> &contact)
   {

@@ -154,6 +154,23 @@ namespace retroforge
         deepest.place[2],
         deepest.stroke);
     }
+    void print_spanned(const Summary::Spanned &spanned)
+    {
+      std::printf(
+        "  warning: up to %u of the %u surface edges that touched curved dies spanned their corners, worst "
+        "at "
+        "(%.4g, %.4g, %.4g) of die %s and stroke %.5g, where it bulges by %.0f %% of the edge's length: "
+        "quadratic velocities ripple there. A smaller Remeshing/chord error or Remeshing/element size, or "
+        "Discretization/element=mini, keeps to the die.\n",
+        spanned.spanning,
+        spanned.touching,
+        spanned.place[0],
+        spanned.place[1],
+        spanned.place[2],
+        spanned.die.c_str(),
+        spanned.stroke,
+        100. * spanned.bulge);
+    }
   } // namespace
 
   void print_results(const Summary                  &summary,
@@ -166,6 +183,9 @@ namespace retroforge
       print_objective(objective, summary.whole.is_model());
     if (summary.deepest.relative > largest_depth)
       print_depth(summary.deepest);
+    constexpr double many = 0.05;
+    if (summary.spanned.share() > many)
+      print_spanned(summary.spanned);
     if (summary.volume_repaired > 0.)
       std::printf(
         "  the surface crossed itself, or cells at it stayed flat, in places thinner than an element: "

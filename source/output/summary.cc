@@ -135,6 +135,14 @@ namespace retroforge
         {"die", deepest.die},
         {"stroke", number(deepest.stroke)},
         {"place", {number(deepest.place[0]), number(deepest.place[1]), number(deepest.place[2])}}};
+    if (spanned.spanning > 0)
+      json["edges_across_corners"] = {
+        {"touching", spanned.touching},
+        {"spanning", spanned.spanning},
+        {"bulge_over_length", number(spanned.bulge)},
+        {"die", spanned.die},
+        {"stroke", number(spanned.stroke)},
+        {"place", {number(spanned.place[0]), number(spanned.place[1]), number(spanned.place[2])}}};
     add_unless_empty(json, "restarts", list(restarts));
     add_unless_empty(json, "wall_seconds", number_map(wall_seconds));
     json["record_bytes"] = number(record_bytes);

@@ -38,6 +38,13 @@ namespace retroforge
     return iterations;
   }
 
+  double LinearSystem::norm(const Field<double> &rhs) const
+  {
+    la::BlockVector b = matrix_.vector();
+    matrix_.load(rhs, b);
+    return b.l2_norm();
+  }
+
   unsigned int
   LinearSystem::solve_tangent(const Field<double> &rhs, const double tolerance, Field<double> &solution)
   {

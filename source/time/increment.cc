@@ -345,6 +345,14 @@ namespace retroforge
     };
   } // namespace
 
+  double Increment::tolerance_of(const double norm, const double largest) const
+  {
+    constexpr double loosest = 1e-2;
+    return norm == 0. ? model_.adjoint_tolerance
+                      : std::max(model_.adjoint_tolerance,
+                                 std::min(loosest, model_.adjoint_tolerance * largest / norm));
+  }
+
   void Increment::reverse(const Process<double>      &process,
                           const NodalVectors<double> &X,
                           const IncrementRecord      &record,
@@ -361,6 +369,9 @@ namespace retroforge
       costates.size(),
       {ContactSetBar(record.pairs.size()), PhysicsBar(scene_.dies), std::vector<NodalVectors<double>>(n)});
     earlier_lambdas_.resize(n);
+    // The first stage of a midpoint step, which leads to half a step, has a right-hand side, and a share in
+    // the gradient, smaller than the second by far: what is asked of both is alike in absolute terms.
+    std::vector<double> largest(costates.size(), 0.);
     for (unsigned int s = n; s-- > 0;)
     {
       const auto              at   = recorded_stage(start, X, record, s);
@@ -406,8 +417,10 @@ namespace retroforge
         reverse_motion(at->stage, at->W, motion_bar, stage_bar);
         Field<double> minus_rhs(scene_.spaces), lambda;
         minus_rhs.add(-1., rhs);
-        auto &guesses = earlier_lambdas_[s][j];
-        system_.solve(minus_rhs, model_.adjoint_tolerance, lambda, guesses, Transposition::transposed);
+        auto        &guesses = earlier_lambdas_[s][j];
+        const double norm    = system_.norm(minus_rhs);
+        largest[j]           = std::max(largest[j], norm);
+        system_.solve(minus_rhs, tolerance_of(norm, largest[j]), lambda, guesses, Transposition::transposed);
         reverse_residual(view, lambda, stage_bar);
         lambda.beta = {}; // a start is of velocities and pressures
         guesses.insert(guesses.begin(), std::move(lambda));

@@ -47,6 +47,21 @@ namespace retroforge
     return chords;
   }
 
+  /// How well straight edges follow the dies they touch.
+  struct EdgeFit
+  {
+    unsigned int touching =
+      0; ///< edges whose middle or both ends are at least half in contact, by their ramps
+    unsigned int spanning = 0;             ///< those of them that span a corner of the die: c_m = 0
+    double       largest  = 0.;            ///< |b_m| over the length of the edge that spans most
+    unsigned int die      = invalid_index; ///< under that edge
+    Vec3         place;                    ///< its middle
+  };
+
+  /// Of levelled gaps.  @param X  the positions they were found at
+  EdgeFit
+  edge_fit(const NodalVectors<double> &X, const FrictionRamp &ramp, const ContactSet<double> &contact);
+
   /// Makes gaps and ramps those of the levelled gaps; own gaps stay in ContactSet::own_gaps. Vertices at
   /// edges with c_m < 1 lose their middles_around.
   template <typename Number>

@@ -92,6 +92,19 @@ namespace retroforge
     };
     Depth deepest;
 
+    /// Quadratic velocities: where most surface edges, of those that touched, spanned a corner of a die.
+    struct Spanned
+    {
+      unsigned int          touching = 0, spanning = 0; ///< edges
+      double                bulge  = unknown;           ///< of the die into the worst one, over its length
+      double                stroke = unknown;           ///< at the end of the increment, mm
+      std::array<double, 3> place  = {{unknown, unknown, unknown}};
+      std::string           die;
+
+      double share() const { return touching == 0 ? 0. : double(spanning) / touching; }
+    };
+    Spanned spanned;
+
     /// A point from which the run went on with other settings.
     struct Restart
     {

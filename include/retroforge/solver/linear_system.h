@@ -29,6 +29,9 @@ namespace retroforge
                        const std::vector<Field<double>> &guesses       = {},
                        Transposition                     transposition = Transposition::plain);
 
+    /// Of a right-hand side as solve() sees it, scaled and without bubbles: what its tolerance is relative to.
+    double norm(const Field<double> &rhs) const;
+
     /// As solve, for the derivative of a residual, which a moving die makes large where it pushes
     /// (SaddleSolver::solve_penalised_first).
     unsigned int solve_tangent(const Field<double> &rhs, double tolerance, Field<double> &solution);

@@ -167,8 +167,11 @@ namespace retroforge
                                                       const NodalVectors<double>   &X,
                                                       const IncrementRecord        &record,
                                                       unsigned int                  s) const;
-    bool                               escaped(const Stage<double> &stage, const Field<double> &W) const;
-    Field<Dual>                        tangent_field(const Stage<Dual> &stage, const SolvedStage &at);
+    /// Of an adjoint system, relative to its right-hand side.
+    /// @param norm, largest  of that, and of the largest one of the increment's stages so far
+    double      tolerance_of(double norm, double largest) const;
+    bool        escaped(const Stage<double> &stage, const Field<double> &W) const;
+    Field<Dual> tangent_field(const Stage<Dual> &stage, const SolvedStage &at);
 
     const Scene     &scene_;
     const StepModel &model_;

@@ -37,6 +37,7 @@ Summary filled()
   s.volume_final          = 7.5;
   s.wall_seconds          = {{"assembly", 0.5}, {"total", 2.}};
   s.record_bytes          = 5000000000;
+  s.spanned               = {80, 5, 0.07, 3., {{1., 2., 3.}}, "lower"};
   s.restarts              = {{13, 9.25, {{"Press/increments", {"20", "40"}}}}};
   s.check                 = {{"energy", "material/K", 1.5, 1.5, {}, {2., 1. / 0.}, "passed"}};
   s.check_remaining       = 3;
