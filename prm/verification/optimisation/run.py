@@ -198,7 +198,7 @@ def two_billets():
     """The die that is best for the stout billet, and the one that is best for both."""
     write_cone()
     both, slim = os.path.join(HERE, "two_billets.prm"), os.path.join(HERE, "slim_billet.prm")
-    settings = {"Optimisation/noise runs": 0, "Optimisation/gradient tolerance": 0.02, "Optimisation/iterations": 12, "Optimisation/confirmation": 0}
+    settings = {"Optimisation/noise runs": 0, "Optimisation/gradient tolerance": 0.02, "Optimisation/iterations": 8, "Optimisation/confirmation": 0}
     found = optimize(both, settings, "two_billets")
     alone = optimize(both, {**settings, "Optimisation/operations": "", "Optimisation/objective": "barrel"}, "stout_alone")
     print("| die | barrel, stout [mm^2] | slim |\n| --- | --- | --- |")
