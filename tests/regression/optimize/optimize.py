@@ -207,14 +207,13 @@ def failing():
 
 
 FAR = {"billet/control point 1 r": 18.0, "billet/control point 2 r": 3.0}
+FROM_FAR = (*FAR.items(), "Design/meshed at=" + ", ".join(f"{name}: {value!r}" for name, value in FAR.items()), "Optimisation/noise runs=0")
 
 
 def far_away():
     """A billet meshed at a shape far from the optimum: on the way there its cells become flat, and the mesh is made anew. The optimum is that
     of a search which begins near it, on that mesh to the tolerance, and on the nominal one but for the scatter of meshes."""
-    there = ", ".join(f"{name}: {value!r}" for name, value in FAR.items())
-    settings = (*FAR.items(), f"Design/meshed at={there}", "Optimisation/noise runs=0")
-    found, printed = optimize("far", *settings, "Optimisation/confirmation=0.9")
+    found, printed = optimize("far", *FROM_FAR, "Optimisation/confirmation=0.9")
     rows, made = rows_of("far"), found["new_meshes"]
     judge("the mesh is made anew", made and [row["mesh"] for row in rows] == sorted(row["mesh"] for row in rows), made)
     judge("and better", all(mesh["quality"] > 1.5 * mesh["quality_before"] and mesh["quality_before"] < 0.2 for mesh in made), made)
@@ -231,17 +230,57 @@ def far_away():
     judge("the side is straight", found["objective"]["best"] < 0.01 * found["objective"]["start"], found["objective"])
     judge("confirmed where the mesh was made", found["confirmation"]["best"] < 0.1 * found["confirmation"]["start"], found.get("confirmation"))
     last = made[-1]["meshed_at"]
-    near, _ = optimize("near", ("billet/control point 1 r", 10.0), ("billet/control point 2 r", 9.5), f"Design/meshed at={last}", *settings[3:])
+    near, _ = optimize("near", ("billet/control point 1 r", 10.0), ("billet/control point 2 r", 9.5), f"Design/meshed at={last}", "Optimisation/noise runs=0")
     judge("to the tolerance on its mesh", max(abs(a - b) for a, b in zip(best_of(found), best_of(near))) < 0.02, f"{best_of(found)} {best_of(near)}")
     done = run("gradient", "far_hand", case="far/best.prm")
     value = summary_of("far_hand")["objectives"][0]["value"] if done.returncode == 0 else None
     judge("the best by hand", value == found["objective"]["best"], f"{value} {done.stderr}")
 
 
+def meshes_within_limits():
+    """A limit of the energy that is felt, kept on the last mesh; a relation; a scattered friction; the same path on two ranks."""
+    scattered, _ = optimize("far_scattered", *FROM_FAR, ("dies/friction", 0.3), "Optimisation/scattered=dies/friction",
+                            "Optimisation/scatter range=0.2, 0.4", "Optimisation/samples=2")
+    judge("scattered", scattered["new_meshes"] and scattered["objective"]["best"] < 0.01 * scattered["objective"]["start"], scattered["objective"])
+    one, two = "billet/control point 1 r", "billet/control point 2 r"
+    energies = [trial["values"]["energy"] for trial in found_in("far")["trials"]]
+    bound = energies[-1] - 0.1 * abs(energies[-1] - energies[0])
+    found, _ = optimize("far_limited", *FROM_FAR, f"Optimisation/at most=energy: {bound!r}", "Optimisation/iterations=15")
+    judge("a limit on the last mesh", found["new_meshes"] and found["limits"][0]["best"] < bound * 1.002, found["limits"])
+    found, _ = optimize("far_related", *FROM_FAR, f"Optimisation/relations={one} + {two} <= 22")
+    judge("a relation", found["new_meshes"] and found["objective"]["best"] < 0.01 * found["objective"]["start"], found["objective"])
+    exact = ("Newton/tolerance=1e-12", "Adjoint/tolerance=1e-12")
+    alone, _ = optimize("far_alone", *FROM_FAR, *exact)
+    done = start(["mpirun", "-np", "2", *command("optimize", "far_ranks", *FROM_FAR, *exact)])
+    judge("two ranks", done.returncode == 0, done.stderr)
+    difference = max(abs(a - b) for a, b in zip(best_of(found_in("far_ranks")), best_of(alone)))
+    path = [[(row["decision"], row["mesh"]) for row in rows_of(folder)] for folder in ("far_alone", "far_ranks")]
+    judge("the same path over meshes", path[0] == path[1] and difference / 10 < 1e-8, difference)
+
+
+def free_form_far_away():
+    """A waist that modes of the side are to straighten: without new meshes cells turn inside out a few steps from the start."""
+    modes = ", ".join(f"billet/free form {i}: 1" for i in range(2, 7))
+    settings = ("Billet/control points=15, 0; 4, 5; 4, 10; 15, 15", "Billet/element size=4", "Billet/free form modes=6",
+                "Billet/free form patches=side outer", "Billet/volume held by=free form 1", "Design/parameters=billet/free form",
+                f"Optimisation/scales={modes}", "Optimisation/noise runs=0", "Optimisation/iterations=9")
+    found, _ = optimize("waist", *settings)
+    stuck, _ = optimize("stuck", *settings, "Optimisation/mesh quality=0")
+    judge("new meshes", len(found["new_meshes"]) > 0 and not stuck["new_meshes"], found["new_meshes"])
+    judge("are what the search needs", found["objective"]["best"] < 0.7 * stuck["objective"]["best"], f"{found['objective']} {stuck['objective']}")
+    failures = [trial["failure"] for trial in stuck["trials"] if trial["failure"]]
+    judge("without them cells turn inside out", failures and all("inside out" in failure for failure in failures), failures)
+    done = run("gradient", "waist_hand", case="waist/best.prm")
+    value = summary_of("waist_hand")["objectives"][0]["value"] if done.returncode == 0 else None
+    judge("the best by hand, its modes carried over", value == found["objective"]["best"], f"{value} {done.stderr}")
+    first = found["new_meshes"][0]
+    again, _ = optimize("waist", "--resume", *settings)
+    judge("resumed", again["new_meshes"] == found["new_meshes"] and best_of(again) == best_of(found), first)
+
+
 def resumed_through_meshes():
     reference = rows_of("far")
-    there = ", ".join(f"{name}: {value!r}" for name, value in FAR.items())
-    settings = (*FAR.items(), f"Design/meshed at={there}", "Optimisation/noise runs=0", "Optimisation/confirmation=0")
+    settings = FROM_FAR
     lines = text_of("far", "journal.jsonl").splitlines()
     new = next(i for i, line in enumerate(lines) if "new mesh" in line)
     for n in (new, new + 1, new + 2, len(lines) - 1):
@@ -383,4 +422,4 @@ def refused():
     judge("resumed with another tolerance", "taken from the journal" in printed and found["simulations"] >= len(before.splitlines()) // 3)
 
 
-main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, free_form, die_free_form, bounded, related, recorded, failing, far_away, resumed_through_meshes, gradient_on_a_new_mesh, from_elsewhere, identified, scattered, confirmed, on_two_ranks, reported, refused))
+main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, free_form, die_free_form, bounded, related, recorded, failing, far_away, meshes_within_limits, resumed_through_meshes, gradient_on_a_new_mesh, free_form_far_away, from_elsewhere, identified, scattered, confirmed, on_two_ranks, reported, refused))
