@@ -25,7 +25,7 @@ LATENCY, BANDWIDTH = 2e-6, 5e9  # of a message [s]; of a rank [bytes/s]
 NEIGHBOURS = 14  # ranks that a part has messages for: those a cube meets, without most corners
 LEVELS, SWEEPS = 3, 4  # of multigrid, and products with its matrices on each: Chebyshev before and after
 DOTS = 10  # sums over all ranks in a Krylov iteration: products with the vectors kept, on the mean
-GATHERED = 24 + 8 + 24 * 5.5 + 8 * 5.5  # bytes per node that all ranks get of an increment: V, P, bubbles, strain
+GATHERED = 24 + 8 + 8 * 5.5 / 2  # bytes per node that all ranks get of a stage: V, P, and half of the increment's strain
 STAGES = 2
 
 

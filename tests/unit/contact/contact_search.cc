@@ -48,10 +48,10 @@ namespace
     const FrictionRamp  ramp{0.5, false};
     ContactView<double> alone{
       together.mesh, together.topology, together.dies, together.states, together.X, together.edges};
-    together.comm    = MPI_COMM_WORLD;
-    const auto pairs = find_contact_pairs(alone, ramp, 0.8, true);
-    const auto found = find_contact_pairs(together, ramp, 0.8, true);
-    const auto set = make_contact_set<double>(alone, pairs, {ramp, 0.3}),
+    together.comm       = MPI_COMM_WORLD;
+    const auto pairs    = find_contact_pairs(alone, ramp, 0.8, true);
+    const auto found    = find_contact_pairs(together, ramp, 0.8, true);
+    const auto set      = make_contact_set<double>(alone, pairs, {ramp, 0.3}),
                of_ranks = make_contact_set<double>(together, pairs, {ramp, 0.3});
     const auto count    = [&](const bool nodes) {
       return std::count_if(

@@ -3,8 +3,8 @@
 
 // Who owns what. Proved, on one and on two ranks: every node and cell has one owner; numbers in matrices
 // follow each other rank by rank; what is gathered and what neighbours send is what the owner knows, and
-// nothing else changes; parts of sums come together at the owner; METIS' parts are of equal size, and fewer nodes are read from others than when
-// numbers are cut into ranges.
+// nothing else changes; parts of sums come together at the owner; METIS' parts are of equal size, and fewer
+// nodes are read from others than when numbers are cut into ranges.
 
 #include <deal.II/base/mpi.h>
 
@@ -122,7 +122,9 @@ namespace
     std::vector<double> dense;
     for (const unsigned int entry : there)
       dense.insert(dense.end(), &mine[width * entry], &mine[width * entry] + width);
-    GhostExchange(ownership, read, width, [&](const unsigned int e) { return place[e]; }).update(dense.data());
+    GhostExchange(ownership, read, width, [&](const unsigned int e) {
+      return place[e];
+    }).update(dense.data());
     right = true;
     for (unsigned int e = 0; e < dense.size(); ++e)
       right = right && dense[e] == known(there[e / width], e % width);

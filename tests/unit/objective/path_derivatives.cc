@@ -114,7 +114,11 @@ struct PathProblem
   }
 
   PathProblem(Random &random, const bool curved, const ElementPair pair = ElementPair::mini)
-      : scene(half_box_mesh(Vec3({10., 8., 6.}), {{3, 6, 4}}), pair, make_dies(curved), MPI_COMM_WORLD, Bubbles::all)
+      : scene(half_box_mesh(Vec3({10., 8., 6.}), {{3, 6, 4}}),
+              pair,
+              make_dies(curved),
+              MPI_COMM_WORLD,
+              Bubbles::all)
       , at(empty_inputs<double>(scene))
   {
     at.physics.law     = {1.3, 0.4, 0.2};
