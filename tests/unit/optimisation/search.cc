@@ -259,7 +259,7 @@ int main()
     failing.mesh_reach  = 0.7;
     failing.meshes_fail = true;
     failing.run({0.2, 0.3});
-    std::cout << "meshes made anew: " << answer(problem.n_meshes > 1) << ", optimum to 1e-6 "
+    std::cout << "meshes made anew: " << answer(problem.n_meshes > 0) << ", optimum to 1e-6 "
               << answer(problem.distance({1., 2.}) < 1e-6) << ", at most 18 designs "
               << answer(problem.evaluated.size() <= 18) << ", with a limit " << answer(limited.n_meshes > 0)
               << ", settled " << answer(limited.settled) << "\n"
