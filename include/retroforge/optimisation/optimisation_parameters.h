@@ -31,7 +31,7 @@ namespace retroforge
     double                   gradient_tolerance = 1e-3;
     double                   limit_tolerance    = 1e-4;
     unsigned int             noise_runs         = 3;
-    double                   mesh_quality = 0.1; ///< least, of the billet's cells before forging; 0: any
+    double                   mesh_quality = 0.2; ///< least, of the billet's cells before forging; 0: any
     double                   confirmation = 0.7;
     bool                     keep_records = false;
 
