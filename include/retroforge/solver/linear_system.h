@@ -29,7 +29,8 @@ namespace retroforge
                        const std::vector<Field<double>> &guesses       = {},
                        Transposition                     transposition = Transposition::plain);
 
-    /// Of a right-hand side as solve() sees it, scaled and without bubbles: what its tolerance is relative to.
+    /// Of a right-hand side as solve() sees it, scaled and without bubbles: what its tolerance is relative
+    /// to.
     double norm(const Field<double> &rhs) const;
 
     /// As solve, for the derivative of a residual, which a moving die makes large where it pushes
