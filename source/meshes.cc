@@ -16,6 +16,8 @@ namespace retroforge
     /// accident of one long step.
     constexpr unsigned int most_inverted = 3;
 
+    /// With few digits: a mesher makes another mesh of a shape that differs in the last ones, as the search's
+    /// does on another number of ranks, and the mesh is moved to the design itself.
     template <typename Values>
     std::string as_design(const Values &values)
     {
@@ -23,7 +25,7 @@ namespace retroforge
       for (const auto &[name, value] : values)
       {
         char number[32];
-        std::snprintf(number, sizeof number, "%.17g", value);
+        std::snprintf(number, sizeof number, "%.5g", value);
         text += (text.empty() ? "" : ", ") + name + ": " + number;
       }
       return text;

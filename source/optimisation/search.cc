@@ -179,6 +179,7 @@ namespace retroforge
     const double     radius =
       std::clamp(std::max(radius_, seen), 0.25 * parameters_.first_step, parameters_.largest_step);
     begun_with_ = slope;
+    begun_at_   = iterations_;
     minimiser_.minimise(
       problem(),
       {radius, parameters_.largest_step, noise_, [&](const MinimiserState &state) { return go_on(state); }});
@@ -188,15 +189,20 @@ namespace retroforge
   {
     radius_                   = state.radius;
     constexpr double shortest = 1e-5;
-    // While a limit presses, multipliers are renewed as soon as most of what the last ones changed is done.
-    constexpr double part   = 0.1;
-    const double     enough = pressing().empty() ? 0. : part * begun_with_;
-    const bool       may_go_on =
+    // While a limit presses, multipliers are renewed as soon as most of what the last ones changed is done;
+    // and where the merit is rough and that does not come, after some steps, so that the penalty may grow.
+    constexpr double       part          = 0.1;
+    constexpr unsigned int longest_round = 8;
+    const bool             presses       = !pressing().empty();
+    const double           enough        = presses ? part * begun_with_ : 0.;
+    const bool             is_long       = presses && iterations_ - begun_at_ >= longest_round;
+    const bool             may_go_on =
       iterations_ < parameters_.iterations && task_.n_evaluated() < parameters_.simulations;
     // First of all: what a bad mesh says of the others is not worth much.
     if (may_go_on && task_.mesh_is_bad && task_.mesh_is_bad(now_))
       stop_ = SearchStop::mesh;
-    else if (state.gradient <= std::max(enough, parameters_.gradient_tolerance * parameters_.first_step))
+    else if (is_long ||
+             state.gradient <= std::max(enough, parameters_.gradient_tolerance * parameters_.first_step))
       stop_ = SearchStop::gradient;
     else if (state.gradient * state.radius <= noise_)
       stop_ = SearchStop::noise;

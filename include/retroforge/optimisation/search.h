@@ -107,6 +107,7 @@ namespace retroforge
     double                 radius_     = 0.;
     double                 begun_with_ = 0.; ///< the merit's gradient where the present round began
     unsigned int           iterations_ = 0;
+    unsigned int           begun_at_   = 0; ///< how many there were then
     SearchStop             stop_       = SearchStop::running;
   };
 } // namespace retroforge

@@ -288,12 +288,12 @@ def replaced():
 
 
 def full_disk():
-    """A small file system of our own, where the machine lets us have one. Runs begin with their parameters, which grow with
-    the program: sizes are what is left beside them."""
+    """A small file system of our own, where the machine lets us have one. Runs begin with their parameters, in a file and
+    in the record's head, which grow with the program: sizes are what is left beside them."""
     parameters = os.path.getsize(os.path.join("twice", "parameters.prm"))
-    beside = lambda left: f"{4 * math.ceil(parameters / 4096) + left}k"  # noqa: E731
-    for size, name, more in (("4k", "first files", ""), (beside(24), "fields", ""),
-                             (beside(32), "record", "--set 'Output/fields every=0' --set Press/increments=60")):
+    beside = lambda left: f"{8 * math.ceil(parameters / 4096) + left}k"  # noqa: E731
+    for size, name, more in (("4k", "first files", ""), (beside(56), "fields", ""),
+                             (beside(60), "record", "--set 'Output/fields every=0' --set Press/increments=60")):
         disk, saved = f"disk_{name.replace(' ', '_')}", f"saved_{name.replace(' ', '_')}"
         os.mkdir(disk)
         script = (f"mount -t tmpfs -o size={size} tmpfs {disk} || exit 77; "

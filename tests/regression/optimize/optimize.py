@@ -3,6 +3,7 @@
 """An optimisation: the contour of a billet that ends with a straight side, free and with limits and bounds; its results are
 those of runs a user would make by hand; killed and resumed it is the same; failing designs are refused and told.
 Usage: optimize.py RETROFORGE"""
+import json
 import os
 import pathlib
 import shutil

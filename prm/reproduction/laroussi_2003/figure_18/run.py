@@ -49,7 +49,7 @@ def heights_above_grid(stl, n=400):
 
 def approach(build):
     settings = {"Die bell/point": "0, 0, 56.5", "Press/stroke": 9, "Press/increments": 18, "Output/fields every": 0,
-                "Objectives/names": "filling, unfilled volume, energy", "Objectives/history every": 0}
+                "Objectives/names": "filling, filling of free nodes, unfilled volume, energy", "Objectives/history every": 0}
     summary, text = case_tools.run(build, "simulate", os.path.join(HERE, "case.prm"), settings, "approach", may_fail=True)
     print(text[-2000:])
     energy = next((o["value"] for o in summary["objectives"] if o["name"] == "energy"), 0.0) if summary else 0.0
