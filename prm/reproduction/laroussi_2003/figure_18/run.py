@@ -63,7 +63,7 @@ def main():
     with open(os.path.join("run", "objectives.csv")) as file:
         rows = [{name.split(" [")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
     z = heights_above_grid(os.path.join("run", "die_bell.stl"))
-    print("| stroke [mm] | piece onto die | die onto piece | mean (109) | its free nodes only | by samples | true | mean / true | "
+    print("| stroke [mm] | half piece onto die | half die onto piece | mean (109) | its free nodes only | by samples | true | mean / true | "
           "free / true | samples / true |\n" + "| --- " * 10 + "|")
     table = []
     for row in rows:
@@ -87,7 +87,7 @@ def draw(table):
     matplotlib.use("Agg")
     from matplotlib import pyplot
     figure, axes = pyplot.subplots(figsize=(7, 4))
-    for column, style, label in ((1, "-", "piece onto die"), (2, "-", "die onto piece"), (3, "-", "mean (109)"),
+    for column, style, label in ((1, "-", "half piece onto die"), (2, "-", "half die onto piece"), (3, "-", "mean (109)"),
                                  (4, "--", "mean, free nodes only"), (5, "o", "by samples"), (6, "k-", "true")):
         axes.plot(table[:, 0], table[:, column], style, markersize=4, label=label)
     axes.set_xlabel("stroke [mm]")
