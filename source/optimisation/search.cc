@@ -190,13 +190,16 @@ namespace retroforge
     radius_                   = state.radius;
     constexpr double shortest = 1e-5;
     // While a limit presses, multipliers are renewed as soon as most of what the last ones changed is done;
-    // and where the merit is rough and that does not come, after some steps, so that the penalty may grow.
+    // and where the merit is rough, that does not come and the limit is far off, after some steps, so that
+    // the penalty may grow.
     constexpr double       part          = 0.1;
     constexpr unsigned int longest_round = 8;
     const bool             presses       = !pressing().empty();
     const double           enough        = presses ? part * begun_with_ : 0.;
-    const bool             is_long       = presses && iterations_ - begun_at_ >= longest_round;
-    const bool             may_go_on =
+    constexpr double       far_off       = 0.01; // of the limit
+    const bool             is_long =
+      iterations_ - begun_at_ >= longest_round && criteria_.largest_excess(now_.values) > far_off;
+    const bool may_go_on =
       iterations_ < parameters_.iterations && task_.n_evaluated() < parameters_.simulations;
     // First of all: what a bad mesh says of the others is not worth much.
     if (may_go_on && task_.mesh_is_bad && task_.mesh_is_bad(now_))
