@@ -94,7 +94,8 @@ namespace retroforge
                            const IncrementStart<double> &start,
                            NodalVectors<double>          positions,
                            const SolveRecord            &solve,
-                           const double                  weight)
+                           const double                  weight,
+                           std::vector<Vec3>             bubbles)
       : X(std::move(positions))
       , active(solve.active)
       , weight(weight)
@@ -103,7 +104,9 @@ namespace retroforge
   {
     W.V = solve.V;
     W.P = solve.P;
-    recover_bubbles(stage, W);
+    if (!bubbles.empty())
+      W.beta = std::move(bubbles);
+    settle_bubbles(stage, W);
   }
 
   Increment::Increment(const Scene            &scene,
@@ -253,13 +256,15 @@ namespace retroforge
   std::shared_ptr<const SolvedStage> Increment::recorded_stage(const IncrementStart<double> &start,
                                                                const NodalVectors<double>   &X,
                                                                const IncrementRecord        &record,
-                                                               const unsigned int            s) const
+                                                               const unsigned int            s,
+                                                               std::vector<Vec3> bubbles) const
   {
     return std::make_shared<const SolvedStage>(scene_,
                                                start,
                                                advanced(X, start.dt, scheme_of(record).a[s], record.solves),
                                                record.solves[s],
-                                               scheme_of(record).b[s]);
+                                               scheme_of(record).b[s],
+                                               std::move(bubbles));
   }
 
   SolvedIncrement Increment::recorded(std::shared_ptr<const IncrementStart<double>> start,
@@ -322,10 +327,14 @@ namespace retroforge
   {
     system_.reset();
     earlier_lambdas_.clear();
+    earlier_bubbles_.clear();
   }
 
   namespace
   {
+    /// Of the increments after, from which an adjoint system starts: each spares more iterations than it costs.
+    constexpr std::size_t n_starts = 5;
+
     /// A rank sums over its own cells: the others' strain has no weight there.
     std::vector<double> owned_part(const std::vector<double> &strain, const Partition &partition)
     {
@@ -369,13 +378,15 @@ namespace retroforge
       costates.size(),
       {ContactSetBar(record.pairs.size()), PhysicsBar(scene_.dies), std::vector<NodalVectors<double>>(n)});
     earlier_lambdas_.resize(n);
+    earlier_bubbles_.resize(n);
     // The first stage of a midpoint step, which leads to half a step, has a right-hand side, and a share in
     // the gradient, smaller than the second by far: what is asked of both is alike in absolute terms.
     std::vector<double> largest(costates.size(), 0.);
     for (unsigned int s = n; s-- > 0;)
     {
-      const auto              at   = recorded_stage(start, X, record, s);
+      const auto              at   = recorded_stage(start, X, record, s, std::move(earlier_bubbles_[s]));
       const StageView<double> view = at->view();
+      earlier_bubbles_[s]          = at->W.beta;
       system_.assemble(at->stage, at->W, at->active);
       earlier_lambdas_[s].resize(costates.size());
       for (std::size_t j = 0; j < costates.size(); ++j)
@@ -424,7 +435,7 @@ namespace retroforge
         reverse_residual(view, lambda, stage_bar);
         lambda.beta = {}; // a start is of velocities and pressures
         guesses.insert(guesses.begin(), std::move(lambda));
-        guesses.resize(std::min<std::size_t>(guesses.size(), 3));
+        guesses.resize(std::min(guesses.size(), n_starts));
         if (s == 0)
           reverse_contact_set(scene_.view(start.physics.dies, X),
                               start.contact,

@@ -59,8 +59,9 @@ namespace retroforge
                    const IncrementRecord      &record);
   };
 
-  /// A stage in equilibrium, with what its view refers to. Bubbles are recovered from nothing: a resumed run
-  /// has the same bits.
+  /// A stage in equilibrium, with what its view refers to. Bubbles are recovered from nothing, so that a
+  /// resumed run has the same bits, or from others near them, which takes about half as long and changes them
+  /// by rounding.
   struct SolvedStage
   {
     const NodalVectors<double> X;
@@ -73,7 +74,8 @@ namespace retroforge
                 const IncrementStart<double> &start,
                 NodalVectors<double>          X,
                 const SolveRecord            &solve,
-                double                        weight);
+                double                        weight,
+                std::vector<Vec3>             bubbles = {});
     SolvedStage(const SolvedStage &) = delete; // its members refer to each other
 
     StageView<double> view() const { return {stage, W, active, weight}; }
@@ -166,7 +168,8 @@ namespace retroforge
     std::shared_ptr<const SolvedStage> recorded_stage(const IncrementStart<double> &start,
                                                       const NodalVectors<double>   &X,
                                                       const IncrementRecord        &record,
-                                                      unsigned int                  s) const;
+                                                      unsigned int                  s,
+                                                      std::vector<Vec3>             bubbles = {}) const;
     /// Of an adjoint system, relative to its right-hand side.
     /// @param norm, largest  of that, and of the largest one of the increment's stages so far
     double      tolerance_of(double norm, double largest) const;
@@ -180,5 +183,7 @@ namespace retroforge
     Timings         &timings_;
     /// Of each stage and costate, from the increments reversed last: where the next adjoint system starts.
     std::vector<std::vector<std::vector<Field<double>>>> earlier_lambdas_;
+    /// Of each stage of the increment reversed last.
+    std::vector<std::vector<Vec3>> earlier_bubbles_;
   };
 } // namespace retroforge
