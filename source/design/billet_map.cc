@@ -200,14 +200,7 @@ namespace retroforge
   {
     if (!shapes_.complaint)
       return;
-    std::vector<double> all;
-    for (const ShapeParameter &parameter : shapes_.parameters)
-      all.push_back(parameter.nominal);
-    for (unsigned int j = 0; j < mu.size(); ++j)
-      all[place_[j]] = mu[j];
-    if (held_)
-      all[*held_] = held;
-    if (const std::string complaint = shapes_.complaint(all); !complaint.empty())
+    if (const std::string complaint = shapes_.complaint(all_values(mu, held)); !complaint.empty())
       throw Error("Design/billet",
                   complaint +
                     (held_ ? " (" + shapes_.parameters[*held_].name + " follows from the volume)" : ""),
@@ -264,7 +257,7 @@ namespace retroforge
     return X;
   }
 
-  std::vector<double> BilletMap::all_values(const std::vector<double> &mu) const
+  std::vector<double> BilletMap::all_values(const std::vector<double> &mu, const double held) const
   {
     std::vector<double> all;
     for (const ShapeParameter &parameter : shapes_.parameters)
@@ -272,8 +265,13 @@ namespace retroforge
     for (unsigned int j = 0; j < mu.size(); ++j)
       all[place_[j]] = mu[j];
     if (held_)
-      all[*held_] = held_value(mu);
+      all[*held_] = held;
     return all;
+  }
+
+  std::vector<double> BilletMap::all_values(const std::vector<double> &mu) const
+  {
+    return all_values(mu, held_ ? held_value(mu) : 0.);
   }
 
   std::vector<double> BilletMap::pull_back(const std::vector<double>  &mu,

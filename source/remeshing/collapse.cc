@@ -167,7 +167,7 @@ namespace retroforge
                             const double            longest)
     {
       for (const NodeIndex other : context.mesh.neighbours(a))
-        if (other != b && context.relative_length(other, b) > longest)
+        if (other != b && context.is_longer(other, b, longest))
           return false;
       return true;
     }

@@ -66,11 +66,8 @@ namespace retroforge
                    const Condition        &wanted)
     {
       for (const auto &[a, b] : first == 0 ? all_edges(context.mesh) : edges_of_cells(context.mesh, first))
-      {
-        const double length = context.relative_length(a, b);
-        if (wanted(length))
-          queue.insert({length, a, b});
-      }
+        if (wanted(a, b))
+          queue.insert({context.relative_length(a, b), a, b});
     }
 
     // Quality a change in length may cost: what the quality pass can repair.
@@ -99,7 +96,9 @@ namespace retroforge
 
     unsigned int collapse_short_edges(RemeshingContext &context, const CellIndex first)
     {
-      const auto is_short = [&](const double length) { return length < context.parameters.shortest_edge; };
+      const auto is_short = [&](const NodeIndex a, const NodeIndex b) {
+        return context.is_shorter(a, b, context.parameters.shortest_edge);
+      };
       std::set<WeightedEdge> queue;
       add_edges(context, first, queue, is_short);
       unsigned int n_done = 0;
@@ -130,7 +129,9 @@ namespace retroforge
                                        const std::set<Edge> &straight,
                                        const bool            all_straight)
     {
-      const auto is_long = [&](const double length) { return length > context.parameters.longest_edge; };
+      const auto is_long = [&](const NodeIndex a, const NodeIndex b) {
+        return context.is_longer(a, b, context.parameters.longest_edge);
+      };
       std::set<WeightedEdge> queue;
       add_edges(context, first, queue, is_long);
       std::vector<Edge> done;

@@ -188,7 +188,7 @@ namespace retroforge
     const Cell                  nodes = context_.mesh.cell(cell);
     std::optional<CavityChange> best;
     for (const auto &[i, j] : edges)
-      if (context_.relative_length(nodes[i], nodes[j]) > 2 * shortest_half)
+      if (context_.is_longer(nodes[i], nodes[j], 2 * shortest_half))
         keep_better(best, halved(nodes[i], nodes[j]));
     if (!best)
       return false;

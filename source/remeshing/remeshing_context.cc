@@ -17,6 +17,16 @@ namespace retroforge
     return (b - a).norm() / size((a + b) / 2.);
   }
 
+  bool RemeshingContext::is_longer(const NodeIndex a, const NodeIndex b, const double limit) const
+  {
+    return size.below((mesh.X(a) + mesh.X(b)) / 2., (mesh.X(b) - mesh.X(a)).norm() / limit);
+  }
+
+  bool RemeshingContext::is_shorter(const NodeIndex a, const NodeIndex b, const double limit) const
+  {
+    return !size.below((mesh.X(a) + mesh.X(b)) / 2., (mesh.X(b) - mesh.X(a)).norm() / limit);
+  }
+
   std::array<Vec3, 3> corners(const std::array<NodeIndex, 3> &face, const EditableMesh &mesh)
   {
     return {{mesh.X(face[0]), mesh.X(face[1]), mesh.X(face[2])}};

@@ -198,7 +198,7 @@ namespace retroforge
           const Vec3  &a = X[face.nodes[e]], &b = X[face.nodes[(e + 1) % 3]], middle = 0.5 * (a + b);
           const double length = (b - a).norm();
           if (face.nodes[e] > face.nodes[(e + 1) % 3] || length < coarse * smallest ||
-              length < coarse * size(middle))
+              !size.below(middle, length / coarse))
             continue;
           for (unsigned int d = 0; d < dies_.size(); ++d)
             if (near_die_[d])
@@ -257,11 +257,11 @@ namespace retroforge
 
   SizeField Remesher::size_field(const DieStates &states, std::shared_ptr<const ErrorSizes> errors) const
   {
-    return [this, states, errors = std::move(errors)](const Vec3 &x) {
+    return [this, states, errors = std::move(errors)](const Vec3 &x, const SizeQuestion &question) {
       double size = errors ? (*errors)(x) : element_size_;
-      for (unsigned int d = 0; d < dies_.size(); ++d)
+      for (unsigned int d = 0; d < dies_.size() && size >= question.enough; ++d)
         if (near_die_[d])
-          size = std::min(size, (*near_die_[d])(x - states[d].displacement));
+          size = (*near_die_[d])(x - states[d].displacement, {question.enough, std::min(size, question.most)});
       return size;
     };
   }

@@ -57,6 +57,7 @@ namespace retroforge
     template <typename Number>
     NodalVectors<Number> positions(const std::vector<Number> &mu, bool checked) const;
     double               held_by_newton(const NodalVectors<double> &X) const;
+    std::vector<double>  all_values(const std::vector<double> &mu, double held) const;
     void                 check(const std::vector<double> &mu, double held) const;
     void                 check_cells(const NodalVectors<double> &X) const;
 

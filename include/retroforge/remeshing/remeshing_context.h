@@ -21,6 +21,10 @@ namespace retroforge
     /// Length of an edge over the wanted one at its middle.
     double relative_length(NodeIndex a, NodeIndex b) const;
     double relative_length(const Vec3 &a, const Vec3 &b) const;
+
+    /// Whether that is larger, or smaller, than a limit: costs less than the length itself.
+    bool is_longer(NodeIndex a, NodeIndex b, double limit) const;
+    bool is_shorter(NodeIndex a, NodeIndex b, double limit) const;
   };
 
   /// Positions of three nodes.

@@ -4,15 +4,10 @@
 
 #include <deal.II/base/parameter_handler.h>
 
-#include <retroforge/core/types.h>
-
-#include <functional>
+#include <retroforge/remeshing/size_field.h>
 
 namespace retroforge
 {
-  /// Wanted edge length at a position [length].
-  using SizeField = std::function<double(const Vec3 &)>;
-
   /// Moves a point of the surface out of a die it would be inside of; returns other points as they are.
   using PushOut = std::function<Vec3(const Vec3 &)>;
 

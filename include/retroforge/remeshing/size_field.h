@@ -5,8 +5,44 @@
 #include <retroforge/geometry/box_tree.h>
 #include <retroforge/geometry/triangle_surface.h>
 
+#include <functional>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
 namespace retroforge
 {
+  /// What is asked of a wanted length: its value where that lies between the two. Where it is smaller than
+  /// `enough`, any smaller length will do; where it is larger than `most`, any that is not smaller than that.
+  /// Remeshing mostly asks whether an edge is too long or too short, which a search answers much sooner.
+  struct SizeQuestion
+  {
+    double enough = 0., most = std::numeric_limits<double>::max();
+  };
+
+  /// Wanted edge length at a position [length].
+  class SizeField
+  {
+  public:
+    /// @param of  a function of the position, or of the position and a SizeQuestion
+    template <typename F, typename = std::enable_if_t<!std::is_base_of_v<SizeField, std::decay_t<F>>>>
+    SizeField(F of)
+    {
+      if constexpr (std::is_invocable_v<F, const Vec3 &, const SizeQuestion &>)
+        of_ = std::move(of);
+      else
+        of_ = [of = std::move(of)](const Vec3 &x, const SizeQuestion &) { return of(x); };
+    }
+
+    double operator()(const Vec3 &x) const { return of_(x, {}); }
+
+    /// Whether it is smaller than `bound` at x.
+    bool below(const Vec3 &x, const double bound) const { return of_(x, {bound, bound}) < bound; }
+
+  private:
+    std::function<double(const Vec3 &, const SizeQuestion &)> of_;
+  };
+
   /// Wanted length of edges near a surface each facet f of which wants its own length s_f:
   ///
   ///   h(x) = min( h_0, min_f ( s_f + g |x - f| ) ),    |x - f| the distance of x to the facet,
@@ -33,7 +69,7 @@ namespace retroforge
                const std::vector<TriangleSurface::Edge> &ridges         = {},
                double                                    size_of_ridges = 0.);
 
-    double operator()(const Vec3 &x) const;
+    double operator()(const Vec3 &x, const SizeQuestion &question = {}) const;
 
     /// Facets with s_f < h_0.
     unsigned int n_facets() const { return facets_.size(); }

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""Energies and gradients on one, two and three ranks, and the adjoint against the tangent derivative of each parameter."""
+"""Energies and gradients on one, two and three ranks, the adjoint against the tangent derivative of each parameter, and what a rank needs
+of memory:   run.py BUILD tight | default | remeshed | soft | stiff | memory"""
 import os
+import resource
+import subprocess
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+SPEED = os.path.join(HERE, "..", "speed", "case.prm")
 sys.path.insert(0, os.path.join(HERE, "..", ".."))
 from case_tools import energy, figure, gradient, run  # noqa: E402
 
@@ -76,5 +80,32 @@ def stiff():
     figure("adjoint_tangent_stiff", max(worst.values()))
 
 
+def megabytes(ranks, words):
+    """Of each rank, at its largest, ascending: it is the only child of a process of its own."""
+    asked = ["mpirun", "--oversubscribe", "-np", str(ranks), sys.executable, "-B", os.path.abspath(__file__), BUILD, "one_rank", *words]
+    done = subprocess.run(asked, capture_output=True, text=True, check=True)
+    return sorted(float(line.split()[1]) for line in done.stdout.splitlines() if line.startswith("MEGABYTES"))
+
+
+def one_rank():
+    subprocess.run([os.path.join(BUILD, "retroforge"), *sys.argv[3:]], stdout=subprocess.DEVNULL, check=True)
+    print(f"MEGABYTES {resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024:.1f}", flush=True)
+
+
+def memory():
+    """Of a rank, over that of a run whose mesh is as good as none; forward and backward, 36k nodes."""
+    def words(size):
+        return ["gradient", SPEED, "--output", "memory", "--overwrite", "--set", f"Billet/element size={size}", "--set", "Press/increments=1",
+                "--set", "Press/stroke=0.5"]
+    before = None
+    for ranks in (1, 2, 4):
+        start, largest = megabytes(ranks, words(6))[-1], megabytes(ranks, words(0.663))
+        fields = [own - start for own in largest]
+        print(f"{ranks} ranks: {fields[0]:.0f} to {fields[-1]:.0f} MB over the {start:.0f} MB of the program")
+        if before:
+            figure(f"memory_{ranks}_over_{ranks // 2}", fields[-1] / before)
+        before = fields[-1]
+
+
 if __name__ == "__main__":
-    {"tight": tight, "default": default, "remeshed": remeshed, "soft": soft, "stiff": stiff}[sys.argv[2]]()
+    {"tight": tight, "default": default, "remeshed": remeshed, "soft": soft, "stiff": stiff, "memory": memory, "one_rank": one_rank}[sys.argv[2]]()
