@@ -88,7 +88,7 @@ namespace retroforge
 
     Parameters read(const CommandLine &command, std::string &echo)
     {
-      return as_solved(Parameters::read(command.case_file, command.settings(), echo), command);
+      return as_solved(Parameters::read(command, echo), command);
     }
 
     std::optional<Resumption>

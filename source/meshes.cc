@@ -104,9 +104,11 @@ namespace retroforge
 
   void Meshes::make_candidate(const std::vector<double> &mu)
   {
-    candidate_         = {};
-    candidate_.made_at = meshed_at(mu);
-    candidate_.made    = make_case(first_.command, candidate_.made_at, first_.comm);
+    candidate_          = {};
+    candidate_.made_at  = meshed_at(mu);
+    CommandLine command = first_.command;
+    command.case_text   = first_.echo;
+    candidate_.made     = make_case(std::move(command), candidate_.made_at, first_.comm);
   }
 
   void Meshes::use_candidate()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/fingerprint.h>
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/core/stop_notice.h>
 #include <retroforge/core/version.h>
@@ -29,7 +30,7 @@ namespace retroforge
     unsigned int n_groups(const CommandLine &command)
     {
       std::string ignored;
-      return Parameters::read(command.case_file, command.settings(), ignored).optimisation.side_by_side;
+      return Parameters::read(command, ignored).optimisation.side_by_side;
     }
 
     /// What gives the same bits for the same design. @param comm  that it is forged on
@@ -70,6 +71,21 @@ namespace retroforge
       return text;
     }
 
+    std::string as_parameters(const std::string &design)
+    {
+      return "# What the case is to include for this design, on the mesh of the case.\nsubsection Design\n  "
+             "set at = " +
+             design + "\nend\n";
+    }
+
+    /// Of a search that went on, whose designs may have had other numbers before.
+    bool has_shapes(const std::string &base, const std::string &design, const bool with_record)
+    {
+      const std::string file = base + "_design.prm";
+      return std::filesystem::exists(file) && read_file(file) == design &&
+             (!with_record || std::filesystem::exists(base + "/header.h5"));
+    }
+
     std::map<std::string, std::string> parameters_of(const Operations &operations)
     {
       std::map<std::string, std::string> parameters;
@@ -78,11 +94,41 @@ namespace retroforge
       return parameters;
     }
 
+    /// What the parameters of all operations name, but do not tell.
+    std::map<std::string, std::uint64_t> surfaces_of(const Operations &operations)
+    {
+      std::map<std::string, std::uint64_t> surfaces;
+      for (std::size_t o = 0; o < operations.size(); ++o)
+      {
+        const Case       &at  = operations.at(o);
+        const std::string tag = o == 0 ? "" : " of operation " + operations.name(o);
+        Fingerprint       billet;
+        billet.add(at.billet.cells.data(), at.billet.cells.size() * sizeof(at.billet.cells[0]));
+        billet.add(at.billet.X.data(), at.billet.X.size() * sizeof(Vec3));
+        surfaces["mesh of the billet" + tag] = billet.value;
+        const auto of_dies                   = fingerprints(at.model.dies);
+        for (std::size_t d = 0; d < of_dies.size(); ++d)
+          surfaces["surface of die " + at.model.dies[d].name + tag] = of_dies[d];
+        const auto values = parameter_values(parameter_lines_of(at.echo, "case"));
+        for (const ObjectiveParameters &objective : at.parameters.objectives.all)
+          if (const auto target = values.find("Objective " + objective.name + "/target");
+              target != values.end() && std::filesystem::is_regular_file(target->second))
+          {
+            const std::string contents = read_file(target->second);
+            Fingerprint       of_file;
+            of_file.add(contents.data(), contents.size());
+            surfaces["target of objective " + objective.name + tag] = of_file.value;
+          }
+      }
+      return surfaces;
+    }
+
     /// With elements and increments a part as large.
     CommandLine finer(const Case &at, const double part)
     {
       CommandLine command = at.command;
-      const auto  set     = [&](const std::string &path, const double value) {
+      command.case_text   = at.echo;
+      const auto set      = [&](const std::string &path, const double value) {
         command.overrides.emplace_back(path, exact(value));
       };
       set("Billet/element size", part * at.parameters.billet.element_size);
@@ -101,13 +147,25 @@ namespace retroforge
       return names;
     }
 
-    /// Objectives that may not be smaller than a limit.
-    std::vector<bool> from_below(const Criteria &criteria)
+    /// Objectives that may not be smaller than a limit. @param names  of all
+    std::vector<bool>
+    from_below(const Criteria &criteria, const std::vector<std::string> &names, const bool is_scattered)
     {
-      std::vector<bool> below(criteria.objective.weights.size(), false);
+      std::vector<bool> below(names.size(), false);
       for (const Limit &limit : criteria.limits)
         if (limit.at_least)
           below[limit.objective] = true;
+      for (std::size_t o = 0; o < below.size() && is_scattered; ++o)
+        if (below[o] && (criteria.objective.weights[o] != 0. ||
+                         std::any_of(criteria.limits.begin(), criteria.limits.end(), [o](const Limit &limit) {
+                           return limit.objective == o && !limit.at_least;
+                         })))
+          throw Error(
+            "Optimisation/at least",
+            "limits '" + names[o] + "', which is also made small or limited from above",
+            "with a scattered parameter an objective counts as mean + lambda sigma, or under a lower "
+            "limit as mean - lambda sigma, not as both",
+            "name a second objective of the same type for the lower limit");
       return below;
     }
 
@@ -130,10 +188,13 @@ namespace retroforge
       , root_(groups_.is_first_rank())
       , space_(case_.design.parameters(), varied(case_), case_.mu, case_.parameters.optimisation)
       , criteria_(objectives_, case_.parameters.optimisation)
-      , scatter_(case_.design.parameters(), case_.parameters.optimisation, from_below(criteria_))
+      , scatter_(
+          case_.design.parameters(),
+          case_.parameters.optimisation,
+          from_below(criteria_, names_of(objectives_), !case_.parameters.optimisation.scattered.empty()))
       , journal_(make_journal())
       , meshes_(case_, case_.parameters.optimisation.mesh_quality)
-      , trials_(std::make_unique<Trials>(operations_, journal_, scatter_, groups_))
+      , trials_(operations_, journal_, scatter_, groups_)
       , search_(space_, criteria_, case_.parameters.optimisation, search_task())
       , results_{space_, criteria_, names_of(objectives_), units_of(objectives_)}
   {
@@ -142,6 +203,8 @@ namespace retroforge
       // A start of which nothing can come is refused before anything is written.
       const Case               &at = operations_.at(o);
       const std::vector<double> mu = operations_.values(o, case_.mu);
+      for (std::size_t i = 0; i < scatter_.n_samples(); ++i)
+        at.design.check_values(operations_.values(o, scatter_.sample(case_.mu, i)));
       Trial(at, at.design.process(mu), at.design.positions(mu), Trial::Keep::nothing).check();
       if (o > 0)
         results_.operations[operations_.name(o)] = operations_.common(o);
@@ -151,9 +214,9 @@ namespace retroforge
   SearchTask Optimize::search_task()
   {
     SearchTask task;
-    task.evaluate      = [&](const std::vector<double> &mu) { return trials_->evaluate(mu); };
-    task.differentiate = [&](const std::vector<double> &mu) { return trials_->differentiate(mu); };
-    task.n_evaluated   = [&] { return n_asked(); };
+    task.evaluate      = [&](const std::vector<double> &mu) { return trials_.evaluate(mu); };
+    task.differentiate = [&](const std::vector<double> &mu) { return trials_.differentiate(mu); };
+    task.n_evaluated   = [&] { return trials_.n_asked(); };
     task.mesh_is_bad   = [&](const Evaluation &now) { return mesh_is_bad(now); };
     task.renew_mesh    = [&](const Evaluation &now) { return renew_mesh(now); };
     task.decided       = [&](const Evaluation &evaluation, const bool accepted) {
@@ -183,11 +246,9 @@ namespace retroforge
 
   void Optimize::forge_on(const Case &at, const std::string &made_at)
   {
-    n_asked_before_ += trials_->n_asked();
-    trials_.reset(); // its forging, of the other mesh, need not stay in memory
     journal_.use_mesh(made_at);
     operations_.use_main(at);
-    trials_ = std::make_unique<Trials>(operations_, journal_, scatter_, groups_);
+    trials_.renew_main();
   }
 
   std::optional<Evaluation> Optimize::renew_mesh(const Evaluation &now)
@@ -198,7 +259,7 @@ namespace retroforge
     mesh.volume_before  = meshes_.volume_at(now.mu);
     mesh.before         = now.values;
     forge_on(*meshes_.candidate().made, mesh.made_at);
-    Evaluation again = trials_->evaluate(now.mu);
+    Evaluation again = trials_.evaluate(now.mu);
     if (again.failed())
     {
       if (root_)
@@ -208,7 +269,7 @@ namespace retroforge
       return {};
     }
     meshes_.use_candidate();
-    again              = trials_->differentiate(now.mu);
+    again              = trials_.differentiate(now.mu);
     mesh.quality_after = meshes_.quality(now.mu);
     mesh.volume_after  = meshes_.volume_at(now.mu);
     mesh.after         = again.values;
@@ -226,14 +287,15 @@ namespace retroforge
   {
     const std::string program = program_on(case_.comm), file = path_of("journal.jsonl");
     if (!resume_)
-      return Journal({program, case_.echo, parameters_of(operations_)});
+      return Journal({program, case_.echo, parameters_of(operations_), surfaces_of(operations_)});
     if (!std::filesystem::exists(file))
       throw Error(case_.command.output_directory,
                   "holds no journal of an optimisation",
                   "--resume goes on with one",
                   "leave --resume out to begin, or name the folder with --output DIR");
-    Journal journal = Journal::read(file);
-    if (journal.header().program != program)
+    Journal         journal = Journal::read(file);
+    Journal::Header header  = journal.header();
+    if (header.program != program)
       throw Error(
         file,
         "was written by Retroforge " + journal.header().program + ", and this is " + program,
@@ -247,15 +309,20 @@ namespace retroforge
         "Output and Scan may differ",
         "restore the parameters (" + path_of("parameters.prm") +
           " has them), or begin anew with --overwrite");
-    std::map<std::string, std::string> operations = journal.header().operations;
     for (const auto &[name, parameters] : parameters_of(operations_))
-      if (!make_same_results(operations.emplace(name, parameters).first->second, parameters))
+      if (!make_same_results(header.operations.emplace(name, parameters).first->second, parameters))
         throw Error(file,
                     "has forgings of another operation " + name,
                     "an optimisation goes on with the operations it began with, and may get more of them",
                     "restore its parameters (" + path_of("parameters_" + name + ".prm") +
                       " has them), or begin anew with --overwrite");
-    journal.set_operations(std::move(operations));
+    for (const auto &[name, fingerprint] : surfaces_of(operations_))
+      if (header.surfaces.emplace(name, fingerprint).first->second != fingerprint)
+        throw Error(file,
+                    "has forgings with another " + name,
+                    "an optimisation goes on with the billet, dies and targets it began with",
+                    "restore its file, or the version of the mesher, or begin anew with --overwrite");
+    journal.set_header(std::move(header));
     return journal;
   }
 
@@ -298,6 +365,8 @@ namespace retroforge
     results_.stop      = search_.stop();
     results_.best      = settled ? search_.now() : best_so_far();
     report_best();
+    if (root_)
+      write_results(); // the confirmation is the longest forging, and may be stopped
     confirm();
     if (root_)
     {
@@ -339,14 +408,14 @@ namespace retroforge
 
   void Optimize::begin()
   {
-    const Evaluation start = trials_->evaluate(case_.mu);
+    const Evaluation start = trials_.evaluate(case_.mu);
     if (start.failed())
       throw Error("optimize",
                   "cannot forge the design it begins with, in increment " +
                     std::to_string(start.increments + 1) + ": " + start.failure,
                   "the first design must succeed",
                   "begin elsewhere with --at, or cure what the message says");
-    results_.start = results_.best = trials_->differentiate(case_.mu);
+    results_.start = results_.best = trials_.differentiate(case_.mu);
     criteria_.set_sizes(results_.start.values);
     search_.begin(results_.start);
     add_row(Decision::start, results_.start, search_.radius());
@@ -384,7 +453,7 @@ namespace retroforge
       for (double &entry : x)
         entry = part * (2. * (generator() / 4294967295.) - 1.);
       const std::vector<double> mu         = space_.values(space_.projected(x));
-      const Evaluation          evaluation = trials_->evaluate(mu);
+      const Evaluation          evaluation = trials_.evaluate(mu);
       add_row(Decision::noise, evaluation, part);
       if (evaluation.failed())
         continue;
@@ -424,7 +493,7 @@ namespace retroforge
 
   void Optimize::report_best()
   {
-    results_.best = trials_->differentiate(results_.best.mu);
+    results_.best = trials_.differentiate(results_.best.mu);
     // Multipliers are those of the design accepted last, which the rounds ended with.
     results_.multipliers = search_.multipliers();
     if (!criteria_.data.empty())
@@ -432,7 +501,7 @@ namespace retroforge
     results_.by_moving_relation =
       slopes_of_relations(space_, results_.best.mu, lagrangian_slopes(results_.best));
     write_shapes(results_.best, "best");
-    results_.n_simulations = n_asked();
+    results_.n_simulations = trials_.n_asked();
     results_.n_sweeps      = 0;
     for (std::size_t i = 0; i < journal_.size(); ++i)
       results_.n_sweeps += journal_[i].gradients.empty() ? 0 : 1;
@@ -511,11 +580,12 @@ namespace retroforge
   Journal Optimize::confirmation_journal(const Operations &fine) const
   {
     const std::string file = path_of("confirmation.jsonl");
-    Journal           begun({program_on(case_.comm), fine.at(0).echo, parameters_of(fine)});
+    Journal begun({program_on(case_.comm), fine.at(0).echo, parameters_of(fine), surfaces_of(fine)});
     if (resume_ && std::filesystem::exists(file))
       if (Journal kept = Journal::read(file);
           make_same_results(kept.header().parameters, begun.header().parameters) &&
-          kept.header().operations == begun.header().operations)
+          kept.header().operations == begun.header().operations &&
+          kept.header().surfaces == begun.header().surfaces)
         return kept;
     return begun;
   }
@@ -526,7 +596,7 @@ namespace retroforge
     results_.rows.push_back({decision, evaluation, search_.merit_of(evaluation), radius, meshes_.number()});
     if (results_.stop == Stop::running)
       results_.best = best_so_far();
-    results_.n_simulations = n_asked();
+    results_.n_simulations = trials_.n_asked();
     if (!root_)
       return;
     print_row(results_.rows.back());
@@ -554,7 +624,7 @@ namespace retroforge
     const unsigned int most = case_.parameters.optimisation.simulations;
     std::printf("  %.1f s, at most %.0f s left\n",
                 evaluation.seconds,
-                trials_->seconds_each() * (most > n_asked() ? most - n_asked() : 0));
+                trials_.seconds_each() * (most > trials_.n_asked() ? most - trials_.n_asked() : 0));
     std::fflush(stdout);
   }
 
@@ -583,20 +653,24 @@ namespace retroforge
     const Case       &at     = operations_.at(operation);
     const std::string base   = path_of("designs/" + operations_.titled(name, operation));
     const bool        writes = dealii::Utilities::MPI::this_mpi_process(case_.comm) == 0;
+    const std::string design = as_parameters(values_by_name(at.design.parameters(), mu));
     const bool        there  = dealii::Utilities::MPI::broadcast(
-      case_.comm, writes && name != "best" && std::filesystem::exists(base + "_forged.stl"), 0);
-    const Trial *forged = there ? nullptr : trials_->forged(mu, operation);
+      case_.comm,
+      writes && name != "best" && has_shapes(base, design, case_.parameters.optimisation.keep_records),
+      0);
+    const Trial *forged = there ? nullptr : trials_.forged(mu, operation);
     if (forged == nullptr || !writes)
       return;
     const Trial &trial = *forged;
     if (case_.parameters.optimisation.keep_records)
-      trial.write_record(base, parameters_at(at, trials_->middle_sample(mu, operation)));
+      trial.write_record(base, parameters_at(at, trials_.middle_sample(mu, operation)));
     write_msh(base + "_billet.msh", at.billet, trial.X_0());
     write_boundary_stl(base + "_billet.stl", at.billet, trial.X_0());
     write_boundary_stl(base + "_forged.stl", trial.end().leg->scene.mesh, trial.end().X);
     for (const Die &die : trial.dies())
       if (die.surface())
         write_stl(base + "_die_" + die.name + ".stl", *die.surface(), StlFormat::binary);
+    write_file(base + "_design.prm", design); // when all of it is there
   }
 
   void Optimize::write_results() const
@@ -611,10 +685,11 @@ namespace retroforge
   std::string Optimize::parameters_at(const Case &at, const std::vector<double> &mu) const
   {
     CommandLine there = at.command;
+    there.case_text   = at.echo;
     there.at.clear();
     there.overrides.emplace_back("Design/at", values_by_name(at.design.parameters(), mu));
     std::string parameters;
-    Parameters::read(there.case_file, there.overrides, parameters);
+    Parameters::read(there, parameters);
     return parameters;
   }
 } // namespace retroforge

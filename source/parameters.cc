@@ -385,6 +385,16 @@ end
     return of_lines(file, read_parameter_lines(file, overrides), echo);
   }
 
+  Parameters Parameters::read(const CommandLine &command, std::string &echo)
+  {
+    if (command.case_text.empty())
+      return read(command.case_file, command.settings(), echo);
+    std::vector<ParameterLine>       lines = parameter_lines_of(command.case_text, command.case_file);
+    const std::vector<ParameterLine> more  = override_lines(command.settings());
+    lines.insert(lines.end(), more.begin(), more.end());
+    return of_lines("", lines, echo);
+  }
+
   Parameters Parameters::of_record(const std::string &text)
   {
     std::string ignored;

@@ -156,7 +156,7 @@ namespace retroforge
       return false;
     const CommandLine run = command_of(point);
     std::string       parameters;
-    Parameters::read(run.case_file, run.settings(), parameters);
+    Parameters::read(run, parameters);
     return make_same_results(read_file(file), parameters) && point.read_summary(run.command);
   }
 

@@ -29,7 +29,7 @@ namespace retroforge
       : operations_(operations), journal_(journal), scatter_(std::move(scatter)), groups_(groups)
   {
     for (std::size_t o = 0; o < operations.size(); ++o)
-      kept_.emplace_back(operations.at(o));
+      kept_.push_back(std::make_unique<KeptTrial>(operations.at(o)));
     const std::size_t n = jobs(operations.at(0).mu).size();
     if (groups_.n() > n)
       throw Error("Optimisation/side by side",
@@ -38,6 +38,11 @@ namespace retroforge
                   "a group of ranks has one of these forgings at least, or it would only wait",
                   "use " + std::to_string(n) +
                     " at most, and give the groups more ranks; or scatter a parameter, or name operations");
+  }
+
+  void Trials::renew_main()
+  {
+    kept_.front() = std::make_unique<KeptTrial>(operations_.at(0));
   }
 
   double Trials::seconds_each() const
@@ -122,12 +127,13 @@ namespace retroforge
       fails = fails || (there != nullptr && there->failed());
     }
     std::vector<Evaluation> found =
-      shared_out(wave, is_open, [&](const Job &job) { return kept_[job.operation].forge(job.mu); });
+      shared_out(wave, is_open, [&](const Job &job) { return kept_[job.operation]->forge(job.mu); });
     // As one group would have it: what others have forged behind a failure is forgotten.
     for (std::size_t k = 0; k < wave.size(); ++k)
     {
-      if (std::find(asked_.begin(), asked_.end(), wave[k]) == asked_.end())
-        asked_.push_back(wave[k]);
+      const AskedJob asked = {journal_.mesh_in(operations_.name(wave[k].operation)), wave[k]};
+      if (std::find(asked_.begin(), asked_.end(), asked) == asked_.end())
+        asked_.push_back(asked);
       if (is_open[k])
       {
         found[k].operation = operations_.name(wave[k].operation);
@@ -147,7 +153,7 @@ namespace retroforge
       is_open.push_back(known(job)->gradients.empty());
     std::vector<Evaluation> found = shared_out(wave, is_open, [&](const Job &job) {
       Evaluation evaluation;
-      evaluation.gradients = kept_[job.operation].gradients(*known(job));
+      evaluation.gradients = kept_[job.operation]->gradients(*known(job));
       return evaluation;
     });
     for (std::size_t k = wave.size(); k-- > 0;)
@@ -196,6 +202,6 @@ namespace retroforge
     const std::size_t place = std::find(all.begin(), all.end(), job) - all.begin();
     if (place % groups_.n() != groups_.number())
       return nullptr;
-    return &kept_[operation].forged(*known(job));
+    return &kept_[operation]->forged(*known(job));
   }
 } // namespace retroforge

@@ -39,8 +39,6 @@ namespace retroforge
     /// Forges the design again on the new mesh, and stays with the old one where that fails.
     std::optional<Evaluation> renew_mesh(const Evaluation &now);
     void                      forge_on(const Case &at, const std::string &made_at);
-    /// Forgings that were asked for, on all meshes.
-    unsigned int n_asked() const { return n_asked_before_ + trials_->n_asked(); }
 
     void begin();
     /// The gradient at the start by differences, for a user who asks.
@@ -67,20 +65,19 @@ namespace retroforge
     std::string parameters_at(const Case &at, const std::vector<double> &mu) const;
     std::string path_of(const std::string &file) const { return case_.command.output_directory + "/" + file; }
 
-    const bool              resume_;
-    const RankGroups        groups_;
-    Timings                 timings_;
-    Case                    case_;       ///< on the ranks of this rank's group
-    Operations              operations_; ///< the main one on the present mesh
-    const Objectives        objectives_; ///< of all operations
-    const bool              root_;       ///< this rank prints and writes
-    DesignSpace             space_;
-    Criteria                criteria_;
-    Scatter                 scatter_;
-    Journal                 journal_;
-    Meshes                  meshes_;
-    std::unique_ptr<Trials> trials_; ///< on the present mesh
-    unsigned int            n_asked_before_ = 0;
+    const bool       resume_;
+    const RankGroups groups_;
+    Timings          timings_;
+    Case             case_;       ///< on the ranks of this rank's group
+    Operations       operations_; ///< the main one on the present mesh
+    const Objectives objectives_; ///< of all operations
+    const bool       root_;       ///< this rank prints and writes
+    DesignSpace      space_;
+    Criteria         criteria_;
+    Scatter          scatter_;
+    Journal          journal_;
+    Meshes           meshes_;
+    Trials           trials_; ///< on the present mesh
 
     Search              search_;
     OptimisationResults results_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/adjoint/check.h>
+#include <retroforge/core/command_line.h>
 #include <retroforge/core/parameter_input.h>
 #include <retroforge/design/design.h>
 #include <retroforge/discretization/discretization_parameters.h>
@@ -113,6 +114,8 @@ namespace retroforge
     static Parameters read(const std::string                                      &file,
                            const std::vector<std::pair<std::string, std::string>> &overrides,
                            std::string                                            &echo);
+    /// The same of a command's case, with its settings.
+    static Parameters read(const CommandLine &command, std::string &echo);
 
     /// Reads the complete input of an earlier run, as its record has it.  @throws Error
     static Parameters of_record(const std::string &text);

@@ -8,6 +8,7 @@
 #include <retroforge/optimisation/scatter.h>
 
 #include <functional>
+#include <memory>
 
 namespace retroforge
 {
@@ -44,7 +45,10 @@ namespace retroforge
       return operations_.values(operation, scatter_.sample(mu, scatter_.n_samples() / 2));
     }
 
-    /// Forgings that were asked for, each once.
+    /// From here on the main operation has another mesh: what is kept of the one before is forgotten.
+    void renew_main();
+
+    /// Forgings that were asked for, each once on each mesh.
     unsigned int n_asked() const { return asked_.size(); }
     /// Mean time between the ends of two forgings, sweeps included [s].
     double seconds_each() const;
@@ -58,7 +62,8 @@ namespace retroforge
 
       bool operator==(const Job &other) const { return operation == other.operation && mu == other.mu; }
     };
-    using Jobs = std::vector<Job>;
+    using Jobs     = std::vector<Job>;
+    using AskedJob = std::pair<unsigned int, Job>; ///< with the number of its mesh
 
     const Evaluation *known(const Job &job) const;
     /// In the order in which they are asked for, each once: without the scattered parameter an operation is
@@ -76,13 +81,13 @@ namespace retroforge
     /// Of samples that are known, up to the first that fails.
     Evaluation combined(const std::vector<double> &mu) const;
 
-    const Operations      &operations_;
-    Journal               &journal_;
-    const Scatter          scatter_;
-    const RankGroups      &groups_;
-    std::vector<KeptTrial> kept_; ///< the last one of each operation in this group
-    Jobs                   asked_;
-    unsigned int           n_forged_ = 0;
-    double                 seconds_  = 0.;
+    const Operations                       &operations_;
+    Journal                                &journal_;
+    const Scatter                           scatter_;
+    const RankGroups                       &groups_;
+    std::vector<std::unique_ptr<KeptTrial>> kept_; ///< the last one of each operation in this group
+    std::vector<AskedJob>                   asked_;
+    unsigned int                            n_forged_ = 0;
+    double                                  seconds_  = 0.;
   };
 } // namespace retroforge

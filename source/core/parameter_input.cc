@@ -316,13 +316,21 @@ namespace retroforge
   {
     LineReader reader;
     reader.read(file);
+    const std::vector<ParameterLine> more = override_lines(overrides);
+    reader.lines.insert(reader.lines.end(), more.begin(), more.end());
+    return reader.lines;
+  }
+
+  std::vector<ParameterLine> override_lines(const std::vector<std::pair<std::string, std::string>> &overrides)
+  {
+    std::vector<ParameterLine> lines;
     for (const auto &[path, value] : overrides)
     {
       const std::string where = "--set " + path + "=" + value;
       check_text(where, path + value);
-      reader.lines.push_back({where, single_spaced(path), single_spaced(value)});
+      lines.push_back({where, single_spaced(path), single_spaced(value)});
     }
-    return reader.lines;
+    return lines;
   }
 
   std::vector<ParameterLine> parameter_lines_of(const std::string &text, const std::string &name)

@@ -16,17 +16,19 @@ namespace retroforge
   {
     const std::string prefix = "billet/", where = "Design/meshed at";
 
-    std::vector<std::string> names_of(const FirstMesh &first)
+    /// Of the parameters that keep the planes of symmetry, and of the one that holds the volume.
+    std::vector<std::string> names_of(const BilletParameters &billet, const BilletMap &map)
     {
       std::vector<std::string> names;
-      for (const ShapeParameter &parameter : first.shapes.parameters)
+      for (const ShapeParameter &parameter : map.parameters())
         names.push_back(prefix + parameter.name);
+      if (!billet.volume_held_by.empty())
+        names.push_back(prefix + billet.volume_held_by);
       return names;
     }
 
-    void check_names(const FirstMesh &first, const ShapeValues &given)
+    void check_names(const std::vector<std::string> &known, const ShapeValues &given)
     {
-      const std::vector<std::string> known = names_of(first);
       for (const auto &[name, value] : given)
       {
         if (given.count(name) > 1)
@@ -51,8 +53,8 @@ namespace retroforge
   std::vector<double>
   shape_values(const BilletParameters &billet, const FirstMesh &first, const ShapeValues &given)
   {
-    check_names(first, given);
-    const BilletMap     map(billet, first);
+    const BilletMap map(billet, first);
+    check_names(names_of(billet, map), given);
     std::vector<double> mu;
     for (const ShapeParameter &parameter : map.parameters())
     {

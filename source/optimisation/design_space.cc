@@ -3,8 +3,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/optimisation/design_space.h>
-
-#include <deal.II/lac/householder.h>
+#include <retroforge/optimisation/least_squares.h>
 
 #include <algorithm>
 #include <cmath>
@@ -280,21 +279,18 @@ namespace retroforge
     for (unsigned int j = 0; j < space.size(); ++j)
       if (space.at(mu, j) == DesignSpace::At::inside)
         free.push_back(j);
-    if (active.empty() || free.size() < active.size())
-      return slopes;
     // In scaled variables, where changes are alike.
-    dealii::FullMatrix<double> weights(free.size(), active.size());
-    dealii::Vector<double>     g(free.size()), nu(active.size());
-    for (unsigned int j = 0; j < free.size(); ++j)
+    std::vector<std::vector<double>> weights(active.size());
+    std::vector<double>              g;
+    for (const unsigned int j : free)
     {
-      const double scale = space.scales()[free[j]];
-      g(j)               = by_mu[free[j]] * scale;
+      g.push_back(by_mu[j] * space.scales()[j]);
       for (unsigned int r = 0; r < active.size(); ++r)
-        weights(j, r) = space.relations()[active[r]].weights[free[j]] * scale;
+        weights[r].push_back(space.relations()[active[r]].weights[j] * space.scales()[j]);
     }
-    dealii::Householder<double>(weights).least_squares(nu, g);
+    const std::vector<double> nu = least_squares(weights, g);
     for (unsigned int r = 0; r < active.size(); ++r)
-      slopes[active[r]] = nu(r);
+      slopes[active[r]] = nu[r];
     return slopes;
   }
 } // namespace retroforge

@@ -48,7 +48,8 @@ namespace retroforge
 
     std::string line_of(const Journal::Header &header)
     {
-      Json json = {{"retroforge", header.program}, {"parameters", header.parameters}};
+      Json json = {
+        {"retroforge", header.program}, {"parameters", header.parameters}, {"surfaces", header.surfaces}};
       if (!header.operations.empty())
         json["operations"] = header.operations;
       return json.dump();
@@ -120,7 +121,8 @@ namespace retroforge
         if (++n == 1)
           journal.header_ = {json.at("retroforge"),
                              json.at("parameters"),
-                             json.value("operations", std::map<std::string, std::string>())};
+                             json.value("operations", std::map<std::string, std::string>()),
+                             json.value("surfaces", std::map<std::string, std::uint64_t>())};
         else if (json.contains("gradients"))
           read_gradients(json, journal.evaluations_);
         else if (json.contains("new mesh"))

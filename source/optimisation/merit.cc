@@ -2,9 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
+#include <retroforge/optimisation/least_squares.h>
 #include <retroforge/optimisation/merit.h>
-
-#include <deal.II/lac/householder.h>
 
 #include <algorithm>
 #include <cmath>
@@ -155,24 +154,20 @@ namespace retroforge
     for (unsigned int i = 0; i < used.size(); ++i)
       used[i] = i;
     // There are few limits: the most negative multiplier is left out until none is.
-    while (!used.empty() && !g.empty())
+    std::vector<double> minus_g(g);
+    for (double &entry : minus_g)
+      entry = -entry;
+    while (!used.empty())
     {
-      if (used.size() > g.size())
-        used.resize(g.size());
-      dealii::FullMatrix<double> matrix(g.size(), used.size());
-      dealii::Vector<double>     right(g.size()), solution(used.size());
-      for (unsigned int j = 0; j < g.size(); ++j)
-      {
-        right(j) = -g[j];
-        for (unsigned int i = 0; i < used.size(); ++i)
-          matrix(j, i) = columns[used[i]][j];
-      }
-      dealii::Householder<double>(matrix).least_squares(solution, right);
-      const auto least = std::min_element(solution.begin(), solution.end());
+      std::vector<std::vector<double>> of_used;
+      for (const unsigned int i : used)
+        of_used.push_back(columns[i]);
+      const std::vector<double> solution = least_squares(of_used, minus_g);
+      const auto                least    = std::min_element(solution.begin(), solution.end());
       if (*least >= 0.)
       {
         for (unsigned int i = 0; i < used.size(); ++i)
-          lambda[used[i]] = solution(i);
+          lambda[used[i]] = solution[i];
         break;
       }
       used.erase(used.begin() + (least - solution.begin()));

@@ -127,6 +127,8 @@ namespace retroforge
         return "no step promises more than the noise";
       case Stop::step:
         return "steps have become too short to matter";
+      case Stop::limits:
+        return "limits are not met, and no design near by comes closer to them";
       case Stop::iterations:
         return "as many steps were tried as Optimisation/iterations allows";
       case Stop::simulations:

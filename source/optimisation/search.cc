@@ -61,7 +61,7 @@ namespace retroforge
     merit_ = {&criteria_, criteria_.value(now_.values), 1., {}, 0.};
     // A unit of merit is what the first step promises where nothing bends: so the first guess of the Hessian,
     // which is one, is of the right size.
-    const double slope = length(space_.pull_back(merit_.gradient(now_.values, now_.gradients)));
+    const double slope = varied_length(merit_.gradient(now_.values, now_.gradients));
     // Where it does not feel the design yet, as a die that nothing touches, a thousandth of it has to do.
     constexpr double flat = 1e-8, felt = 1e-3;
     const double     value = std::abs(criteria_.value(now_.values));
@@ -74,12 +74,20 @@ namespace retroforge
     radius_            = parameters_.first_step;
   }
 
+  double Search::varied_length(const std::vector<double> &by_mu) const
+  {
+    std::vector<double> by_x = space_.pull_back(by_mu);
+    for (std::size_t j = 0; j < by_x.size(); ++j)
+      if (space_.at(now_.mu, j) == DesignSpace::At::fixed)
+        by_x[j] = 0.;
+    return length(by_x);
+  }
+
   std::optional<double> Search::curving_penalty() const
   {
     double steepest = 0.;
     for (const Limit &limit : criteria_.limits)
-      steepest = std::max(
-        steepest, std::abs(limit.slope()) * length(space_.pull_back(now_.gradients[limit.objective])));
+      steepest = std::max(steepest, std::abs(limit.slope()) * varied_length(now_.gradients[limit.objective]));
     constexpr double curvature = 10.; // of the penalty, in that of the first guess of the Hessian
     return steepest > 0. ? std::optional<double>(curvature / (steepest * steepest)) : std::nullopt;
   }
@@ -109,8 +117,10 @@ namespace retroforge
       minimise_merit();
       return false;
     }
-    constexpr unsigned int most_rounds = 50;
-    double                 excess      = criteria_.largest_excess(now_.values);
+    constexpr unsigned int most_rounds    = 50;
+    constexpr double       largest_growth = 1e6; // of the penalty: beyond, rounding rules
+    const double           first_penalty  = merit_.penalty;
+    double                 excess         = criteria_.largest_excess(now_.values);
     for (unsigned int round = 0; round < most_rounds; ++round)
     {
       stop_                         = SearchStop::running;
@@ -124,14 +134,19 @@ namespace retroforge
       merit_.multipliers                    = multipliers;
       if (settled)
         return true;
-      if (is_stuck)
-        break;
       const double excess_now = criteria_.largest_excess(now_.values);
-      if (excess_now > 0.1 * excess && excess_now > parameters_.limit_tolerance)
+      const bool   grows      = excess_now > 0.1 * excess && excess_now > parameters_.limit_tolerance &&
+                         merit_.penalty < largest_growth * first_penalty;
+      if (grows)
         merit_.penalty = std::max(4. * merit_.penalty, curving_penalty().value_or(0.));
+      else if (is_stuck)
+        break;
       excess = excess_now;
       task_.renewed(excess);
     }
+    if (stop_ != SearchStop::iterations && stop_ != SearchStop::simulations &&
+        criteria_.largest_excess(now_.values) > parameters_.limit_tolerance)
+      stop_ = SearchStop::limits;
     return false;
   }
 

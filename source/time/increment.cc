@@ -257,7 +257,7 @@ namespace retroforge
                                                                const NodalVectors<double>   &X,
                                                                const IncrementRecord        &record,
                                                                const unsigned int            s,
-                                                               std::vector<Vec3> bubbles) const
+                                                               std::vector<Vec3>             bubbles) const
   {
     return std::make_shared<const SolvedStage>(scene_,
                                                start,
@@ -332,7 +332,8 @@ namespace retroforge
 
   namespace
   {
-    /// Of the increments after, from which an adjoint system starts: each spares more iterations than it costs.
+    /// Of the increments after, from which an adjoint system starts: each spares more iterations than it
+    /// costs.
     constexpr std::size_t n_starts = 5;
 
     /// A rank sums over its own cells: the others' strain has no weight there.

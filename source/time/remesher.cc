@@ -261,7 +261,8 @@ namespace retroforge
       double size = errors ? (*errors)(x) : element_size_;
       for (unsigned int d = 0; d < dies_.size() && size >= question.enough; ++d)
         if (near_die_[d])
-          size = (*near_die_[d])(x - states[d].displacement, {question.enough, std::min(size, question.most)});
+          size =
+            (*near_die_[d])(x - states[d].displacement, {question.enough, std::min(size, question.most)});
       return size;
     };
   }

@@ -16,6 +16,10 @@ namespace retroforge
                          ///< questions below
     std::string case_file;
 
+    /// Parameters that the case has instead of those of its file, which may change while a long run goes on;
+    /// empty: those of the file.
+    std::string case_text;
+
     /// Folder of the results. Without --output: the name of the case followed by `-results`, in the
     /// current folder (`prm/tutorial/upsetting.prm` -> `upsetting-results`).
     std::string output_directory;

@@ -35,6 +35,11 @@ namespace retroforge
   /// The same of a text that includes no files. @param name  of the text, for messages
   std::vector<ParameterLine> parameter_lines_of(const std::string &text, const std::string &name);
 
+  /// Lines that set what is given as path and value.
+  /// @throws Error for text that no parameter file may hold
+  std::vector<ParameterLine>
+  override_lines(const std::vector<std::pair<std::string, std::string>> &overrides);
+
   /// Values by path; of several lines that set a parameter the last counts.
   std::map<std::string, std::string> parameter_values(const std::vector<ParameterLine> &lines);
 

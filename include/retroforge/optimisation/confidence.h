@@ -9,14 +9,15 @@
 namespace retroforge
 {
   /// How well data determine parameters, by the Jacobian  J_ij = (dv_i/dmu_j) / s_i  where they agree best:
-  /// covariance  (J^T J)^-1,  for data whose errors are independent and normal.
+  /// covariance  D (D^T J^T J D)^-1 D^T,  for data whose errors are independent and normal, with D the
+  /// directions that bounds and relations leave free.
   struct Confidence
   {
     std::vector<unsigned int>        parameters;   ///< those that are inside their bounds
     std::vector<double>              deviations;   ///< standard ones, of each, in its unit
     std::vector<std::vector<double>> correlations; ///< between them
     double                           misfit  = 0.; ///< sum of ((v_i - d_i) / s_i)^2
-    int                              freedom = 0;  ///< data less parameters: what the misfit should be about
+    int                              freedom = 0;  ///< data less free directions: what the misfit should be about
     /// A change of the parameters, in scales, that data do not see; empty where they see all.
     std::vector<double> unseen;
 

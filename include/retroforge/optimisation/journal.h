@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -45,6 +46,8 @@ namespace retroforge
     {
       std::string                        program, parameters;
       std::map<std::string, std::string> operations = {}; ///< parameters of others, by their names
+      /// Fingerprints of what parameters only name: billets, dies and targets, in all operations.
+      std::map<std::string, std::uint64_t> surfaces = {};
     };
 
     /// Reads what is there; a line that was cut short by the program's end does not count.
@@ -54,11 +57,7 @@ namespace retroforge
     /// An empty one.
     explicit Journal(Header header) : header_(std::move(header)) {}
 
-    /// Into the header, in place of those there.
-    void set_operations(std::map<std::string, std::string> operations)
-    {
-      header_.operations = std::move(operations);
-    }
+    void set_header(Header header) { header_ = std::move(header); }
 
     const Header &header() const { return header_; }
     std::size_t   size() const { return evaluations_.size(); }
@@ -73,6 +72,9 @@ namespace retroforge
     /// @return its number, 0 for the first one   @throws Error  if a new one cannot be written
     unsigned int use_mesh(const std::string &made_at);
 
+    /// Of the mesh in use in an operation; others than the main one stay on the meshes of their own.
+    unsigned int mesh_in(const std::string &operation) const { return operation.empty() ? mesh_ : 0; }
+
     /// From here on what is added is written to `file`, too, which is made anew with what is here.
     /// @throws Error  if it cannot be written
     void write_to(const std::string &file);
@@ -83,8 +85,6 @@ namespace retroforge
 
   private:
     void append(const std::string &line) const;
-    /// Other operations stay on the meshes of their own.
-    unsigned int mesh_in(const std::string &operation) const { return operation.empty() ? mesh_ : 0; }
 
     Header                    header_;
     std::vector<Evaluation>   evaluations_;

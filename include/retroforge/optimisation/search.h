@@ -18,6 +18,7 @@ namespace retroforge
     gradient,
     noise,
     step,
+    limits, ///< which are not met, and no penalty makes the design meet them
     iterations,
     simulations,
     mesh ///< which is to be made anew before the search goes on
@@ -76,6 +77,8 @@ namespace retroforge
   private:
     /// The merit over scaled variables, from the present design.
     BoundedProblem problem();
+    /// Of a gradient over scaled variables, without parameters that the search does not vary.
+    double varied_length(const std::vector<double> &by_mu) const;
     /// The penalty that curves the merit by ten times as much as its first guess, across the limit that is
     /// felt most at the present design; none where none is felt.
     std::optional<double> curving_penalty() const;

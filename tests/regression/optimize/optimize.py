@@ -131,7 +131,7 @@ def die_free_form():
     sys.path.insert(0, os.path.join(ROOT, "prm", "tutorial", "hub"))
     import make_die
     make_die.FACETS_PER_TURN = 16
-    make_die.write_stl(pathlib.Path("cone.stl"), make_die.revolved([(float(r), 0.04 * r) for r in range(18)]))
+    cone(make_die, 0.04)
     scene = changed(SCENE, {"Die upper": {"shape": "stl", "file": "cone.stl", "point": "0, 0, 17", "free form modes": 4, "free form mirrors": 16},
                             "Press": {"stroke": 7, "increments": 14}, "Remeshing": {"when": "never"},
                             "Objective barrel": {"type": "cylinder distance", "patches": "side outer"},
@@ -149,9 +149,22 @@ def die_free_form():
         del scene["Die upper"][setting]
     written = changed(scene, {"Die upper": {"file": "die/designs/best_die_upper.stl", "point": "0, 0, 0"}, "Design": {"parameters": "material/K"}})
     write("written.prm", prm(written))
+    another_die_file(make_die)
     done = run("simulate", "written", case="written.prm")
     value = summary_of("written")["objectives"][0]["value"] if done.returncode == 0 else float("nan")
     judge("its surface", abs(value / objective["best"] - 1) < 0.02, f"{value} {done.stderr}")
+
+
+def cone(make_die, slope):
+    make_die.write_stl(pathlib.Path("cone.stl"), make_die.revolved([(float(r), slope * r) for r in range(18)]))
+
+
+def another_die_file(make_die):
+    """Under the same name: forgings under two dies do not belong into one journal."""
+    cone(make_die, 0.05)
+    done = run("optimize", "die", "--resume", case="die.prm")
+    judge("no resume under another die", done.returncode == 1 and "another surface of die upper" in done.stderr, done.stderr.strip())
+    cone(make_die, 0.04)
 
 
 def bounded():
@@ -403,6 +416,13 @@ def refused():
             ("data without deviations", ["Optimisation/objective=", "Optimisation/data=barrel: 0"], "has none for 'barrel'"),
             ("a scattered parameter that is not there", ["Optimisation/scattered=die upper/friction", "Optimisation/scatter range=0, 1"],
              "add it there"),
+            ("a range that the scattered parameter may not have",
+             ["Design/parameters=billet/control point 1 r, dies/friction", "Optimisation/scattered=dies/friction",
+              "Optimisation/scatter range=-0.2, 0.6"], "friction"),
+            ("an objective from both sides, with scatter",
+             ["Design/parameters=billet/control point 1 r, dies/friction", "Optimisation/scattered=dies/friction",
+              "Optimisation/scatter range=0.2, 0.6", "Optimisation/at least=energy: 1", "Optimisation/at most=energy: 1e9"],
+             "limited from above"),
             ("a relation of something else", ["Optimisation/relations=billet/control point 1 r <= die upper/offset"], "does not vary"),
             ("a relation that is none", ["Optimisation/relations=billet/control point 1 r < 5"], "has no = after <"),
             ("a relation that does not hold", ["Optimisation/relations=billet/control point 1 r <= 9"], "does not hold at the start"),

@@ -83,4 +83,16 @@ int main()
   // g + 2 a + 0 b = 0 in its first two numbers; the multiplier of b would be negative.
   const auto lambda = least_squares_multipliers({-2., -4., 0.3}, {{1., 2., 0.}, {0., 0., 1.}});
   std::cout << "multipliers: " << answer(std::abs(lambda[0] - 2.) < 1e-14 && lambda[1] == 0.) << "\n";
+  const auto close = [](const std::vector<double> &x, const std::vector<double> &y) {
+    double largest = 0.;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      largest = std::max(largest, std::abs(x[i] - y[i]));
+    return answer(x.size() == y.size() && largest < 1e-14);
+  };
+  std::cout << "a limit that the design does not move: "
+            << close(least_squares_multipliers({-2., -4., 0.3}, {{0., 0., 0.}, {1., 2., 0.}}), {0., 2.})
+            << "\none that is named twice: "
+            << close(least_squares_multipliers({-2., -4., 0.3}, {{1., 2., 0.}, {1., 2., 0.}}), {1., 1.})
+            << "\nmore limits than the design has directions: "
+            << close(least_squares_multipliers({-5.}, {{1.}, {2.}}), {1., 2.}) << "\n";
 }

@@ -53,18 +53,19 @@ namespace
   class Problem
   {
   public:
-    OptimisationParameters parameters;
-    Functions              functions;
-    std::vector<Vector>    evaluated;
-    unsigned int           n_swept = 0, n_accepted = 0, n_refused = 0, n_failed = 0, n_renewed = 0;
-    bool                   tells_in_turn = true;
-    double                 mesh_reach    = INFINITY; ///< of f's mesh, in a and b from where it was made
-    unsigned int           n_meshes = 0, n_refused_meshes = 0;
-    bool                   meshes_fail = false;
-    Evaluation             end;
-    Vector                 multipliers;
-    SearchStop             stop    = SearchStop::running;
-    bool                   settled = false;
+    OptimisationParameters   parameters;
+    std::vector<std::string> varied = {"a", "b"};
+    Functions                functions;
+    std::vector<Vector>      evaluated;
+    unsigned int             n_swept = 0, n_accepted = 0, n_refused = 0, n_failed = 0, n_renewed = 0;
+    bool                     tells_in_turn = true;
+    double                   mesh_reach    = INFINITY; ///< of f's mesh, in a and b from where it was made
+    unsigned int             n_meshes = 0, n_refused_meshes = 0;
+    bool                     meshes_fail = false;
+    Evaluation               end;
+    Vector                   multipliers;
+    SearchStop               stop    = SearchStop::running;
+    bool                     settled = false;
 
     Problem()
     {
@@ -96,7 +97,7 @@ namespace
       }
       const std::vector<DesignParameter> all = {{"a", "mm", DesignParameter::Kind::billet, 1., 1.},
                                                 {"b", "mm", DesignParameter::Kind::billet, 1., 1.}};
-      const DesignSpace                  space(all, {"a", "b"}, start, parameters);
+      const DesignSpace                  space(all, varied, start, parameters);
       Criteria                           criteria(objectives, parameters);
       SearchTask                         task;
       task.evaluate = [&](const Vector &mu) {
@@ -266,6 +267,31 @@ int main()
               << "meshes that fail: asked for once at a design "
               << answer(failing.n_refused_meshes > 0 && failing.n_refused_meshes <= failing.n_accepted)
               << ", optimum to 1e-6 " << answer(failing.distance({1., 2.}) < 1e-6) << "\n";
+  }
+  {
+    // The slope by what is not varied is 1000 times that by what is.
+    Problem problem;
+    problem.varied                        = {"a"};
+    problem.parameters.gradient_tolerance = 1e-3;
+    problem.run({0.2, -500.});
+    std::cout << "beside a parameter that is not varied: optimum to 1e-3 "
+              << answer(std::abs(problem.end.mu[0] - 1.) < 1e-3) << ", it stays "
+              << answer(problem.end.mu[1] == -500.) << "\n";
+  }
+  {
+    // a^2 + b^2 is never negative: the nearest design is where it is least.
+    Problem problem;
+    problem.parameters.at_most = {{"g", -1.}};
+    problem.run({0.2, 0.3});
+    Problem felt_by_none;
+    felt_by_none.varied             = {"a"};
+    felt_by_none.parameters.at_most = {{"g", 0.5}};
+    felt_by_none.run({0., 1.}); // g is stationary in a
+    std::cout << "limits that cannot be met: told " << answer(problem.stop == SearchStop::limits)
+              << ", not settled " << answer(!problem.settled) << ", as near as can be to 1e-2 "
+              << answer(problem.distance({0., 0.}) < 1e-2) << ", as well where none moves them "
+              << answer(felt_by_none.stop == SearchStop::limits && std::isfinite(felt_by_none.end.mu[0]))
+              << "\n";
   }
   {
     Problem problem;
