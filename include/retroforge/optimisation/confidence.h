@@ -16,8 +16,8 @@ namespace retroforge
     std::vector<unsigned int>        parameters;   ///< those that are inside their bounds
     std::vector<double>              deviations;   ///< standard ones, of each, in its unit
     std::vector<std::vector<double>> correlations; ///< between them
-    double                           misfit  = 0.; ///< sum of ((v_i - d_i) / s_i)^2
-    int                              freedom = 0;  ///< data less free directions: what the misfit should be about
+    double                           misfit = 0.;  ///< sum of ((v_i - d_i) / s_i)^2
+    int freedom = 0; ///< data less free directions: what the misfit should be about
     /// A change of the parameters, in scales, that data do not see; empty where they see all.
     std::vector<double> unseen;
 
