@@ -119,8 +119,12 @@ namespace retroforge
     }
     constexpr unsigned int most_rounds    = 50;
     constexpr double       largest_growth = 1e6; // of the penalty: beyond, rounding rules
-    const double           first_penalty  = merit_.penalty;
-    double                 excess         = criteria_.largest_excess(now_.values);
+    // Limits that five rounds of a penalty four times as large each do not bring nearer cannot be met.
+    constexpr unsigned int most_in_vain  = 5;
+    constexpr double       nearer        = 0.99;
+    const double           first_penalty = merit_.penalty;
+    double                 excess        = criteria_.largest_excess(now_.values);
+    unsigned int           n_in_vain     = 0;
     for (unsigned int round = 0; round < most_rounds; ++round)
     {
       stop_                         = SearchStop::running;
@@ -140,6 +144,9 @@ namespace retroforge
       if (grows)
         merit_.penalty = std::max(4. * merit_.penalty, curving_penalty().value_or(0.));
       else if (is_stuck)
+        break;
+      n_in_vain = excess_now > nearer * excess ? n_in_vain + 1 : 0;
+      if (n_in_vain == most_in_vain && excess_now > parameters_.limit_tolerance)
         break;
       excess = excess_now;
       task_.renewed(excess);
@@ -195,6 +202,7 @@ namespace retroforge
       std::clamp(std::max(radius_, seen), 0.25 * parameters_.first_step, parameters_.largest_step);
     begun_with_ = slope;
     begun_at_   = iterations_;
+    n_designs_  = task_.n_evaluated();
     minimiser_.minimise(
       problem(),
       {radius, parameters_.largest_step, noise_, [&](const MinimiserState &state) { return go_on(state); }});
@@ -202,7 +210,12 @@ namespace retroforge
 
   bool Search::go_on(const MinimiserState &state)
   {
-    radius_                   = state.radius;
+    radius_ = state.radius;
+    // Designs that were tried before cost nothing, as all but the first of those that shorter and shorter
+    // steps ask for again.
+    if (task_.n_evaluated() != n_designs_)
+      ++iterations_;
+    n_designs_                = task_.n_evaluated();
     constexpr double shortest = 1e-5;
     // While a limit presses, multipliers are renewed as soon as most of what the last ones changed is done;
     // and where the merit is rough, that does not come and the limit is far off, after some steps, so that
@@ -230,8 +243,6 @@ namespace retroforge
       stop_ = SearchStop::iterations;
     else if (task_.n_evaluated() >= parameters_.simulations)
       stop_ = SearchStop::simulations;
-    if (stop_ == SearchStop::running)
-      ++iterations_;
     return stop_ == SearchStop::running;
   }
 

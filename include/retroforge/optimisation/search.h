@@ -109,8 +109,9 @@ namespace retroforge
     double                 noise_      = 0.; ///< of the merit
     double                 radius_     = 0.;
     double                 begun_with_ = 0.; ///< the merit's gradient where the present round began
-    unsigned int           iterations_ = 0;
-    unsigned int           begun_at_   = 0; ///< how many there were then
+    unsigned int           iterations_ = 0;  ///< designs tried, without those known before
+    unsigned int           begun_at_   = 0;  ///< how many there were then
+    unsigned int           n_designs_  = 0;  ///< evaluated, as of the last iteration
     SearchStop             stop_       = SearchStop::running;
   };
 } // namespace retroforge

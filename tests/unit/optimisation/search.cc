@@ -272,6 +272,7 @@ int main()
     // The slope by what is not varied is 1000 times that by what is.
     Problem problem;
     problem.varied                        = {"a"};
+    problem.parameters.scales             = {{"a", 0.5}};
     problem.parameters.gradient_tolerance = 1e-3;
     problem.run({0.2, -500.});
     std::cout << "beside a parameter that is not varied: optimum to 1e-3 "
@@ -285,6 +286,7 @@ int main()
     problem.run({0.2, 0.3});
     Problem felt_by_none;
     felt_by_none.varied             = {"a"};
+    felt_by_none.parameters.scales  = {{"a", 0.5}};
     felt_by_none.parameters.at_most = {{"g", 0.5}};
     felt_by_none.run({0., 1.}); // g is stationary in a
     std::cout << "limits that cannot be met: told " << answer(problem.stop == SearchStop::limits)
