@@ -26,33 +26,42 @@ namespace retroforge
   {
     la::BlockVector b = matrix_.vector(), x = matrix_.vector();
     matrix_.load(rhs, b);
+    const unsigned int iterations = solver_.solve(b, tolerance, starts_from(guesses), transposition, x);
+    matrix_.unload(x, rhs, solution);
+    ++n_solves;
+    return iterations;
+  }
+
+  unsigned int LinearSystem::solve_derivative(const Field<double>              &rhs,
+                                              const double                      tolerance,
+                                              Field<double>                    &solution,
+                                              const std::vector<Field<double>> &guesses,
+                                              const Transposition               transposition)
+  {
+    la::BlockVector b = matrix_.vector(), x = matrix_.vector();
+    matrix_.load(rhs, b);
+    const unsigned int iterations =
+      solver_.solve_penalised_first(b, tolerance, starts_from(guesses), transposition, x);
+    matrix_.unload(x, rhs, solution);
+    ++n_solves;
+    return iterations;
+  }
+
+  double LinearSystem::norm_of_derivative(const Field<double> &rhs) const
+  {
+    la::BlockVector b = matrix_.vector();
+    matrix_.load(rhs, b);
+    return solver_.norm_beside_penalties(b);
+  }
+
+  std::vector<la::BlockVector> LinearSystem::starts_from(const std::vector<Field<double>> &guesses) const
+  {
     std::vector<la::BlockVector> starts;
     for (const Field<double> &guess : guesses)
     {
       starts.push_back(matrix_.vector());
       matrix_.load_guess(guess, starts.back());
     }
-    const unsigned int iterations = solver_.solve(b, tolerance, starts, transposition, x);
-    matrix_.unload(x, rhs, solution);
-    ++n_solves;
-    return iterations;
-  }
-
-  double LinearSystem::norm(const Field<double> &rhs) const
-  {
-    la::BlockVector b = matrix_.vector();
-    matrix_.load(rhs, b);
-    return b.l2_norm();
-  }
-
-  unsigned int
-  LinearSystem::solve_tangent(const Field<double> &rhs, const double tolerance, Field<double> &solution)
-  {
-    la::BlockVector b = matrix_.vector(), x = matrix_.vector();
-    matrix_.load(rhs, b);
-    const unsigned int iterations = solver_.solve_penalised_first(b, tolerance, x);
-    matrix_.unload(x, rhs, solution);
-    ++n_solves;
-    return iterations;
+    return starts;
   }
 } // namespace retroforge

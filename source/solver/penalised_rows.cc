@@ -48,7 +48,7 @@ namespace retroforge
         }
         return product;
       };
-      constexpr unsigned int most  = 30;
+      constexpr unsigned int most  = 200;
       double                 rz    = precondition();
       const double           first = rz;
       direction                    = z;

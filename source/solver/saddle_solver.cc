@@ -72,19 +72,40 @@ namespace retroforge
     return 0;
   }
 
-  unsigned int
-  SaddleSolver::solve_penalised_first(const la::BlockVector &b, const double tolerance, la::BlockVector &x)
+  unsigned int SaddleSolver::solve_penalised_first(const la::BlockVector       &b,
+                                                   const double                 tolerance,
+                                                   std::vector<la::BlockVector> guesses,
+                                                   const Transposition          transposition,
+                                                   la::BlockVector             &x)
   {
     if (!system_.symmetric || parameters_.method == "direct")
-      return solve(b, tolerance, {}, Transposition::plain, x);
-    la::BlockVector first(x), rest(b);
-    first = 0.;
-    polish_penalised(b, first);
-    system_.matrix.residual(rest, first, b);
-    const unsigned int iterations = solve(rest, tolerance, {}, Transposition::plain, x);
+      return solve(b, tolerance, guesses, transposition, x);
+    la::BlockVector       first(x), nothing(b);
+    const la::BlockVector rest = take_penalised(b, first);
+    nothing                    = 0.;
+    for (la::BlockVector &guess : guesses)
+      polish_penalised(nothing, guess);
+    const unsigned int iterations = solve(rest, tolerance, guesses, transposition, x);
     x += first;
     polish_penalised(b, x);
     return iterations;
+  }
+
+  double SaddleSolver::norm_beside_penalties(const la::BlockVector &b) const
+  {
+    if (!system_.symmetric || parameters_.method == "direct")
+      return b.l2_norm();
+    la::BlockVector x(b);
+    return take_penalised(b, x).l2_norm();
+  }
+
+  la::BlockVector SaddleSolver::take_penalised(const la::BlockVector &b, la::BlockVector &x) const
+  {
+    la::BlockVector rest(b);
+    x = 0.;
+    polish_penalised(b, x);
+    system_.matrix.residual(rest, x, b);
+    return rest;
   }
 
   double SaddleSolver::start_from(const std::vector<la::BlockVector> &guesses,

@@ -430,9 +430,10 @@ namespace retroforge
         Field<double> minus_rhs(scene_.spaces), lambda;
         minus_rhs.add(-1., rhs);
         auto        &guesses = earlier_lambdas_[s][j];
-        const double norm    = system_.norm(minus_rhs);
+        const double norm    = system_.norm_of_derivative(minus_rhs);
         largest[j]           = std::max(largest[j], norm);
-        system_.solve(minus_rhs, tolerance_of(norm, largest[j]), lambda, guesses, Transposition::transposed);
+        system_.solve_derivative(
+          minus_rhs, tolerance_of(norm, largest[j]), lambda, guesses, Transposition::transposed);
         reverse_residual(view, lambda, stage_bar);
         lambda.beta = {}; // a start is of velocities and pressures
         guesses.insert(guesses.begin(), std::move(lambda));
@@ -470,7 +471,7 @@ namespace retroforge
     for (std::size_t c = 0; c < R.beta.size(); ++c)
       minus_R_dot.beta[c] = -dot_of(R.beta[c]);
     system_.assemble(at.stage, at.W, at.active);
-    system_.solve_tangent(minus_R_dot, model_.adjoint_tolerance, W_dot);
+    system_.solve_derivative(minus_R_dot, model_.adjoint_tolerance, W_dot);
     scene_.exchange.gather(W_dot);
     return make_dual(at.W, W_dot);
   }

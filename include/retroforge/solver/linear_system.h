@@ -29,13 +29,17 @@ namespace retroforge
                        const std::vector<Field<double>> &guesses       = {},
                        Transposition                     transposition = Transposition::plain);
 
-    /// Of a right-hand side as solve() sees it, scaled and without bubbles: what its tolerance is relative
-    /// to.
-    double norm(const Field<double> &rhs) const;
+    /// As solve, for derivatives: of a residual, which a moving die makes large where it pushes, and of an
+    /// objective, which contact forces make large there (SaddleSolver::solve_penalised_first).
+    unsigned int solve_derivative(const Field<double>              &rhs,
+                                  double                            tolerance,
+                                  Field<double>                    &solution,
+                                  const std::vector<Field<double>> &guesses       = {},
+                                  Transposition                     transposition = Transposition::plain);
 
-    /// As solve, for the derivative of a residual, which a moving die makes large where it pushes
-    /// (SaddleSolver::solve_penalised_first).
-    unsigned int solve_tangent(const Field<double> &rhs, double tolerance, Field<double> &solution);
+    /// Of a right-hand side as solve_derivative() sees it, scaled, without bubbles and penalised rows: what
+    /// its tolerance is relative to.
+    double norm_of_derivative(const Field<double> &rhs) const;
 
     /// Forget the preconditioner: the next solve makes a new one.
     void reset() { solver_.reset(); }
@@ -47,6 +51,9 @@ namespace retroforge
     unsigned int n_solves = 0;
 
   private:
+    /// The system's vectors of fields.
+    std::vector<la::BlockVector> starts_from(const std::vector<Field<double>> &guesses) const;
+
     Timings     &timings_;
     SaddleMatrix matrix_;
     SaddleSolver solver_;

@@ -35,10 +35,17 @@ namespace retroforge
                        Transposition                       transposition,
                        la::BlockVector                    &x);
 
-    /// As solve, for a right-hand side that asks much of penalised components, as the motion of a die does.
-    /// Their rows, which would dwarf the others in the norm, are solved by themselves first; the tolerance is
-    /// relative to what that leaves.
-    unsigned int solve_penalised_first(const la::BlockVector &b, double tolerance, la::BlockVector &x);
+    /// As solve, for a right-hand side that asks much of penalised components, as the motion of a die does,
+    /// or an objective of contact forces. Their rows, which would dwarf the others in the norm, are solved by
+    /// themselves first, in the guesses too; the tolerance is relative to what that leaves.
+    unsigned int solve_penalised_first(const la::BlockVector       &b,
+                                       double                       tolerance,
+                                       std::vector<la::BlockVector> guesses,
+                                       Transposition                transposition,
+                                       la::BlockVector             &x);
+
+    /// What the tolerance of solve_penalised_first is relative to.
+    double norm_beside_penalties(const la::BlockVector &b) const;
 
     /// Forget the preconditioner: the next solve makes a new one.
     void reset() { preconditioner_.reset(); }
@@ -55,6 +62,9 @@ namespace retroforge
                       Transposition                       transposition,
                       la::BlockVector                    &x) const;
     void   make_preconditioner();
+    /// Sets penalised components of x, and nothing else, so that their rows have no residual, and returns
+    /// what that leaves of b. Of symmetric systems only.
+    la::BlockVector take_penalised(const la::BlockVector &b, la::BlockVector &x) const;
     /// y = M x, or y = M^T x.
     void multiply(Transposition transposition, la::BlockVector &y, const la::BlockVector &x) const;
     /// Solves the rows of penalised components exactly, the others held: an error there that the norm hardly

@@ -4,7 +4,8 @@
 // The right-hand side of a system whose solution moves all nodes, those that a die holds too: the penalty
 // times their velocity, which after scaling dwarfs the rest of it, as where a die moves. Proved, for linear
 // and for quadratic velocities: with penalised rows solved first, all other unknowns are found to the
-// tolerance; solved at once, they are not.
+// tolerance; solved at once, they are not. A start in which penalised components alone are wrong is as good
+// as the solution.
 
 #include <deal.II/base/mpi.h>
 
@@ -46,11 +47,20 @@ int main(int argc, char **argv)
     matrix.load_guess(corner.random_field(random), exact);
     system.matrix.vmult(b, exact);
     solver.solve(b, tolerance, {}, Transposition::plain, at_once);
-    solver.solve_penalised_first(b, tolerance, first);
+    solver.solve_penalised_first(b, tolerance, {}, Transposition::plain, first);
+    la::BlockVector guess(exact);
+    for (const unsigned int row : system.penalised)
+      guess.block(0).begin()[row] += 1.;
+    la::BlockVector    again(exact);
+    const unsigned int n_again =
+      solver.solve_penalised_first(b, 1e-6, {guess}, Transposition::transposed, again);
     const double error = difference(system, first, exact), error_at_once = difference(system, at_once, exact);
     std::cout << (pair == ElementPair::mini ? "linear" : "quadratic")
               << " velocities, penalised: " << (system.penalised.size() > 10 ? "yes" : "NO")
               << "; first, within 1000 tolerances: " << (error < 1000. * tolerance ? "yes" : "NO")
-              << "; at once, beyond: " << (error_at_once > 1000. * tolerance ? "yes" : "NO") << "\n";
+              << "; at once, beyond: " << (error_at_once > 1000. * tolerance ? "yes" : "NO")
+              << "; from a start with other penalised components, in " << n_again
+              << " iterations: " << (difference(system, again, exact) < 1000. * tolerance ? "yes" : "NO")
+              << "\n";
   }
 }
