@@ -6,7 +6,9 @@
 #include <retroforge/core/stop_notice.h>
 #include <retroforge/core/version.h>
 #include <retroforge/geometry/stl_file.h>
+#include <retroforge/mesh/whole_part.h>
 #include <retroforge/optimize.h>
+#include <retroforge/output/console.h>
 #include <retroforge/output/mesh_files.h>
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
@@ -40,20 +42,36 @@ namespace retroforge
              std::to_string(dealii::Utilities::MPI::n_mpi_processes(comm)) + " rank(s)";
     }
 
-    std::vector<std::string> names_of(const Objectives &objectives)
+    /// Of all values of a design.
+    std::vector<std::string> names_of(const Objectives &objectives, const DesignSpace &space)
     {
       std::vector<std::string> names;
       for (const NamedObjective &objective : objectives)
         names.push_back(objective.name);
+      if (space.held())
+        names.push_back(space.held()->name);
       return names;
     }
 
-    std::vector<std::string> units_of(const Objectives &objectives)
+    std::vector<std::string> units_of(const Objectives &objectives, const DesignSpace &space)
     {
       std::vector<std::string> units;
       for (const NamedObjective &objective : objectives)
         units.push_back(objective.unit());
+      if (space.held())
+        units.push_back(space.held()->unit);
       return units;
+    }
+
+    /// That of the objectives; and where the parameter that follows from the volume may go.
+    Criteria criteria_of(const Objectives             &objectives,
+                         const OptimisationParameters &parameters,
+                         const DesignSpace            &space)
+    {
+      Criteria criteria(objectives, parameters);
+      if (const auto &held = space.held())
+        criteria.add_value(held->lower, held->upper);
+      return criteria;
     }
 
     std::string exact(const double x)
@@ -71,11 +89,49 @@ namespace retroforge
       return text;
     }
 
-    std::string as_parameters(const std::string &design)
+    /// @param made_at  where the mesh was made, as in Design/meshed at; empty for that of the case
+    std::string as_parameters(const std::string &design, const std::string &made_at)
     {
-      return "# What the case is to include for this design, on the mesh of the case.\nsubsection Design\n  "
-             "set at = " +
-             design + "\nend\n";
+      return "# What the case is to include for this design.\nsubsection Design\n  set at = " + design +
+             "\n" + (made_at.empty() ? "" : "  set meshed at = " + made_at + "\n") + "end\n";
+    }
+
+    /// A relative name of a file, for a parameter file in another folder.
+    std::string seen_from(const std::string &folder, const std::string &name)
+    {
+      const std::filesystem::path file(name);
+      std::error_code             failed;
+      if (name.empty() || file.is_absolute() || !std::filesystem::is_regular_file(file, failed))
+        return name;
+      const std::filesystem::path there = std::filesystem::relative(file, folder, failed);
+      return failed || there.empty() ? name : there.string();
+    }
+
+    /// The files that a case names, by parameter.
+    std::vector<std::pair<std::string, std::string>> files_seen_from(const std::string &folder,
+                                                                     const Case        &at)
+    {
+      std::vector<std::pair<std::string, std::string>> files;
+      const auto add = [&](const std::string &path, const std::string &name) {
+        if (const std::string there = seen_from(folder, name); there != name)
+          files.emplace_back(path, there);
+      };
+      const auto values = parameter_values(parameter_lines_of(at.echo, "case"));
+      const auto set    = [&](const std::string &path) {
+        if (const auto found = values.find(path); found != values.end())
+          add(path, found->second);
+      };
+      set("Billet/file name");
+      for (const DieParameters &die : at.parameters.dies)
+        set("Die " + die.name + "/file");
+      for (const ObjectiveParameters &objective : at.parameters.objectives.all)
+        set("Objective " + objective.name + "/target");
+      std::vector<std::string> operations = at.parameters.optimisation.operations;
+      for (std::string &operation : operations)
+        operation = seen_from(folder, operation);
+      if (operations != at.parameters.optimisation.operations)
+        files.emplace_back("Optimisation/operations", join(operations));
+      return files;
     }
 
     /// Of a search that went on, whose designs may have had other numbers before.
@@ -186,18 +242,24 @@ namespace retroforge
       , operations_(case_, commands_of_operations(case_), timings_)
       , objectives_(operations_.objectives())
       , root_(groups_.is_first_rank())
-      , space_(case_.design.parameters(), varied(case_), case_.mu, case_.parameters.optimisation)
-      , criteria_(objectives_, case_.parameters.optimisation)
-      , scatter_(
-          case_.design.parameters(),
-          case_.parameters.optimisation,
-          from_below(criteria_, names_of(objectives_), !case_.parameters.optimisation.scattered.empty()))
+      , space_(case_.design.parameters(),
+               varied(case_),
+               case_.mu,
+               case_.parameters.optimisation,
+               case_.design.held())
+      , criteria_(criteria_of(objectives_, case_.parameters.optimisation, space_))
+      , scatter_(case_.design.parameters(),
+                 case_.parameters.optimisation,
+                 from_below(criteria_,
+                            names_of(objectives_, space_),
+                            !case_.parameters.optimisation.scattered.empty()))
       , journal_(make_journal())
       , meshes_(case_, case_.parameters.optimisation.mesh_quality)
       , trials_(operations_, journal_, scatter_, groups_)
       , search_(space_, criteria_, case_.parameters.optimisation, search_task())
-      , results_{space_, criteria_, names_of(objectives_), units_of(objectives_)}
+      , results_{space_, criteria_, names_of(objectives_, space_), units_of(objectives_, space_)}
   {
+    results_.counted_as = scatter_.in_words();
     for (std::size_t o = 0; o < operations_.size(); ++o)
     {
       // A start of which nothing can come is refused before anything is written.
@@ -214,8 +276,8 @@ namespace retroforge
   SearchTask Optimize::search_task()
   {
     SearchTask task;
-    task.evaluate      = [&](const std::vector<double> &mu) { return trials_.evaluate(mu); };
-    task.differentiate = [&](const std::vector<double> &mu) { return trials_.differentiate(mu); };
+    task.evaluate      = [&](const std::vector<double> &mu) { return evaluate(mu); };
+    task.differentiate = [&](const std::vector<double> &mu) { return differentiate(mu); };
     task.n_evaluated   = [&] { return trials_.n_asked(); };
     task.mesh_is_bad   = [&](const Evaluation &now) { return mesh_is_bad(now); };
     task.renew_mesh    = [&](const Evaluation &now) { return renew_mesh(now); };
@@ -234,6 +296,26 @@ namespace retroforge
       std::printf("\n");
     };
     return task;
+  }
+
+  Evaluation Optimize::with_held(const Design &design, Evaluation evaluation) const
+  {
+    if (!space_.held() || evaluation.failed())
+      return evaluation;
+    evaluation.values.push_back(design.held_value(evaluation.mu));
+    if (!evaluation.gradients.empty())
+      evaluation.gradients.push_back(design.held_gradient(evaluation.mu));
+    return evaluation;
+  }
+
+  Evaluation Optimize::evaluate(const std::vector<double> &mu)
+  {
+    return with_held(operations_.at(0).design, trials_.evaluate(mu));
+  }
+
+  Evaluation Optimize::differentiate(const std::vector<double> &mu)
+  {
+    return with_held(operations_.at(0).design, trials_.differentiate(mu));
   }
 
   bool Optimize::mesh_is_bad(const Evaluation &now)
@@ -259,7 +341,7 @@ namespace retroforge
     mesh.volume_before  = meshes_.volume_at(now.mu);
     mesh.before         = now.values;
     forge_on(*meshes_.candidate().made, mesh.made_at);
-    Evaluation again = trials_.evaluate(now.mu);
+    Evaluation again = evaluate(now.mu);
     if (again.failed())
     {
       if (root_)
@@ -269,7 +351,7 @@ namespace retroforge
       return {};
     }
     meshes_.use_candidate();
-    again              = trials_.differentiate(now.mu);
+    again              = differentiate(now.mu);
     mesh.quality_after = meshes_.quality(now.mu);
     mesh.volume_after  = meshes_.volume_at(now.mu);
     mesh.after         = again.values;
@@ -383,6 +465,15 @@ namespace retroforge
                 criteria_.objective.name.c_str(),
                 varied(case_).size(),
                 criteria_.limits.size());
+    print_part(whole_part(case_.billet, case_.nominal.dies[case_.nominal.leading_die].velocity));
+    if (criteria_.objective.unit == "mixed")
+      std::printf("  note: it adds objectives of different units, by their weights\n");
+    if (const auto &held = space_.held())
+      std::printf("  %s follows from the volume%s\n",
+                  held->name.c_str(),
+                  std::isinf(held->lower) && std::isinf(held->upper)
+                    ? "; it has no bounds (Optimisation/lower bounds, upper bounds)"
+                    : "");
     for (const LinearRelation &relation : space_.relations())
       std::printf("  every design keeps %s\n", relation.text.c_str());
     if (!scatter_.empty())
@@ -391,6 +482,7 @@ namespace retroforge
                   case_.parameters.optimisation.scattered.c_str(),
                   case_.parameters.optimisation.scatter_range[0],
                   case_.parameters.optimisation.scatter_range[1]);
+    print_unscattered();
     for (const auto &[name, parameters] : results_.operations)
       std::printf("  each design is forged in operation %s, too, which has its %s\n",
                   name.c_str(),
@@ -399,27 +491,51 @@ namespace retroforge
       std::printf("  by %u groups of ranks side by side\n", groups_.n());
     if (journal_.size() > 0)
       std::printf("  %zu designs are forged already, and taken from the journal\n", journal_.size());
-    for (const std::string &name : results_.objectives)
-      if (const auto o = static_cast<std::size_t>(&name - results_.objectives.data());
-          criteria_.objective.weights[o] == 0. && !criteria_.uses(o))
-        std::printf("  note: %s is only watched\n", name.c_str());
+    for (std::size_t o = 0; o < objectives_.size(); ++o)
+      if (criteria_.objective.weights[o] == 0. && !criteria_.uses(o))
+        std::printf("  note: %s is only watched\n", objectives_[o].name.c_str());
     std::fflush(stdout);
+  }
+
+  void Optimize::print_unscattered() const
+  {
+    const OptimisationParameters &optimisation = case_.parameters.optimisation;
+    for (std::size_t j = 0; j < space_.size() && !scatter_.empty(); ++j)
+      if (space_.parameters()[j].name == optimisation.scattered &&
+          !(case_.mu[j] >= optimisation.scatter_range[0] && case_.mu[j] <= optimisation.scatter_range[1]))
+        std::printf("  note: the case itself has %s = %.6g, outside of that range; best.prm has it, too\n",
+                    optimisation.scattered.c_str(),
+                    case_.mu[j]);
   }
 
   void Optimize::begin()
   {
-    const Evaluation start = trials_.evaluate(case_.mu);
+    const Evaluation start = evaluate(case_.mu);
     if (start.failed())
       throw Error("optimize",
                   "cannot forge the design it begins with, in increment " +
                     std::to_string(start.increments + 1) + ": " + start.failure,
                   "the first design must succeed",
                   "begin elsewhere with --at, or cure what the message says");
-    results_.start = results_.best = trials_.differentiate(case_.mu);
+    results_.start = results_.best = differentiate(case_.mu);
     criteria_.set_sizes(results_.start.values);
     search_.begin(results_.start);
+    note_flat_start();
     add_row(Decision::start, results_.start, search_.radius());
     write_shapes(results_.start, "start");
+  }
+
+  void Optimize::note_flat_start() const
+  {
+    const std::vector<double> slopes = criteria_.slopes(results_.start.values);
+    for (std::size_t o = 0; o < slopes.size(); ++o)
+      for (std::size_t j = 0; j < space_.size(); ++j)
+        if (space_.at(results_.start.mu, j) != DesignSpace::At::fixed &&
+            slopes[o] * results_.start.gradients[o][j] != 0.)
+          return;
+    if (root_)
+      std::printf("  note: at the start %s does not depend on any parameter that is varied\n",
+                  criteria_.objective.name.c_str());
   }
 
   void Optimize::check()
@@ -447,32 +563,37 @@ namespace retroforge
     std::mt19937     generator(1);
     double           sum      = 0.;
     unsigned int     n_values = 0;
-    for (unsigned int i = 0; i < n; ++i)
+    for (unsigned int i = 0; i < n && trials_.n_asked() < case_.parameters.optimisation.simulations; ++i)
     {
       std::vector<double> x(space_.size());
       for (double &entry : x)
         entry = part * (2. * (generator() / 4294967295.) - 1.);
       const std::vector<double> mu         = space_.values(space_.projected(x));
-      const Evaluation          evaluation = trials_.evaluate(mu);
+      const Evaluation          evaluation = evaluate(mu);
       add_row(Decision::noise, evaluation, part);
       if (evaluation.failed())
         continue;
-      const Evaluation         &start     = results_.start;
-      double                    predicted = criteria_.value(start.values);
-      const std::vector<double> slopes    = criteria_.slopes(start.values);
+      // Values are linear over so short a step; their misfit against data need not be.
+      const Evaluation   &start     = results_.start;
+      std::vector<double> predicted = start.values;
       for (std::size_t o = 0; o < start.gradients.size(); ++o)
         for (std::size_t j = 0; j < mu.size(); ++j)
-          predicted += slopes[o] * start.gradients[o][j] * (mu[j] - start.mu[j]);
-      sum += std::pow(criteria_.value(evaluation.values) - predicted, 2);
+          predicted[o] += start.gradients[o][j] * (mu[j] - start.mu[j]);
+      sum += std::pow(criteria_.value(evaluation.values) - criteria_.value(predicted), 2);
       ++n_values;
     }
     results_.noise = n_values > 0 ? std::sqrt(sum / n_values) : 0.;
-    if (root_)
-      std::printf("  noise: %.3g%s%s, %.2g of the value\n",
-                  results_.noise,
-                  criteria_.objective.unit.empty() ? "" : " ",
-                  criteria_.objective.unit.c_str(),
-                  results_.noise / std::abs(criteria_.value(results_.start.values)));
+    if (!root_)
+      return;
+    const double value = criteria_.value(results_.start.values);
+    std::printf("  noise: %.3g%s%s",
+                results_.noise,
+                criteria_.objective.unit.empty() ? "" : " ",
+                criteria_.objective.unit.c_str());
+    // A misfit that begins near 0 has nothing to be compared with.
+    if (value != 0. && criteria_.data.empty())
+      std::printf(", %.2g of the value", results_.noise / std::abs(value));
+    std::printf("\n");
   }
 
   Evaluation Optimize::best_so_far() const
@@ -493,7 +614,7 @@ namespace retroforge
 
   void Optimize::report_best()
   {
-    results_.best = trials_.differentiate(results_.best.mu);
+    results_.best = differentiate(results_.best.mu);
     // Multipliers are those of the design accepted last, which the rounds ended with.
     results_.multipliers = search_.multipliers();
     if (!criteria_.data.empty())
@@ -502,9 +623,7 @@ namespace retroforge
       slopes_of_relations(space_, results_.best.mu, lagrangian_slopes(results_.best));
     write_shapes(results_.best, "best");
     results_.n_simulations = trials_.n_asked();
-    results_.n_sweeps      = 0;
-    for (std::size_t i = 0; i < journal_.size(); ++i)
-      results_.n_sweeps += journal_[i].gradients.empty() ? 0 : 1;
+    results_.n_sweeps      = trials_.n_swept();
   }
 
   void Optimize::confirm()
@@ -549,7 +668,8 @@ namespace retroforge
     if (root_)
       journal->write_to(path_of("confirmation.jsonl"));
     const auto evaluate = [&](const std::vector<double> &mu) {
-      return Trials(*operations, *journal, scatter_, groups_).evaluate(mu);
+      return with_held(operations->at(0).design,
+                       Trials(*operations, *journal, scatter_, groups_).evaluate(mu));
     };
     const Evaluation start = evaluate(results_.start.mu);
     if (there)
@@ -621,11 +741,21 @@ namespace retroforge
     }
     if (row.decision == Decision::accepted || row.decision == Decision::refused)
       std::printf("  step %.3g", row.radius);
-    const unsigned int most = case_.parameters.optimisation.simulations;
-    std::printf("  %.1f s, at most %.0f s left\n",
-                evaluation.seconds,
-                trials_.seconds_each() * (most > trials_.n_asked() ? most - trials_.n_asked() : 0));
+    std::printf("  %.1f s", evaluation.seconds);
+    if (trials_.seconds_each() > 0.)
+      std::printf(", at most %.0f s left", trials_.seconds_each() * most_forgings_left());
+    std::printf("\n");
     std::fflush(stdout);
+  }
+
+  unsigned int Optimize::most_forgings_left() const
+  {
+    const auto left = [](const unsigned int most, const unsigned int done) {
+      return most > done ? most - done : 0;
+    };
+    const OptimisationParameters &most = case_.parameters.optimisation;
+    return std::min(left(most.simulations, trials_.n_asked()),
+                    left(most.iterations, search_.n_iterations()) * trials_.n_forgings(case_.mu));
   }
 
   std::vector<double> Optimize::lagrangian_slopes(const Evaluation &at) const
@@ -653,15 +783,24 @@ namespace retroforge
     const Case       &at     = operations_.at(operation);
     const std::string base   = path_of("designs/" + operations_.titled(name, operation));
     const bool        writes = dealii::Utilities::MPI::this_mpi_process(case_.comm) == 0;
-    const std::string design = as_parameters(values_by_name(at.design.parameters(), mu));
-    const bool        there  = dealii::Utilities::MPI::broadcast(
+    const std::string design =
+      as_parameters(values_by_name(at.design.parameters(), mu), operation == 0 ? meshes_.made_at() : "");
+    const bool there = dealii::Utilities::MPI::broadcast(
       case_.comm,
       writes && name != "best" && has_shapes(base, design, case_.parameters.optimisation.keep_records),
       0);
     const Trial *forged = there ? nullptr : trials_.forged(mu, operation);
-    if (forged == nullptr || !writes)
+    if (forged == nullptr)
       return;
     const Trial &trial = *forged;
+    if (name == "best" && operation == 0)
+    {
+      results_.details.clear();
+      for (const ObjectiveTrace::Beside &beside : trial.beside()) // by all ranks of the group
+        results_.details.push_back(beside.details);
+    }
+    if (!writes)
+      return;
     if (case_.parameters.optimisation.keep_records)
       trial.write_record(base, parameters_at(at, trials_.middle_sample(mu, operation)));
     write_msh(base + "_billet.msh", at.billet, trial.X_0());
@@ -679,15 +818,20 @@ namespace retroforge
     results_.write_json(path_of("optimisation.json"));
     for (std::size_t o = 0; o < operations_.size(); ++o)
       write_file(path_of(operations_.titled("best", o) + ".prm"),
-                 parameters_at(operations_.at(o), operations_.values(o, results_.best.mu)));
+                 parameters_at(operations_.at(o),
+                               operations_.values(o, results_.best.mu),
+                               files_seen_from(case_.command.output_directory, operations_.at(o))));
   }
 
-  std::string Optimize::parameters_at(const Case &at, const std::vector<double> &mu) const
+  std::string Optimize::parameters_at(const Case                                             &at,
+                                      const std::vector<double>                              &mu,
+                                      const std::vector<std::pair<std::string, std::string>> &files) const
   {
     CommandLine there = at.command;
     there.case_text   = at.echo;
     there.at.clear();
     there.overrides.emplace_back("Design/at", values_by_name(at.design.parameters(), mu));
+    there.overrides.insert(there.overrides.end(), files.begin(), files.end());
     std::string parameters;
     Parameters::read(there, parameters);
     return parameters;

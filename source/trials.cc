@@ -66,6 +66,13 @@ namespace retroforge
     return journal_.find(job.mu, operations_.name(job.operation));
   }
 
+  void Trials::count(const Job &job, std::vector<AskedJob> &jobs) const
+  {
+    const AskedJob asked = {journal_.mesh_in(operations_.name(job.operation)), job};
+    if (std::find(jobs.begin(), jobs.end(), asked) == jobs.end())
+      jobs.push_back(asked);
+  }
+
   std::vector<Trials::Jobs> Trials::waves(const std::vector<double> &mu) const
   {
     std::vector<Jobs> waves;
@@ -131,9 +138,7 @@ namespace retroforge
     // As one group would have it: what others have forged behind a failure is forgotten.
     for (std::size_t k = 0; k < wave.size(); ++k)
     {
-      const AskedJob asked = {journal_.mesh_in(operations_.name(wave[k].operation)), wave[k]};
-      if (std::find(asked_.begin(), asked_.end(), asked) == asked_.end())
-        asked_.push_back(asked);
+      count(wave[k], asked_);
       if (is_open[k])
       {
         found[k].operation = operations_.name(wave[k].operation);
@@ -150,7 +155,10 @@ namespace retroforge
   {
     std::vector<bool> is_open;
     for (const Job &job : wave)
+    {
+      count(job, swept_);
       is_open.push_back(known(job)->gradients.empty());
+    }
     std::vector<Evaluation> found = shared_out(wave, is_open, [&](const Job &job) {
       Evaluation evaluation;
       evaluation.gradients = kept_[job.operation]->gradients(*known(job));

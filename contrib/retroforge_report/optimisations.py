@@ -48,6 +48,8 @@ class OptimisationPage:
         if confirmed:
             rows.append((f"confirmed: {confirmed['nodes']} nodes, {confirmed['increments']} increments", *self.pair(confirmed), ""))
         self.to.table(("", f"#start {pretty(objective['unit'])}", "#best", "#change", "#noise"), rows)
+        if objective.get("counted_as"):
+            self.to.note(f"All values are {objective['counted_as']}.")
         self.to.note(f"Ended because {self.found['stop']}. {self.found['simulations']} forgings, {self.found['sweeps']} swept back, "
                      f"{self.found['failed']} failed." + self.meshes() + ("" if self.found["finished"] else " The search is not finished."))
 
@@ -67,17 +69,25 @@ class OptimisationPage:
 
     def parameters(self):
         self.to.heading("Design")
+        shown = list(self.found["parameters"])
+        if "follows" in self.found:
+            shown.append({**self.found["follows"], "gradient": None, "at": "follows from the volume"})
         self.to.table(("parameter", "unit", "#start", "#best", "#lower bound", "#upper bound", "#gradient there", ""),
                       [(p["name"], pretty(p["unit"]), *("" if p[key] is None else number(p[key])
                                                        for key in ("start", "best", "lower", "upper", "gradient")), p["at"])
-                       for p in self.found["parameters"]])
+                       for p in shown])
 
     def limits(self):
+        confirmed = self.found.get("confirmation", {}).get("values") or {}
         if self.found["limits"]:
             self.to.heading("Limits")
-            self.to.table(("objective", "", "#bound", "#start", "#best", "#objective by relaxing it by 1"),
-                          [(limit["objective"], limit["kind"], *(number(limit[key]) for key in ("bound", "start", "best", "by_relaxing")))
+            self.to.table(("objective", "", "#bound", "#start", "#best", "#confirmed", "#objective by relaxing it by 1"),
+                          [(limit["objective"], limit["kind"],
+                            *("" if value is None else number(value) for value in
+                              (limit["bound"], limit["start"], limit["best"], confirmed.get(limit["objective"]), limit["by_relaxing"])))
                            for limit in self.found["limits"]])
+        for objective, details in self.found.get("details", {}).items():
+            self.to.note("; ".join(f"{what} of {objective} at the best design: {number(value)}" for what, value in details.items()) + ".")
 
     def identification(self):
         found = self.found.get("identification")
@@ -88,10 +98,14 @@ class OptimisationPage:
                       [(d["objective"], pretty(d["unit"]), *(number(d[key]) for key in ("measured", "deviation", "best")))
                        for d in found["data"]])
         best = {p["name"]: p["best"] for p in self.found["parameters"]}
-        self.to.table(("parameter", "#found", "#95 %"), [(name, number(best[name]), f"± {number(1.96 * deviation)}")
-                                                        for name, deviation in zip(found["parameters"], found["deviations"])])
-        self.to.note(f"Sum of squares in deviations {number(found['misfit'])}, about {found['freedom']} where model and deviations are "
-                     "right." + (" The data do not see all changes of the parameters." if found["unseen"] else ""))
+        if found["converged"]:
+            self.to.table(("parameter", "#found", "#95 %"), [(name, number(best[name]), f"± {number(1.96 * deviation)}")
+                                                            for name, deviation in zip(found["parameters"], found["deviations"])])
+        self.to.note(f"Sum of squares in deviations {number(found['misfit'])}" +
+                     (f", about {found['freedom']} where model and deviations are right." if found["freedom"] > 0 else ".") +
+                     ("" if found["converged"] else " No intervals: the search has not come to an end by itself.") +
+                     (" Data and model do not agree within the deviations: intervals are not to be trusted." if found["disagrees"] else "") +
+                     (" The data do not see all changes of the parameters." if found["unseen"] else ""))
 
     def path(self):
         objective = self.found["objective"]

@@ -40,6 +40,12 @@ namespace retroforge
     std::optional<Evaluation> renew_mesh(const Evaluation &now);
     void                      forge_on(const Case &at, const std::string &made_at);
 
+    /// What comes of a design: behind the objectives the parameter that follows from the volume, which is no
+    /// result of a forging, and not in the journal.
+    Evaluation evaluate(const std::vector<double> &mu);
+    Evaluation differentiate(const std::vector<double> &mu);
+    Evaluation with_held(const Design &design, Evaluation evaluation) const;
+
     void begin();
     /// The gradient at the start by differences, for a user who asks.
     void check();
@@ -54,15 +60,21 @@ namespace retroforge
 
     void add_row(TrialRow::Decision decision, const Evaluation &evaluation, double radius);
     void print_search() const;
-    void print_row(const TrialRow &row) const;
+    /// Of a scattered parameter whose own value is no sample.
+    void         print_unscattered() const;
+    void         note_flat_start() const;
+    unsigned int most_forgings_left() const;
+    void         print_row(const TrialRow &row) const;
     /// Billet and forged shape of a design, for the eye and for other programs.
     /// Collective.
     void write_shapes(const Evaluation &evaluation, const std::string &name);
     void write_results() const;
     /// The shapes of one operation. Collective over its ranks.
     void write_shapes_of(std::size_t operation, const std::vector<double> &mu, const std::string &name);
-    /// A case's, at another design. @param mu  parameters of that case
-    std::string parameters_at(const Case &at, const std::vector<double> &mu) const;
+    /// A case's, at another design. @param mu  parameters of that case  @param files  other names of files
+    std::string parameters_at(const Case                                             &at,
+                              const std::vector<double>                              &mu,
+                              const std::vector<std::pair<std::string, std::string>> &files = {}) const;
     std::string path_of(const std::string &file) const { return case_.command.output_directory + "/" + file; }
 
     const bool       resume_;

@@ -33,6 +33,9 @@ namespace retroforge
     /// Of the objectives, after forge().  @throws Error  for one that is not finite
     std::vector<double> values();
 
+    /// What is told beside each of them. Collective.
+    std::vector<ObjectiveTrace::Beside> beside() const { return trace_.beside(state_); }
+
     /// After values(), where increments are kept.
     AdjointSweep sweep(const std::vector<Combination> &combinations);
 

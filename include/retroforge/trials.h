@@ -50,6 +50,10 @@ namespace retroforge
 
     /// Forgings that were asked for, each once on each mesh.
     unsigned int n_asked() const { return asked_.size(); }
+    /// Sweeps that were asked for.
+    unsigned int n_swept() const { return swept_.size(); }
+    /// Of a design.
+    unsigned int n_forgings(const std::vector<double> &mu) const { return jobs(mu).size(); }
     /// Mean time between the ends of two forgings, sweeps included [s].
     double seconds_each() const;
 
@@ -66,6 +70,8 @@ namespace retroforge
     using AskedJob = std::pair<unsigned int, Job>; ///< with the number of its mesh
 
     const Evaluation *known(const Job &job) const;
+    /// Counts a job of the present mesh where it is not among those.
+    void count(const Job &job, std::vector<AskedJob> &jobs) const;
     /// In the order in which they are asked for, each once: without the scattered parameter an operation is
     /// the same in all samples.
     Jobs jobs(const std::vector<double> &mu) const;
@@ -86,7 +92,7 @@ namespace retroforge
     const Scatter                           scatter_;
     const RankGroups                       &groups_;
     std::vector<std::unique_ptr<KeptTrial>> kept_; ///< the last one of each operation in this group
-    std::vector<AskedJob>                   asked_;
+    std::vector<AskedJob>                   asked_, swept_;
     unsigned int                            n_forged_ = 0;
     double                                  seconds_  = 0.;
   };

@@ -305,6 +305,28 @@ namespace retroforge
     return billet_map_.mesh_quality(shape_of(mu));
   }
 
+  std::optional<DesignParameter> Design::held() const
+  {
+    const ShapeParameter *held = billet_map_.held();
+    if (held == nullptr)
+      return {};
+    return DesignParameter{"billet/" + held->name, held->unit, Kind::billet, held->nominal, held->scale};
+  }
+
+  double Design::held_value(const std::vector<double> &mu) const
+  {
+    return billet_map_.held_value(shape_of(mu));
+  }
+
+  std::vector<double> Design::held_gradient(const std::vector<double> &mu) const
+  {
+    std::vector<double> gradient;
+    for (unsigned int j = 0; j < mu.size(); ++j)
+      gradient.push_back(
+        parameters_[j].kind == Kind::billet ? billet_map_.held_value(shape_of(along(mu, j))).dx(0) : 0.);
+    return gradient;
+  }
+
   std::vector<std::pair<std::string, double>> Design::billet_at(const std::vector<double> &mu) const
   {
     std::vector<std::pair<std::string, double>> values;

@@ -266,7 +266,8 @@ namespace retroforge
                     : is_device ? "is a device"
                                 : "cannot be read",
                     "the file of a die must exist",
-                    "paths are relative to the folder the program was started in");
+                    "correct its name, which counts from the parameter file's folder, or from where the "
+                    "program is started");
       return bytes.str();
     }
 

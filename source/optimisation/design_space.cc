@@ -20,19 +20,43 @@ namespace retroforge
       return std::find(names.begin(), names.end(), name) != names.end();
     }
 
+    [[noreturn]] void refuse_held(const std::string &entry, const std::string &name)
+    {
+      throw Error("Optimisation/" + entry,
+                  "'" + name + "' follows from the volume (Billet/volume held by), and is not varied",
+                  "it may have bounds, but no scale and no relation",
+                  "leave it out there, or hold the volume by another parameter");
+    }
+
+    /// @param scattered  the parameter that is, by design, not varied; or empty
     void check_names(const std::vector<std::string>       &known,
                      const OptimisationParameters::Values &values,
-                     const std::string                    &entry)
+                     const std::string                    &entry,
+                     const std::string                    &scattered)
     {
       for (const auto &[name, value] : values)
-        if (!is_among(known, name))
-        {
-          const std::string near = nearest_name(name, known, 6);
+      {
+        if (is_among(known, name))
+          continue;
+        if (name == scattered)
           throw Error("Optimisation/" + entry,
-                      "'" + name + "' is not a parameter of this optimisation",
-                      "those are, by Design/parameters: " + join(known),
-                      near.empty() ? "name some of these" : "did you mean '" + near + "'?");
-        }
+                      "'" + name + "' is scattered",
+                      "it lies in Optimisation/scatter range, and the optimisation does not vary it",
+                      "leave it out there");
+        const auto first_mode = std::find_if(known.begin(), known.end(), [&](const std::string &of) {
+          return of.rfind(name + " ", 0) == 0 && name.find("/free form") != std::string::npos;
+        });
+        if (first_mode != known.end())
+          throw Error("Optimisation/" + entry,
+                      "'" + name + "' stands for several modes",
+                      "bounds and scales are those of one mode",
+                      "name each, as '" + *first_mode + "'");
+        const std::string near = nearest_name(name, known, 6);
+        throw Error("Optimisation/" + entry,
+                    "'" + name + "' is not a parameter of this optimisation",
+                    "those are, by Design/parameters: " + join(known),
+                    near.empty() ? "name some of these" : "did you mean '" + near + "'?");
+      }
     }
 
     double
@@ -43,20 +67,46 @@ namespace retroforge
     }
   } // namespace
 
-  DesignSpace::DesignSpace(const std::vector<DesignParameter> &parameters,
-                           const std::vector<std::string>     &varied,
-                           const std::vector<double>          &start,
-                           const OptimisationParameters       &optimisation)
+  DesignSpace::DesignSpace(const std::vector<DesignParameter>   &parameters,
+                           const std::vector<std::string>       &varied,
+                           const std::vector<double>            &start,
+                           const OptimisationParameters         &optimisation,
+                           const std::optional<DesignParameter> &held)
       : parameters_(parameters), start_(start)
   {
     if (varied.empty())
       throw Error("Design/parameters",
-                  "names no parameter",
+                  optimisation.scattered.empty() ? "names no parameter"
+                                                 : "names none but the one that is scattered",
                   "an optimisation varies one at least",
                   "name some that the scene offers");
-    check_names(varied, optimisation.lower, "lower bounds");
-    check_names(varied, optimisation.upper, "upper bounds");
-    check_names(varied, optimisation.scales, "scales");
+    const std::string       &scattered   = optimisation.scattered;
+    std::vector<std::string> with_bounds = varied;
+    if (held)
+    {
+      with_bounds.push_back(held->name);
+      held_ = {held->name,
+               held->unit,
+               value_or(optimisation.lower, held->name, -infinity),
+               value_or(optimisation.upper, held->name, infinity)};
+      if (!(held_->lower < held_->upper))
+        throw Error("Optimisation/upper bounds",
+                    "bounds of " + held->name + " are " + as_text(held_->lower) + " and " +
+                      as_text(held_->upper),
+                    "the lower is less than the upper",
+                    "leave a range between them");
+      if (optimisation.scales.count(held->name) > 0)
+        refuse_held("scales", held->name);
+      for (const std::string &relation : optimisation.relations)
+        if (relation.find(held->name) != std::string::npos &&
+            std::none_of(varied.begin(), varied.end(), [&](const std::string &name) {
+              return name.find(held->name) != std::string::npos && relation.find(name) != std::string::npos;
+            }))
+          refuse_held("relations", held->name);
+    }
+    check_names(with_bounds, optimisation.lower, "lower bounds", scattered);
+    check_names(with_bounds, optimisation.upper, "upper bounds", scattered);
+    check_names(varied, optimisation.scales, "scales", scattered);
     constexpr double default_scale = 0.02;
     for (std::size_t j = 0; j < parameters.size(); ++j)
     {

@@ -137,8 +137,10 @@ namespace retroforge
     }
     catch (const std::exception &problem)
     {
+      const std::string what = problem.what();
+      const std::size_t code = what.find("] "); // that of the library's exception
       throw Error(file + ", line " + std::to_string(std::max(n, 1u)),
-                  std::string("is not of a journal: ") + problem.what(),
+                  "is not of a journal: " + (code == std::string::npos ? what : what.substr(code + 2)),
                   "it holds one line of JSON for each forging, as optimize wrote them",
                   "restore the file, or begin anew with --overwrite");
     }

@@ -79,6 +79,16 @@ namespace retroforge
       limit.size = std::abs(limit.bound);
   }
 
+  void Criteria::add_value(const double least, const double most)
+  {
+    const auto place = static_cast<unsigned int>(objective.weights.size());
+    objective.weights.push_back(0.);
+    if (std::isfinite(least))
+      limits.push_back({place, least, true, std::abs(least)});
+    if (std::isfinite(most))
+      limits.push_back({place, most, false, std::abs(most)});
+  }
+
   void Criteria::set_sizes(const std::vector<double> &start)
   {
     for (Limit &limit : limits)

@@ -59,7 +59,8 @@ namespace retroforge
     prm.add_parameter("iterations", iterations, "Steps that may be tried. Units: none.", Integer(1, 100000));
     prm.add_parameter("simulations",
                       simulations,
-                      "Forgings that may be run, confirmation not counted. Units: none.",
+                      "Forgings that may be run, confirmation not counted: no design is begun beyond. "
+                      "Units: none.",
                       Integer(1, 100000));
     prm.add_parameter("gradient tolerance",
                       gradient_tolerance,
@@ -151,6 +152,23 @@ namespace retroforge
                   "leave one of them out");
   }
 
+  void OptimisationParameters::check_limits() const
+  {
+    for (const auto &[name, least] : at_least)
+      if (const auto most = at_most.find(name); most != at_most.end() && !(least < most->second))
+        throw Error("Optimisation/at least",
+                    "asks for " + as_text(least) + " of '" + name + "', and `at most' for " +
+                      as_text(most->second),
+                    "no value is both",
+                    "leave a range between them");
+    for (const std::string &name : objective)
+      if (std::count(objective.begin(), objective.end(), name) > 1)
+        throw Error("Optimisation/objective",
+                    "'" + name + "' stands twice",
+                    "each counts once, by its weight",
+                    "leave one of them out, or give it a larger weight in its section");
+  }
+
   void OptimisationParameters::check() const
   {
     const auto check_once = [](const Values &values, const std::string &where) {
@@ -175,8 +193,13 @@ namespace retroforge
                     "a scale is positive",
                     "give a change of it that matters, as 0.5 for a radius in mm");
     check_data();
-    if (scattered.empty() != scatter_range.empty() ||
-        (!scattered.empty() && (scatter_range.size() != 2 || !(scatter_range[0] < scatter_range[1]))))
+    check_limits();
+    if (scatter_range.size() == 2 && !scattered.empty() && !(scatter_range[0] < scatter_range[1]))
+      throw Error("Optimisation/scatter range",
+                  "goes from " + as_text(scatter_range[0]) + " to " + as_text(scatter_range[1]),
+                  "it goes from the smaller value to the larger one",
+                  "exchange them");
+    if (scattered.empty() != scatter_range.empty() || (!scattered.empty() && scatter_range.size() != 2))
       throw Error("Optimisation/scatter range",
                   scattered.empty() ? "is given, and no parameter is scattered"
                                     : "does not say from where to where " + scattered + " lies",

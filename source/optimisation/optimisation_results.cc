@@ -69,7 +69,9 @@ namespace retroforge
               {"parameters", names},
               {"deviations", deviations},
               {"correlations", confidence.correlations},
-              {"unseen", confidence.unseen}};
+              {"unseen", confidence.unseen},
+              {"converged", results.has_converged()},
+              {"disagrees", confidence.disagrees()}};
     }
 
     void print_confidence(const OptimisationResults &results, std::ostream &out)
@@ -81,8 +83,21 @@ namespace retroforge
         out << "  " << std::left << std::setw(28) << results.objectives[datum.objective] << std::right
             << std::setw(14) << datum.value << std::setw(14) << datum.deviation << std::setw(14)
             << results.best.values[datum.objective] << ' ' << results.units[datum.objective] << '\n';
-      out << "  sum of squares in deviations: " << std::setprecision(4) << confidence.misfit << ", about "
-          << confidence.freedom << " where model and deviations are right\n";
+      out << "  sum of squares in deviations: " << std::setprecision(4) << confidence.misfit;
+      if (confidence.freedom > 0)
+        out << ", about " << confidence.freedom << " where model and deviations are right\n";
+      else
+        out << "; with no more data than parameters it says nothing of the model\n";
+      if (!results.has_converged())
+      {
+        out
+          << "  no intervals: the search has not come to an end by itself, and these are not the parameters "
+             "that agree best\n";
+        return;
+      }
+      if (confidence.disagrees())
+        out << "  note: data and model do not agree within the deviations, and intervals are not to be "
+               "trusted\n";
       if (!confidence.unseen.empty())
       {
         out << "  the data do not see this change of the parameters:";
@@ -157,6 +172,8 @@ namespace retroforge
 
   double OptimisationResults::by_relaxing(const std::size_t limit) const
   {
+    if (stop == Stop::limits)
+      return NAN;
     const double multiplier = limit < multipliers.size() ? multipliers[limit] : 0.;
     return multiplier == 0. ? 0. : -multiplier / criteria.limits[limit].size;
   }
@@ -279,12 +296,15 @@ namespace retroforge
                    {"unit", criteria.objective.unit},
                    {"start", number(value(start))},
                    {"best", number(value(best))},
-                   {"noise", number(noise)}}},
+                   {"noise", number(noise)},
+                   {"counted_as", counted_as}}},
                  {"limits", limits},
                  {"relations", relations},
                  {"parameters", parameters},
                  {"stop", in_words(stop)},
                  {"finished", stop != Stop::running},
+                 {"converged", has_converged()},
+                 {"limits_kept", stop != Stop::limits},
                  {"simulations", n_simulations},
                  {"sweeps", n_sweeps},
                  {"failed", n_failed},
@@ -292,6 +312,16 @@ namespace retroforge
                  {"trials", trials}};
     for (const auto &[name, of_design] : operations)
       json["operations"].push_back({{"name", name}, {"parameters", of_design}});
+    if (const auto &held = space.held())
+      json["follows"] = {{"name", held->name},
+                         {"unit", held->unit},
+                         {"start", number(start.values.back())},
+                         {"best", number(best.values.back())},
+                         {"lower", number(held->lower)},
+                         {"upper", number(held->upper)}};
+    for (std::size_t o = 0; o < details.size(); ++o)
+      if (!details[o].empty())
+        json["details"][objectives[o]] = details[o];
     if (confidence)
       json["identification"] = as_json(*this);
     if (confirmation)
@@ -300,6 +330,8 @@ namespace retroforge
         {"increments", confirmation->n_increments},
         {"start", confirmation->start.failed() ? Json() : number(value(confirmation->start))},
         {"best", confirmation->best.failed() ? Json() : number(value(confirmation->best))},
+        {"values_start", values_by_name(objectives, confirmation->start.values)},
+        {"values", values_by_name(objectives, confirmation->best.values)},
         {"failure", confirmation->start.failure + confirmation->best.failure}};
     write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   }
@@ -312,14 +344,16 @@ namespace retroforge
     if (value(start) != 0.)
       out << std::setprecision(4) << " (" << std::showpos << 100. * (value(best) / value(start) - 1.)
           << std::noshowpos << " %)";
+    if (!counted_as.empty())
+      out << "\n  all values are " << counted_as;
     if (!meshes.empty())
       out << std::setprecision(3)
           << "\n  start and best are forged on meshes of their own: the mesh was made anew "
           << (meshes.size() == 1 ? "once" : std::to_string(meshes.size()) + " times")
           << ", which\n  changed the objective by " << std::showpos << by_meshes() << std::noshowpos << unit
           << (meshes.size() == 1 ? "" : " in all") << "; the rest is by the design";
-    out << "\n  stopped: " << in_words(stop) << "\n  " << n_simulations << " designs forged, " << n_failed
-        << " of which failed; " << n_sweeps << " swept back\n";
+    out << "\n  stopped: " << in_words(stop) << "\n  " << n_simulations << " forgings; " << n_failed << " of "
+        << rows.size() << " designs failed; " << n_sweeps << " swept back\n";
     if (noise > 0.)
       out << std::setprecision(3) << "  noise of the objective: " << noise << unit << '\n';
     out << "\n  " << std::left << std::setw(28) << "parameter" << std::right << std::setw(14) << "start"
@@ -329,6 +363,10 @@ namespace retroforge
           << std::setprecision(7) << std::setw(14) << start.mu[j] << std::setw(14) << best.mu[j] << ' '
           << std::left << std::setw(8) << space.parameters()[j].unit << std::right
           << in_words(space.at(best.mu, j)) << '\n';
+    if (const auto &held = space.held())
+      out << "  " << std::left << std::setw(28) << held->name << std::right << std::setprecision(7)
+          << std::setw(14) << start.values.back() << std::setw(14) << best.values.back() << ' ' << std::left
+          << std::setw(8) << held->unit << std::right << "follows from the volume\n";
     if (!criteria.limits.empty())
       out << "\n  " << std::left << std::setw(28) << "limit" << std::right << std::setw(14) << "bound"
           << std::setw(14) << "start" << std::setw(14) << "best"
@@ -339,8 +377,14 @@ namespace retroforge
       out << "  " << std::left << std::setw(28)
           << objectives[limit.objective] + (limit.at_least ? " at least" : " at most") << std::right
           << std::setw(14) << limit.bound << std::setw(14) << start.values[limit.objective] << std::setw(14)
-          << best.values[limit.objective] << "  " << by_relaxing(i) << '\n';
+          << best.values[limit.objective] << "  "
+          << (std::isnan(by_relaxing(i)) ? std::string("unknown: limits are not met")
+                                         : as_text(by_relaxing(i)))
+          << '\n';
     }
+    for (std::size_t o = 0; o < details.size(); ++o)
+      for (const auto &[what, detail] : details[o])
+        out << "  " << what << " of " << objectives[o] << " at the best design: " << detail << '\n';
     for (std::size_t r = 0; r < by_moving_relation.size(); ++r)
       out << (r == 0 ? "\n" : "") << "  " << space.relations()[r].text << ": "
           << (space.holds_as_equation(best.mu, r)
@@ -351,8 +395,10 @@ namespace retroforge
       return row.decision == TrialRow::Decision::accepted || row.decision == TrialRow::Decision::renewed;
     });
     if (stop != Stop::running && accepted != rows.rend() && accepted->evaluation.mu != best.mu)
-      out << "  the search ended at another design, of " << std::setprecision(7)
-          << value(accepted->evaluation) << unit << "; the least is shown\n";
+      out << "  the search ended at another design, of " << std::setprecision(10)
+          << value(accepted->evaluation) << unit
+          << (value(accepted->evaluation) < value(best) ? "; the one that keeps the limits best is shown\n"
+                                                        : "; the least is shown\n");
     if (confidence)
       print_confidence(*this, out);
     if (confirmation)
@@ -363,6 +409,11 @@ namespace retroforge
         out << "failed: " << confirmation->start.failure + confirmation->best.failure << '\n';
       else
         out << value(confirmation->start) << unit << " -> " << value(confirmation->best) << unit << '\n';
+      if (!confirmation->best.failed())
+        for (const Limit &limit : criteria.limits)
+          out << "    " << objectives[limit.objective] << ' ' << confirmation->best.values[limit.objective]
+              << ", " << (limit.at_least ? "at least " : "at most ") << limit.bound
+              << (limit.excess(confirmation->best.values) > 0. ? ": not kept there\n" : ": kept\n");
     }
   }
 } // namespace retroforge

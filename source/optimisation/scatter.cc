@@ -29,6 +29,13 @@ namespace retroforge
                   "'" + name_ + "' is not among the parameters of the design",
                   "those are, by Design/parameters: " + join(known),
                   "add it there");
+    const DesignParameter &scattered = parameters[parameter_];
+    for (const double end : optimisation.scatter_range)
+      if (!scattered.is_free() && !(end > 0. || (end == 0. && scattered.may_vanish)))
+        throw Error("Optimisation/scatter range",
+                    "has " + as_text(end) + " " + scattered.unit + " for " + name_,
+                    scattered.may_vanish ? "it is not negative" : "it is positive",
+                    "let the range lie where it may be");
     const dealii::QGauss<1> quadrature(optimisation.samples);
     const double            from = optimisation.scatter_range[0], to = optimisation.scatter_range[1];
     for (unsigned int q = 0; q < quadrature.size(); ++q)
@@ -36,6 +43,14 @@ namespace retroforge
       values_.push_back(from + (to - from) * quadrature.point(q)(0));
       weights_.push_back(quadrature.weight(q));
     }
+  }
+
+  std::string Scatter::in_words() const
+  {
+    return empty()
+             ? ""
+             : "mean + " + as_text(deviations_) + " standard deviation(s) (under a lower limit: -) over " +
+                 std::to_string(n_samples()) + " values of " + name_;
   }
 
   std::vector<double> Scatter::sample(std::vector<double> mu, const std::size_t i) const

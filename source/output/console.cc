@@ -18,7 +18,7 @@ namespace retroforge
            std::to_string(n_cores) + " cores wait for each other: fewer ranks, or one, may be faster\n";
   }
 
-  void print_head(const WholePart &whole)
+  void print_part(const WholePart &whole)
   {
     if (std::isnan(whole.copies))
       std::printf(
@@ -26,6 +26,11 @@ namespace retroforge
     else if (!whole.is_model())
       std::printf("  the model is 1/%.6g of the part: forces, energies and volumes below are of the model\n",
                   whole.copies);
+  }
+
+  void print_head(const WholePart &whole)
+  {
+    print_part(whole);
     std::printf("  inc   stroke      force        energy        volume   quality   depth newton krylov   "
                 "time left\n");
     std::fflush(stdout);

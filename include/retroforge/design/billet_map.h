@@ -47,6 +47,9 @@ namespace retroforge
     /// All parameters of the shape, in the order of FirstMesh, the held one included.
     std::vector<double> all_values(const std::vector<double> &mu) const;
 
+    /// The one that holds the volume; null where none does.
+    const ShapeParameter *held() const { return held_ ? &shapes_.parameters[*held_] : nullptr; }
+
     /// f(mu), the value of the parameter that holds the volume.
     template <typename Number>
     Number held_value(const std::vector<Number> &mu) const;

@@ -76,6 +76,13 @@ namespace retroforge
     /// @throws Error  where no value of the parameter that holds the volume keeps it
     double mesh_quality(const std::vector<double> &mu) const;
 
+    /// The parameter of the billet that holds the volume, and so follows from the others; none where none
+    /// does.
+    std::optional<DesignParameter> held() const;
+    /// Its value.  @throws Error  where none keeps the volume
+    double              held_value(const std::vector<double> &mu) const;
+    std::vector<double> held_gradient(const std::vector<double> &mu) const;
+
     /// Values of the parameters of the billet's shape that differ from the nominal ones, by name; the one
     /// that holds the volume too.
     std::vector<std::pair<std::string, double>> billet_at(const std::vector<double> &mu) const;

@@ -6,6 +6,9 @@
 #include <retroforge/optimisation/journal.h>
 #include <retroforge/optimisation/merit.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace retroforge
 {
   /// How well data determine parameters, by the Jacobian  J_ij = (dv_i/dmu_j) / s_i  where they agree best:
@@ -20,6 +23,10 @@ namespace retroforge
     int freedom = 0; ///< data less free directions: what the misfit should be about
     /// A change of the parameters, in scales, that data do not see; empty where they see all.
     std::vector<double> unseen;
+
+    /// Whether the misfit is beyond what errors of the given deviations make of it: by three deviations of
+    /// chi square, and some for few data.
+    bool disagrees() const { return misfit > freedom + 3. * std::sqrt(2. * std::max(freedom, 1)) + 4.; }
 
     /// Half width of the interval in which the parameter lies with 95 %.
     static constexpr double half_width_95 = 1.959963984540054; // of a normal distribution, in deviations

@@ -8,6 +8,14 @@
 
 namespace retroforge
 {
+  /// A parameter of the billet that follows from the others, because it holds the volume, and where a user
+  /// wants it to stay: a limit, as objectives have them.
+  struct HeldParameter
+  {
+    std::string name, unit;
+    double      lower, upper; ///< may be infinite
+  };
+
   /// The design parameters as an optimiser sees them: changes from the start in units of their scales,
   /// x_j = (mu_j - start_j) / scale_j,  between bounds and related to each other as a user asks. Those that
   /// are not varied stay where they start.
@@ -16,12 +24,16 @@ namespace retroforge
   public:
     /// @param varied  names of the parameters that an optimiser may change
     /// @param start   values where the optimisation begins
+    /// @param held    the parameter that follows from the volume, which may have bounds, too
     /// @throws Error  for names that are not among the parameters, bounds that cross, a start outside of them
     /// or of a relation
-    DesignSpace(const std::vector<DesignParameter> &parameters,
-                const std::vector<std::string>     &varied,
-                const std::vector<double>          &start,
-                const OptimisationParameters       &optimisation);
+    DesignSpace(const std::vector<DesignParameter>   &parameters,
+                const std::vector<std::string>       &varied,
+                const std::vector<double>            &start,
+                const OptimisationParameters         &optimisation,
+                const std::optional<DesignParameter> &held = {});
+
+    const std::optional<HeldParameter> &held() const { return held_; }
 
     std::size_t                         size() const { return start_.size(); }
     const std::vector<DesignParameter> &parameters() const { return parameters_; }
@@ -65,6 +77,7 @@ namespace retroforge
     std::vector<DesignParameter> parameters_;
     std::vector<double>          start_, scales_, lower_, upper_;
     std::vector<LinearRelation>  relations_, scaled_relations_;
+    std::optional<HeldParameter> held_;
 
     void read_relations(const std::vector<std::string> &texts, const std::vector<std::string> &varied);
   };

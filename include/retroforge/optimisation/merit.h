@@ -44,6 +44,8 @@ namespace retroforge
 
     /// @throws Error  for a name that is not among the objectives; nothing to make small; a limit twice
     Criteria(const Objectives &objectives, const OptimisationParameters &parameters);
+    /// A value that is told behind those of all objectives, with limits where these are finite.
+    void add_value(double least, double most);
     /// Sizes of limits that are 0.
     void set_sizes(const std::vector<double> &start);
 

@@ -50,5 +50,6 @@ namespace retroforge
 
   private:
     void check_data() const;
+    void check_limits() const;
   };
 } // namespace retroforge

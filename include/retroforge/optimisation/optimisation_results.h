@@ -28,6 +28,7 @@ namespace retroforge
     double       merit  = 0.; ///< what the optimiser compares; infinite where the forging failed
     double       radius = 0.; ///< of the trust region it was taken from, in scales
     unsigned int mesh   = 0;  ///< that it was forged on, the first one 0
+    double       held = NAN; ///< value of the parameter that follows from the volume; NaN where there is none
 
     bool becomes_the_next() const { return decision != Decision::noise && decision != Decision::refused; }
   };
@@ -53,13 +54,17 @@ namespace retroforge
   /// What an optimisation found.
   struct OptimisationResults
   {
-    const DesignSpace             &space;
-    const Criteria                &criteria;
-    const std::vector<std::string> objectives; ///< names of all of the case
-    const std::vector<std::string> units;      ///< theirs
+    const DesignSpace &space;
+    const Criteria    &criteria;
+    /// Names of all of the case, and behind them that of the parameter that follows from the volume, if any.
+    const std::vector<std::string> objectives;
+    const std::vector<std::string> units; ///< theirs
 
     std::map<std::string, std::vector<std::string>> operations =
       {}; ///< others: parameters of the design they have
+
+    /// What values of objectives are where each design is forged several times; empty where it is once.
+    std::string counted_as = {};
 
     std::vector<TrialRow>       rows   = {};
     std::vector<NewMesh>        meshes = {}; ///< after the first
@@ -70,11 +75,20 @@ namespace retroforge
     std::vector<double>         by_moving_relation = {}; ///< objective per unit of each relation's bound
     std::optional<Confidence>   confidence         = {}; ///< where there are data
     std::optional<Confirmation> confirmation       = {};
-    unsigned int                n_simulations = 0, n_sweeps = 0, n_failed = 0;
+    /// Told beside values of the best design's forging, as the true maximum beside a smooth one: of each
+    /// objective of the case itself, in its unit unless their names say other.
+    std::vector<std::map<std::string, double>> details = {};
+    unsigned int n_simulations = 0, n_sweeps = 0, n_failed = 0; ///< forgings, sweeps, designs
 
     double value(const Evaluation &evaluation) const { return criteria.value(evaluation.values); }
-    /// What the objective would change by, per unit by which a limit is relaxed.
+    /// What the objective would change by, per unit by which a limit is relaxed; NaN where limits are not
+    /// met.
     double by_relaxing(std::size_t limit) const;
+    /// Whether intervals and multipliers mean something: the search came to an end by itself.
+    bool has_converged() const
+    {
+      return stop == SearchStop::gradient || stop == SearchStop::noise || stop == SearchStop::step;
+    }
 
     /// What new meshes changed of the objective, in all.
     double by_meshes() const;

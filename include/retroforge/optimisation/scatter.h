@@ -22,7 +22,9 @@ namespace retroforge
             const OptimisationParameters       &optimisation,
             std::vector<bool>                   from_below);
 
-    bool        empty() const { return values_.empty(); }
+    bool empty() const { return values_.empty(); }
+    /// What an objective is over the samples; empty without.
+    std::string in_words() const;
     std::size_t n_samples() const { return empty() ? 1 : values_.size(); }
     /// Of the scattered parameter, in one sample.
     double value(const std::size_t sample) const { return values_[sample]; }

@@ -147,6 +147,11 @@ def die_free_form():
     judge("its parameters", done.returncode == 0 and summary_of("die_hand")["objectives"][0]["value"] == objective["best"], done.stderr)
     for setting in ("free form modes", "free form mirrors"):
         del scene["Die upper"][setting]
+    os.makedirs("elsewhere_folder", exist_ok=True)
+    done = subprocess.run([*command("simulate", "die_elsewhere", case="../die/best.prm")], cwd="elsewhere_folder", env=ENVIRONMENT,
+                          capture_output=True, text=True, check=False)
+    value = summary_of("elsewhere_folder/die_elsewhere")["objectives"][0]["value"] if done.returncode == 0 else None
+    judge("run from another folder", value == objective["best"], f"{value} {done.stderr}")
     written = changed(scene, {"Die upper": {"file": "die/designs/best_die_upper.stl", "point": "0, 0, 0"}, "Design": {"parameters": "material/K"}})
     write("written.prm", prm(written))
     another_die_file(make_die)
@@ -196,6 +201,27 @@ def related():
     judge("in every design", max(abs(float(row[f"{one} [mm]"]) - float(row[f"{two} [mm]"])) for row in rows) < 1e-8)
     loose, _ = optimize("loose", f"Optimisation/relations={one} - {two} <= 5")
     judge("one that is not felt", abs(best_of(loose)[0] - first) < 0.02 and not loose["relations"][0]["active"], best_of(loose))
+
+
+def held():
+    """The parameter that follows from the volume is told, and has bounds; what moving one gives is foretold."""
+    four = "billet/control point 4 r"
+    found = found_in("whole")
+    free, begun = found["follows"]["best"], found["follows"]["start"]
+    judge("it is told", found["follows"]["name"] == four and float(rows_of("whole")[0][f"{four} [mm]"]) == begun == 10, found["follows"])
+    bound, step = 0.5 * (begun + free), 0.02 * (free - begun)
+    settings = ("Optimisation/gradient tolerance=1e-5", "Optimisation/limit tolerance=1e-6", "Optimisation/noise runs=0")
+    side, kind = ("upper", "at most") if free > begun else ("lower", "at least")
+    kept, printed = optimize("held", f"Optimisation/{side} bounds={four}: {bound!r}", *settings)
+    limit = kept["limits"][0]
+    judge("its bound is met", abs(kept["follows"]["best"] - bound) < 1e-5 * bound and limit["kind"] == kind, [kept["follows"], limit])
+    judge("and costs", kept["objective"]["best"] > found["objective"]["best"] and "follows from the volume" in printed)
+    wider, _ = optimize("held_wider", f"Optimisation/{side} bounds={four}: {bound + step!r}", *settings)
+    change = (wider["objective"]["best"] - kept["objective"]["best"]) / step
+    judge("its multiplier", abs(change - limit["by_relaxing"]) < 0.05 * abs(change), f"{change} {limit['by_relaxing']}")
+    for setting, expected in ((f"scales={four}: 1", "follows from the volume"), (f"relations={four} <= 20", "follows from the volume")):
+        done = run("optimize", "wrong", f"Optimisation/{setting}")
+        judge(f"no {setting}", done.returncode == 1 and expected in done.stderr, done.stderr.strip())
 
 
 def recorded():
@@ -249,6 +275,10 @@ def far_away():
     done = run("gradient", "far_hand", case="far/best.prm")
     value = summary_of("far_hand")["objectives"][0]["value"] if done.returncode == 0 else None
     judge("the best by hand", value == found["objective"]["best"], f"{value} {done.stderr}")
+    write("far.prm", text_of("far", "parameters.prm") + "include far/designs/best_design.prm\n")
+    done = run("simulate", "far_included", case="far.prm")
+    value = summary_of("far_included")["objectives"][0]["value"] if done.returncode == 0 else None
+    judge("and by what the case is to include", value == found["objective"]["best"], f"{value} {done.stderr}")
 
 
 def meshes_within_limits():
@@ -354,7 +384,12 @@ def identified():
     judge("deviations", error < 1e-8, error)
     correlation = covariance[0, 1] / deviations.prod()
     judge("correlation", abs(identification["correlations"][0][1] - correlation) < 1e-8, correlation)
-    judge("intervals are told", "(95 %)" in printed)
+    judge("intervals are told", "(95 %)" in printed and identification["converged"] and not identification["disagrees"])
+    found, printed = optimize("begun", *(f"Optimisation/{kind}={text}" for kind, text in listed.items()), "Optimisation/iterations=1", case="known.prm")
+    judge("none before the end", "no intervals" in printed and not found["identification"]["converged"], printed)
+    wrong = listed["data"].replace(f"top: {values['top']!r}", f"top: {values['top'] + 0.5!r}")
+    found, printed = optimize("disagreeing", f"Optimisation/data={wrong}", f"Optimisation/uncertainties={listed['uncertainties']}", case="known.prm")
+    judge("data that disagree are told", found["identification"]["disagrees"] and "not to be trusted" in printed, found["identification"])
     one = {kind: text.split(", ")[0] for kind, text in listed.items()}
     found, printed = optimize("blind", *(f"Optimisation/{kind}={text}" for kind, text in one.items()), case="known.prm")
     judge("one number for two parameters", len(found["identification"]["unseen"]) == 2 and "do not see" in printed)
@@ -365,7 +400,8 @@ def scattered():
     settings = ("Design/parameters=billet/control point 1 r, dies/friction", "Optimisation/scattered=dies/friction",
                 "Optimisation/scatter range=0.2, 0.6", "Optimisation/deviations=2")
     found, printed = optimize("scattered", *settings)
-    judge("it says so", "each design is forged 3 times" in printed)
+    judge("it says so", "each design is forged 3 times" in printed and "mean + 2 standard deviation(s)" in printed)
+    judge("forgings, not designs", found["simulations"] == 3 * len(found["trials"]) and found["sweeps"] <= found["simulations"])
     points = 0.4 + 0.2 * np.sqrt(0.6) * np.array([-1, 0, 1])
     values = []
     for i, friction in enumerate(points):
@@ -418,7 +454,18 @@ def refused():
              "add it there"),
             ("a range that the scattered parameter may not have",
              ["Design/parameters=billet/control point 1 r, dies/friction", "Optimisation/scattered=dies/friction",
-              "Optimisation/scatter range=-0.2, 0.6"], "friction"),
+              "Optimisation/scatter range=-0.2, 0.6"], "Optimisation/scatter range: has -0.2"),
+            ("a range the wrong way around",
+             ["Design/parameters=billet/control point 1 r, dies/friction", "Optimisation/scattered=dies/friction",
+              "Optimisation/scatter range=0.6, 0.2"], "exchange them"),
+            ("bounds of a scattered parameter",
+             ["Design/parameters=billet/control point 1 r, dies/friction", "Optimisation/scattered=dies/friction",
+              "Optimisation/scatter range=0.2, 0.6", "Optimisation/lower bounds=dies/friction: 0.1"], "is scattered"),
+            ("nothing but a scattered parameter",
+             ["Design/parameters=dies/friction", "Optimisation/scattered=dies/friction", "Optimisation/scatter range=0.2, 0.6"],
+             "none but the one that is scattered"),
+            ("limits that exclude each other", ["Optimisation/at least=energy: 10", "Optimisation/at most=energy: 9"], "no value is both"),
+            ("an objective twice", ["Optimisation/objective=barrel, barrel"], "stands twice"),
             ("an objective from both sides, with scatter",
              ["Design/parameters=billet/control point 1 r, dies/friction", "Optimisation/scattered=dies/friction",
               "Optimisation/scatter range=0.2, 0.6", "Optimisation/at least=energy: 1", "Optimisation/at most=energy: 1e9"],
@@ -443,4 +490,4 @@ def refused():
     judge("resumed with another tolerance", "taken from the journal" in printed and found["simulations"] >= len(before.splitlines()) // 3)
 
 
-main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, free_form, die_free_form, bounded, related, recorded, failing, far_away, meshes_within_limits, resumed_through_meshes, gradient_on_a_new_mesh, free_form_far_away, from_elsewhere, identified, scattered, confirmed, on_two_ranks, reported, refused))
+main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, free_form, die_free_form, bounded, related, held, recorded, failing, far_away, meshes_within_limits, resumed_through_meshes, gradient_on_a_new_mesh, free_form_far_away, from_elsewhere, identified, scattered, confirmed, on_two_ranks, reported, refused))
