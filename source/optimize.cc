@@ -96,44 +96,6 @@ namespace retroforge
              "\n" + (made_at.empty() ? "" : "  set meshed at = " + made_at + "\n") + "end\n";
     }
 
-    /// A relative name of a file, for a parameter file in another folder.
-    std::string seen_from(const std::string &folder, const std::string &name)
-    {
-      const std::filesystem::path file(name);
-      std::error_code             failed;
-      if (name.empty() || file.is_absolute() || !std::filesystem::is_regular_file(file, failed))
-        return name;
-      const std::filesystem::path there = std::filesystem::relative(file, folder, failed);
-      return failed || there.empty() ? name : there.string();
-    }
-
-    /// The files that a case names, by parameter.
-    std::vector<std::pair<std::string, std::string>> files_seen_from(const std::string &folder,
-                                                                     const Case        &at)
-    {
-      std::vector<std::pair<std::string, std::string>> files;
-      const auto add = [&](const std::string &path, const std::string &name) {
-        if (const std::string there = seen_from(folder, name); there != name)
-          files.emplace_back(path, there);
-      };
-      const auto values = parameter_values(parameter_lines_of(at.echo, "case"));
-      const auto set    = [&](const std::string &path) {
-        if (const auto found = values.find(path); found != values.end())
-          add(path, found->second);
-      };
-      set("Billet/file name");
-      for (const DieParameters &die : at.parameters.dies)
-        set("Die " + die.name + "/file");
-      for (const ObjectiveParameters &objective : at.parameters.objectives.all)
-        set("Objective " + objective.name + "/target");
-      std::vector<std::string> operations = at.parameters.optimisation.operations;
-      for (std::string &operation : operations)
-        operation = seen_from(folder, operation);
-      if (operations != at.parameters.optimisation.operations)
-        files.emplace_back("Optimisation/operations", join(operations));
-      return files;
-    }
-
     /// Of a search that went on, whose designs may have had other numbers before.
     bool has_shapes(const std::string &base, const std::string &design, const bool with_record)
     {
@@ -203,6 +165,15 @@ namespace retroforge
       return names;
     }
 
+    bool varies_billet(const DesignSpace &space)
+    {
+      for (std::size_t j = 0; j < space.size(); ++j)
+        if (space.parameters()[j].kind == DesignParameter::Kind::billet &&
+            space.lower()[j] < space.upper()[j])
+          return true;
+      return false;
+    }
+
     /// Objectives that may not be smaller than a limit. @param names  of all
     std::vector<bool>
     from_below(const Criteria &criteria, const std::vector<std::string> &names, const bool is_scattered)
@@ -259,7 +230,8 @@ namespace retroforge
       , search_(space_, criteria_, case_.parameters.optimisation, search_task())
       , results_{space_, criteria_, names_of(objectives_, space_), units_of(objectives_, space_)}
   {
-    results_.counted_as = scatter_.in_words();
+    results_.counted_as      = scatter_.in_words();
+    results_.limit_tolerance = case_.parameters.optimisation.limit_tolerance;
     for (std::size_t o = 0; o < operations_.size(); ++o)
     {
       // A start of which nothing can come is refused before anything is written.
@@ -468,7 +440,7 @@ namespace retroforge
     print_part(whole_part(case_.billet, case_.nominal.dies[case_.nominal.leading_die].velocity));
     if (criteria_.objective.unit == "mixed")
       std::printf("  note: it adds objectives of different units, by their weights\n");
-    if (const auto &held = space_.held())
+    if (const auto &held = space_.held(); held && varies_billet(space_))
       std::printf("  %s follows from the volume%s\n",
                   held->name.c_str(),
                   std::isinf(held->lower) && std::isinf(held->upper)
@@ -820,7 +792,8 @@ namespace retroforge
       write_file(path_of(operations_.titled("best", o) + ".prm"),
                  parameters_at(operations_.at(o),
                                operations_.values(o, results_.best.mu),
-                               files_seen_from(case_.command.output_directory, operations_.at(o))));
+                               operations_.at(o).parameters.files_seen_from(case_.command.output_directory,
+                                                                            operations_.at(o).echo)));
   }
 
   std::string Optimize::parameters_at(const Case                                             &at,

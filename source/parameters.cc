@@ -333,24 +333,28 @@ namespace retroforge
                : name.string();
     }
 
-    void look_beside(const std::string        &case_file,
-                     dealii::ParameterHandler &prm,
-                     const std::string        &section,
-                     const std::string        &entry)
+    /// A relative name of a file that is there, for a parameter file in another folder; others are left as
+    /// they are.
+    std::string seen_from(const std::string &folder, const std::filesystem::path &name)
     {
-      prm.enter_subsection(section);
-      prm.set(entry, beside(case_file, prm.get(entry)));
-      prm.leave_subsection();
+      std::error_code             failed;
+      const std::filesystem::path there =
+        !name.empty() && name.is_relative() && std::filesystem::is_regular_file(name, failed)
+          ? std::filesystem::relative(name, folder, failed)
+          : std::filesystem::path();
+      return failed || there.empty() ? name.string() : there.string();
     }
 
-    void look_beside_for_operations(const std::string &case_file, dealii::ParameterHandler &prm)
+    /// A list of names, where the entry has one, each of which becomes another; else one name, with commas
+    /// that it may have.
+    template <typename Rename>
+    std::string renamed(const std::string &entry, const std::string &names, const Rename &one)
     {
-      prm.enter_subsection("Optimisation");
-      std::vector<std::string> files = dealii::Utilities::split_string_list(prm.get("operations"));
-      for (std::string &file : files)
-        file = beside(case_file, file);
-      prm.set("operations", join(files));
-      prm.leave_subsection();
+      if (entry != "operations")
+        return one(names);
+      std::vector<std::string> files = dealii::Utilities::split_string_list(names);
+      std::transform(files.begin(), files.end(), files.begin(), one);
+      return join(files);
     }
   } // namespace
 
@@ -409,18 +413,46 @@ end
     dealii::ParameterHandler prm;
     parameters.add_parameters(prm, names_in(values, "Dies/names", ""), objective_names(values));
     set_parameters(prm, lines);
-    look_beside(file, prm, "Billet", "file name");
-    for (const DieParameters &die : parameters.dies)
-      look_beside(file, prm, "Die " + die.name, "file");
-    for (const ObjectiveParameters &objective : parameters.objectives.all)
-      look_beside(file, prm, "Objective " + objective.name, "target");
-    look_beside_for_operations(file, prm);
+    for (const auto &[section, entry] : parameters.entries_of_files())
+    {
+      prm.enter_subsection(section);
+      prm.set(entry,
+              renamed(entry, prm.get(entry), [&](const std::string &name) { return beside(file, name); }));
+      prm.leave_subsection();
+    }
     parameters.check_all();
     parameters.find_without_effect(declared_parameters(prm));
     std::ostringstream text;
     print_parameters(prm, text);
     echo = text.str();
     return parameters;
+  }
+
+  std::vector<std::pair<std::string, std::string>> Parameters::entries_of_files() const
+  {
+    std::vector<std::pair<std::string, std::string>> entries = {{"Billet", "file name"},
+                                                                {"Optimisation", "operations"}};
+    for (const DieParameters &die : dies)
+      entries.emplace_back("Die " + die.name, "file");
+    for (const ObjectiveParameters &objective : objectives.all)
+      entries.emplace_back("Objective " + objective.name, "target");
+    return entries;
+  }
+
+  std::vector<std::pair<std::string, std::string>> Parameters::files_seen_from(const std::string &folder,
+                                                                               const std::string &echo) const
+  {
+    std::vector<std::pair<std::string, std::string>> overrides;
+    const auto values = parameter_values(parameter_lines_of(echo, "parameters"));
+    for (const auto &[section, entry] : entries_of_files())
+      if (const auto found = values.find(section + "/" + entry); found != values.end())
+      {
+        const std::string there =
+          renamed(entry, found->second, [&](const std::string &name) { return seen_from(folder, name); });
+        if (there != found->second)
+          overrides.emplace_back(section + "/" + entry, there);
+      }
+    return overrides;
   }
 
   void Parameters::find_without_effect(const std::vector<ParameterEntry> &entries)

@@ -140,7 +140,14 @@ namespace retroforge
     /// Wanted length of the edges in remeshing [mm]; of a billet from a file, the mean length there is.
     double edge_length(const TetMesh &billet) const;
 
+    /// Overrides with which the parameters name the same files from a parameter file in another folder.
+    /// @param echo  of these parameters
+    std::vector<std::pair<std::string, std::string>> files_seen_from(const std::string &folder,
+                                                                     const std::string &echo) const;
+
   private:
+    /// Where names of files stand, a list of them in some: as (section, entry).
+    std::vector<std::pair<std::string, std::string>> entries_of_files() const;
     /// @param file  of the case, beside which other files are looked for
     static Parameters
     of_lines(const std::string &file, const std::vector<ParameterLine> &lines, std::string &echo);

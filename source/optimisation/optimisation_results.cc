@@ -88,16 +88,6 @@ namespace retroforge
         out << ", about " << confidence.freedom << " where model and deviations are right\n";
       else
         out << "; with no more data than parameters it says nothing of the model\n";
-      if (!results.has_converged())
-      {
-        out
-          << "  no intervals: the search has not come to an end by itself, and these are not the parameters "
-             "that agree best\n";
-        return;
-      }
-      if (confidence.disagrees())
-        out << "  note: data and model do not agree within the deviations, and intervals are not to be "
-               "trusted\n";
       if (!confidence.unseen.empty())
       {
         out << "  the data do not see this change of the parameters:";
@@ -108,6 +98,16 @@ namespace retroforge
         out << '\n';
         return;
       }
+      if (!results.has_converged())
+      {
+        out
+          << "  no intervals: the search has not come to an end by itself, and these are not the parameters "
+             "that agree best\n";
+        return;
+      }
+      if (confidence.disagrees())
+        out << "  note: data and model do not agree within the deviations, and intervals are not to be "
+               "trusted\n";
       for (std::size_t a = 0; a < confidence.deviations.size(); ++a)
       {
         const unsigned int j = confidence.parameters[a];
@@ -304,7 +304,7 @@ namespace retroforge
                  {"stop", in_words(stop)},
                  {"finished", stop != Stop::running},
                  {"converged", has_converged()},
-                 {"limits_kept", stop != Stop::limits},
+                 {"limits_kept", limits_are_kept()},
                  {"simulations", n_simulations},
                  {"sweeps", n_sweeps},
                  {"failed", n_failed},

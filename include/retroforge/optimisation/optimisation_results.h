@@ -28,7 +28,6 @@ namespace retroforge
     double       merit  = 0.; ///< what the optimiser compares; infinite where the forging failed
     double       radius = 0.; ///< of the trust region it was taken from, in scales
     unsigned int mesh   = 0;  ///< that it was forged on, the first one 0
-    double       held = NAN; ///< value of the parameter that follows from the volume; NaN where there is none
 
     bool becomes_the_next() const { return decision != Decision::noise && decision != Decision::refused; }
   };
@@ -63,6 +62,8 @@ namespace retroforge
     std::map<std::string, std::vector<std::string>> operations =
       {}; ///< others: parameters of the design they have
 
+    double limit_tolerance = 0.; ///< part of a limit by which it may be exceeded
+
     /// What values of objectives are where each design is forged several times; empty where it is once.
     std::string counted_as = {};
 
@@ -84,6 +85,7 @@ namespace retroforge
     /// What the objective would change by, per unit by which a limit is relaxed; NaN where limits are not
     /// met.
     double by_relaxing(std::size_t limit) const;
+    bool   limits_are_kept() const { return criteria.largest_excess(best.values) <= limit_tolerance; }
     /// Whether intervals and multipliers mean something: the search came to an end by itself.
     bool has_converged() const
     {
