@@ -7,7 +7,7 @@ namespace retroforge
   namespace
   {
     /// Bulges over the edge's length up to which a die counts as smooth, and from which on as sharp.
-    constexpr double smooth_bulge = 0.02, sharp_bulge = 0.05;
+    constexpr double smooth_bulge = 0.06, sharp_bulge = 0.15;
 
     /// Of an edge, as a weight beside those that touch: an offset sets in smoothly where a first edge
     /// touches.

@@ -36,7 +36,7 @@ void tell(const std::string &name, const double s, const double ramp_width)
   const std::vector<DieState<double>> states = {{Vec3(), Vec3(), 0.3, {}}};
   const FrictionRamp                  ramp{ramp_width, false};
   const ContactView<double>           view{mesh, topology, dies, states, mesh.X, &edges};
-  const auto                          pairs   = find_contact_pairs(view, ramp, 0.2, true);
+  const auto                          pairs   = find_contact_pairs(view, ramp, 0.4, true);
   const auto                          contact = make_contact_set<double>(view, pairs, {ramp, 1.});
   const EdgeFit                       fit     = edge_fit(mesh.X, ramp, contact);
   const double                        d       = 0.5 * s / std::sqrt(1. + s * s);
@@ -54,8 +54,8 @@ int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   tell("flat", 0., 0.5);
-  tell("a gentle roof", 0.08, 0.5);  // 0.0399 and 0.028 of the lengths
-  tell("a steep one", 0.12, 0.5);    // 0.0596 and 0.042
-  tell("a steeper one", 0.2, 0.5);   // 0.098 and 0.069
-  tell("a narrow ramp", 0.12, 0.05); // ends at 0.0596 do not touch
+  tell("a gentle roof", 0.2, 0.5);  // 0.098 and 0.069 of the lengths
+  tell("a steep one", 0.35, 0.5);   // 0.165 and 0.117
+  tell("a steeper one", 0.5, 0.5);  // 0.224 and 0.158
+  tell("a narrow ramp", 0.35, 0.1); // ends at 0.165 do not touch
 }
