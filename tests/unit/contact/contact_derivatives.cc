@@ -231,7 +231,7 @@ struct CornerScene
     dies = {Die("lower", Vec3({0., 0., 0.1}), up / up.norm()),
             Die("side", Vec3({5., 0., 0.}), side / side.norm())};
     if (lower != Lower::plane)
-      dies[0] = Die("lower", wavy_sheet(), 2., {lower == Lower::smooth, 60., 1.});
+      dies[0] = Die("lower", wavy_sheet(quadratic ? 0.7 : 0.3), 2., {lower == Lower::smooth, 60., 1.});
     states = {{Vec3(), 0.1 * random.vector(), 0.3, {}}, {Vec3(), 0.1 * random.vector(), 0.2, {}}};
     pairs  = find_contact_pairs(view(states, X), ramp, 1.5 * ramp.width, true);
   }
@@ -475,7 +475,7 @@ void check_middles(const CornerScene &scene, const ContactSet<double> &contact, 
         {
           const double bulge = 0.5 * (own[a] + own[b]) - own[m];
           const double t =
-            std::max(0., std::min(1., (std::abs(bulge) / (scene.X[i] - scene.X[j]).norm() - 0.02) / 0.03));
+            std::max(0., std::min(1., (std::abs(bulge) / (scene.X[i] - scene.X[j]).norm() - 0.06) / 0.09));
           const double c = 1. - std::pow(t, 3) * (10. - 15. * t + 6. * t * t);
           ++n_kind[t == 0. ? 0 : t < 1. ? 1 : 2];
           edges.push_back({m, a, b, c});
