@@ -10,10 +10,10 @@
 
 namespace retroforge
 {
-  inline std::vector<Die> make_dies()
+  inline std::vector<Die> make_dies(const double hills)
   {
     const Vec3 side = Vec3({-1., 0.1, 0.2});
-    return {Die("lower", wavy_sheet(), 2., {true, 40., 1.}),
+    return {Die("lower", wavy_sheet(hills), 2., {true, 40., 1.}),
             Die("side", Vec3({5., 0., 0.}), side / side.norm())};
   }
 
@@ -30,8 +30,13 @@ namespace retroforge
     CornerStage(Random                            &random,
                 const double                       rho,
                 const ElementPair                  pair  = ElementPair::mini,
-                const std::array<unsigned int, 3> &cells = {{4, 6, 4}})
-        : scene(half_box_mesh(Vec3({10., 8., 6.}), cells), pair, make_dies(), MPI_COMM_WORLD, Bubbles::all)
+                const std::array<unsigned int, 3> &cells = {{4, 6, 4}},
+                const double                       hills = 0.3)
+        : scene(half_box_mesh(Vec3({10., 8., 6.}), cells),
+                pair,
+                make_dies(hills),
+                MPI_COMM_WORLD,
+                Bubbles::all)
         , X(scene.mesh.X)
         , W(scene.spaces)
     {

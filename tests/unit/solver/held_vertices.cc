@@ -5,7 +5,7 @@
 // plane. Proved:
 // - a point with h > 0 is; a vertex with h <= 0 is where the middles of all its surface edges are in reach of
 // its die
-//   and have h > 0, and the die bulges into none of them by more than 0.02 of its length, and only there; a
+//   and have h > 0, and the die bulges into none of them by more than 0.06 of its length, and only there; a
 //   middle with h <= 0 is not;
 // - residual and matrix without a choice are those of that choice: on a vertex held by its middles acts a
 // force that pulls.
@@ -16,7 +16,7 @@
 
 using namespace retroforge;
 
-/// Whether the die under an edge's middle, pair q, bulges into the edge by more than 0.02 of its length.
+/// Whether the die under an edge's middle, pair q, bulges into the edge by more than 0.06 of its length.
 bool spans_a_corner(const CornerStage &corner, const unsigned int q)
 {
   const auto &pairs  = corner.contact.pairs;
@@ -32,7 +32,7 @@ bool spans_a_corner(const CornerStage &corner, const unsigned int q)
       ends += 0.5 * corner.contact.own_gaps[p];
       ++n;
     }
-  return n == 2 && std::abs(ends - corner.contact.own_gaps[q]) > 0.02 * (corner.X[a] - corner.X[b]).norm();
+  return n == 2 && std::abs(ends - corner.contact.own_gaps[q]) > 0.06 * (corner.X[a] - corner.X[b]).norm();
 }
 
 int main(int argc, char **argv)
@@ -40,7 +40,7 @@ int main(int argc, char **argv)
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
 
   Random      random;
-  CornerStage corner(random, 50., ElementPair::taylor_hood);
+  CornerStage corner(random, 50., ElementPair::taylor_hood, {{4, 6, 4}}, 0.7);
   const auto &pairs   = corner.contact.pairs;
   const auto  stage   = corner.stage();
   const auto  pair_at = [&](const unsigned int die, const NodeIndex velocity_node) {
@@ -89,8 +89,12 @@ int main(int argc, char **argv)
     for (std::size_t k = 0; k < r.V.size(); ++k)
       n_wrong += r.V[k] != decided.V[k];
   }
+  unsigned int n_corners = 0;
+  for (unsigned int p = 0; p < pairs.size(); ++p)
+    n_corners += !pairs[p].point.is_node() && spans_a_corner(corner, p);
   std::cout << "vertices that only their middles hold: " << (n_held > 5 ? "yes" : "NO")
             << "\nvertices that nothing holds: " << (n_free > 5 ? "yes" : "NO")
             << "\npulled where held: " << (n_pulls == n_held ? "yes" : "NO")
+            << "\nedges that span a corner: " << (n_corners > 5 ? "yes" : "NO")
             << "\nas the rule says, and so the residual: " << (n_wrong == 0 ? "yes" : "NO") << std::endl;
 }
