@@ -65,7 +65,7 @@ SCENES = {
                     {MINI: [7, 5, 4, 3], QUADRATIC: [12, 9, 7, 5]}, (MINI, 2), (0.005, 0.01),
                     {"Press/stroke": 10, "Press/increments": 20, "Design/parameters": "billet/radius"}, (20, 60, 60)),
     "hub": Scene(os.path.join(PRM, "tutorial", "hub", "hub.prm"), "billet/radius", ELEMENTS,
-                 {MINI: [8, 5, 4, 3], QUADRATIC: [12, 8]}, (MINI, 2), (0.01, 0.02),
+                 {MINI: [8, 5, 4, 3], QUADRATIC: [12, 8, 5]}, (MINI, 2), (0.01, 0.02),
                  {"Billet/radius": 15.6, "Press/stroke": 20, "Press/increments": 40, "Design/parameters": "billet/radius"}, (15.6, 40, 90)),
     "cube-time": Scene(CUBE, "billet/stretch", SCHEMES, {EULER: [4, 8, 16, 32, 64, 128], MIDPOINT: [2, 4, 8, 16, 32]},
                        (MIDPOINT, 256), (0.001, 0.001), {"Billet/element size": 5, "Press/stroke": 20}),
