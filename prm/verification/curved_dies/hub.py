@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""A cylinder r 16, h 40 forged by a die with a hub cavity:   hub.py BUILD accuracy|whole|radii|odd|symmetry
+"""A cylinder r 16, h 40 forged by a die with a hub cavity:   hub.py BUILD accuracy|whole|radii|slopes|odd|symmetry
 
 accuracy: radius 15.6, 20 mm in 40 increments, elements of 5, 4 and 3 mm against --reference mm (2), whose energy may be given by
 --energy; and how deep metal lies in the die. whole: the whole body, centred and 2 mm off the centre, to the final gap.
-radii: a quarter at radii from 15 to 16.5, in 16 and 40 increments: which end, and how smooth their energies are. odd: scenes
+radii: a quarter at radii from 15 to 16.5, in 16 and 40 increments: which end, and how smooth their energies are. slopes: a quarter,
+20 mm deep in 40 increments, at radii within 1 % of 15.6: have the local slopes that of the energies. odd: scenes
 that once ran forever. symmetry: how round the whole body stays."""
 import sys
 
@@ -93,6 +94,13 @@ def radii(options):
         runs.figure(f"radii_depth_{increments}", np.nanmax(depths) / options.sizes[0])
 
 
+def slopes(options):
+    values = 15.6 * np.linspace(0.99, 1.01, options.points)
+    settings = {"Press/stroke": 20, "Billet/element size": options.sizes[0], "Output/fields every": 0}
+    line = runs.scan(options.build, write_case(options), "billet/radius", values, "slopes", settings, options.timeout)
+    runs.report_trend("hub_slopes", values, *line)
+
+
 def odd_scenes(options):
     """{name: (case, settings)} of scenes that once ran forever; each must end, or say why not, within a bounded time."""
     hub, small = write_case(options), write_case(options, "small", rim=20.0, per_turn=48, segments=4)
@@ -139,7 +147,7 @@ def main():
         parser.add_argument("--energy", type=float, help="its energy, if known: it is not run [mJ]")
         parser.add_argument("--sizes", type=lambda text: [float(word) for word in text.split(",")], help="element sizes, as 5,4,3 [mm]")
         parser.add_argument("--points", type=int, default=31, help="number of radii")
-    parts = {"accuracy": accuracy, "whole": whole, "radii": radii, "odd": odd, "symmetry": symmetry}
+    parts = {"accuracy": accuracy, "whole": whole, "radii": radii, "slopes": slopes, "odd": odd, "symmetry": symmetry}
     options = runs.arguments(__doc__, *parts, extra=more)
     options.sizes = options.sizes or {"accuracy": [5.0, 4.0, 3.0], "whole": [5.0, 4.0]}.get(options.part, [5.0])
     parts[options.part](options)
