@@ -24,7 +24,7 @@ namespace retroforge
 {
   namespace
   {
-    std::string exact(const double x)
+    std::string all_digits(const double x)
     {
       char text[32];
       std::snprintf(text, sizeof text, "%.17g", x);
@@ -41,7 +41,7 @@ namespace retroforge
     }
 
     /// For a shell.
-    std::string quoted(const std::string &word)
+    std::string quoted_for_shell(const std::string &word)
     {
       if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789/._=+-") ==
           std::string::npos)
@@ -133,8 +133,8 @@ namespace retroforge
     run.overrides.emplace_back("Output/fields every", "0");
     for (const auto &[name, value] : parameters_.design.at)
       if (name != point.parameter)
-        run.at.emplace_back(name, exact(value));
-    run.at.emplace_back(point.parameter, exact(point.value));
+        run.at.emplace_back(name, all_digits(value));
+    run.at.emplace_back(point.parameter, all_digits(point.value));
     return run;
   }
 
@@ -232,7 +232,7 @@ namespace retroforge
       runs.push_back({words_of(command_of(*point)), point->directory + "/log.txt"});
       std::string line;
       for (const std::string &word : runs.back().command)
-        line += (line.empty() ? "" : " ") + quoted(word);
+        line += (line.empty() ? "" : " ") + quoted_for_shell(word);
       write_file(point->directory + "/command.txt", line + "\n");
     }
     const auto  begin = std::chrono::steady_clock::now();

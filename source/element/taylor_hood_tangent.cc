@@ -9,7 +9,7 @@ namespace retroforge
   namespace
   {
     template <typename T>
-    struct TangentInput
+    struct TaylorHoodTangentInput
     {
       T volume, g[4][3], V[10][3];
     };
@@ -38,7 +38,7 @@ namespace retroforge
 
     /// As TaylorHoodRates.
     template <typename T>
-    RETROFORGE_INLINE void strain_rates(const TangentInput<T> &in, T (&eps)[4][6])
+    RETROFORGE_INLINE void strain_rates(const TaylorHoodTangentInput<T> &in, T (&eps)[4][6])
     {
       T L[4][3][3] = {};
       for (unsigned int c = 0; c < 4; ++c)
@@ -167,7 +167,7 @@ namespace retroforge
 
     /// - int lambda_k grad N_n:  linear times linear, in closed form.
     template <typename T>
-    RETROFORGE_INLINE void pressure_blocks(const TangentInput<T> &in, TaylorHoodBlocks<T> &t)
+    RETROFORGE_INLINE void pressure_blocks(const TaylorHoodTangentInput<T> &in, TaylorHoodBlocks<T> &t)
     {
       for (unsigned int i = 0; i < 3; ++i)
       {
@@ -188,7 +188,7 @@ namespace retroforge
     }
 
     template <typename T>
-    RETROFORGE_INLINE void tangent_blocks(const TangentInput<T>     &in,
+    RETROFORGE_INLINE void tangent_blocks(const TaylorHoodTangentInput<T>     &in,
                                           const MaterialLaw<double> &law,
                                           const Linearisation        linearisation,
                                           TaylorHoodBlocks<T>       &t)
@@ -217,7 +217,7 @@ namespace retroforge
     }
 
     RETROFORGE_ALSO_FOR("fma")
-    void tangent_pack(const TangentInput<Pack>  &input,
+    void tangent_pack(const TaylorHoodTangentInput<Pack>  &input,
                       const MaterialLaw<double> &law,
                       const Linearisation        linearisation,
                       TaylorHoodPack            &tangent)
@@ -225,9 +225,9 @@ namespace retroforge
       tangent_blocks(input, law, linearisation, tangent);
     }
 
-    TangentInput<double> input_of(const CellGeometry<double> &geometry, const TaylorHoodValues<double> &w)
+    TaylorHoodTangentInput<double> input_of(const CellGeometry<double> &geometry, const TaylorHoodValues<double> &w)
     {
-      TangentInput<double> input;
+      TaylorHoodTangentInput<double> input;
       input.volume = geometry.volume;
       for (unsigned int i = 0; i < 3; ++i)
       {
@@ -255,10 +255,10 @@ namespace retroforge
                              const Linearisation                                  linearisation,
                              TaylorHoodPack                                      &tangent)
   {
-    TangentInput<Pack> pack;
+    TaylorHoodTangentInput<Pack> pack;
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
     {
-      TangentInput<double> input = input_of(geometry[lane], w[lane]);
+      TaylorHoodTangentInput<double> input = input_of(geometry[lane], w[lane]);
       for_each_entry(pack, input, [lane](double &p, const double &x) { (&p)[lane] = x; });
     }
     tangent_pack(pack, law, linearisation, tangent);

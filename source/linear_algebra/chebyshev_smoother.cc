@@ -24,11 +24,11 @@ namespace retroforge
     constexpr float        above_estimate = 1.1;
 
     /// Three numbers and one that does not count: arrays of threes end with a spare one.
-    typedef float Lanes __attribute__((vector_size(16)));
+    typedef float FloatLanes __attribute__((vector_size(16)));
 
-    Lanes load(const float *x)
+    FloatLanes load(const float *x)
     {
-      Lanes lanes;
+      FloatLanes lanes;
       std::memcpy(&lanes, x, sizeof lanes);
       return lanes;
     }
@@ -90,7 +90,7 @@ namespace retroforge
     fetch_columns();
     for (unsigned int row = 0; row < n_rows_; row += 3)
     {
-      Lanes first = load(&r_[row]), second = {}, third = {};
+      FloatLanes first = load(&r_[row]), second = {}, third = {};
       for (unsigned int e = blocks_.begin[row / 3]; e < blocks_.begin[row / 3 + 1]; ++e)
       {
         const float *block = &blocks_.values[9 * e], *z = &z_[blocks_.columns[e]];
@@ -98,7 +98,7 @@ namespace retroforge
         second -= load(block + 3) * z[1];
         third -= load(block + 6) * z[2];
       }
-      const Lanes sum = first + second + third;
+      const FloatLanes sum = first + second + third;
       for (unsigned int i = 0; i < 3; ++i)
         defect_[row + i] = inverse_diagonal_[row + i] * sum[i];
     }

@@ -15,7 +15,7 @@ namespace retroforge
       return std::includes(larger.begin(), larger.end(), smaller.begin(), smaller.end());
     }
 
-    struct Edge
+    struct BoundaryEdge
     {
       NodeIndex    a, b;
       unsigned int patch;
@@ -23,16 +23,16 @@ namespace retroforge
 
     // The edges of all boundary faces, with lower node first, so that the two faces of an edge stand side by
     // side.
-    std::vector<Edge> sorted_edges(const TetMesh &mesh)
+    std::vector<BoundaryEdge> sorted_edges(const TetMesh &mesh)
     {
-      std::vector<Edge> edges;
+      std::vector<BoundaryEdge> edges;
       for (const auto &face : mesh.faces)
         for (unsigned int i = 0; i < 3; ++i)
         {
           const auto [a, b] = std::minmax({face.nodes[i], face.nodes[(i + 1) % 3]});
           edges.push_back({a, b, face.patch});
         }
-      std::sort(edges.begin(), edges.end(), [](const Edge &e, const Edge &f) {
+      std::sort(edges.begin(), edges.end(), [](const BoundaryEdge &e, const BoundaryEdge &f) {
         return std::tie(e.a, e.b, e.patch) < std::tie(f.a, f.b, f.patch);
       });
       return edges;
@@ -63,7 +63,7 @@ namespace retroforge
     const auto sorted = sorted_edges(mesh);
     for (std::size_t i = 1; i < sorted.size(); ++i)
     {
-      const Edge &e = sorted[i - 1], &f = sorted[i];
+      const BoundaryEdge &e = sorted[i - 1], &f = sorted[i];
       if (e.a == f.a && e.b == f.b && e.patch != f.patch)
         edges.push_back({{e.patch, f.patch}, {{e.a, e.b, e.b}}});
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/csv.h>
 #include <retroforge/core/text.h>
 #include <retroforge/core/version.h>
 #include <retroforge/optimisation/optimisation_results.h>
@@ -19,19 +20,10 @@ namespace retroforge
   {
     using Json = nlohmann::ordered_json;
     using At   = DesignSpace::At;
-    using Stop = SearchStop;
 
     Json number(const double x)
     {
       return std::isfinite(x) ? Json(x) : Json();
-    }
-
-    std::string quoted(const std::string &text)
-    {
-      std::string result = "\"";
-      for (const char c : text)
-        result += c == '"' ? std::string("\"\"") : std::string(1, c);
-      return result + '"';
     }
 
     const char *in_words(const At at)
@@ -132,21 +124,21 @@ namespace retroforge
     }
   } // namespace
 
-  std::string in_words(const Stop stop)
+  std::string in_words(const SearchStop stop)
   {
     switch (stop)
     {
-      case Stop::gradient:
+      case SearchStop::gradient:
         return "the gradient has vanished, but for what bounds and limits hold";
-      case Stop::noise:
+      case SearchStop::noise:
         return "no step promises more than the noise";
-      case Stop::step:
+      case SearchStop::step:
         return "steps have become too short to matter";
-      case Stop::limits:
+      case SearchStop::limits:
         return "limits are not met, and no design near by comes closer to them";
-      case Stop::iterations:
+      case SearchStop::iterations:
         return "as many steps were tried as Optimisation/iterations allows";
-      case Stop::simulations:
+      case SearchStop::simulations:
         return "as many designs were forged as Optimisation/simulations allows";
       default:
         return "it is not finished";
@@ -172,7 +164,7 @@ namespace retroforge
 
   double OptimisationResults::by_relaxing(const std::size_t limit) const
   {
-    if (stop == Stop::limits)
+    if (stop == SearchStop::limits)
       return NAN;
     const double multiplier = limit < multipliers.size() ? multipliers[limit] : 0.;
     return multiplier == 0. ? 0. : -multiplier / criteria.limits[limit].size;
@@ -200,9 +192,9 @@ namespace retroforge
     std::ostringstream out;
     out << std::setprecision(17) << "trial,decision,merit,radius";
     for (std::size_t o = 0; o < objectives.size(); ++o)
-      out << ',' << quoted(objectives[o] + " [" + units[o] + "]");
+      out << ',' << csv_quoted(objectives[o] + " [" + units[o] + "]");
     for (const DesignParameter &parameter : space.parameters())
-      out << ',' << quoted(parameter.name + " [" + parameter.unit + "]");
+      out << ',' << csv_quoted(parameter.name + " [" + parameter.unit + "]");
     out << ",mesh,increments,seconds,failure\n";
     for (std::size_t i = 0; i < rows.size(); ++i)
     {
@@ -221,7 +213,7 @@ namespace retroforge
       for (const double x : evaluation.mu)
         out << ',' << x;
       out << ',' << row.mesh << ',' << evaluation.increments << ',' << evaluation.seconds << ','
-          << (evaluation.failed() ? quoted(evaluation.failure) : "") << '\n';
+          << (evaluation.failed() ? csv_quoted(evaluation.failure) : "") << '\n';
     }
     write_file(file, out.str());
   }
@@ -302,7 +294,7 @@ namespace retroforge
                  {"relations", relations},
                  {"parameters", parameters},
                  {"stop", in_words(stop)},
-                 {"finished", stop != Stop::running},
+                 {"finished", stop != SearchStop::running},
                  {"converged", has_converged()},
                  {"limits_kept", limits_are_kept()},
                  {"simulations", n_simulations},
@@ -394,7 +386,7 @@ namespace retroforge
     const auto accepted = std::find_if(rows.rbegin(), rows.rend(), [](const TrialRow &row) {
       return row.decision == TrialRow::Decision::accepted || row.decision == TrialRow::Decision::renewed;
     });
-    if (stop != Stop::running && accepted != rows.rend() && accepted->evaluation.mu != best.mu)
+    if (stop != SearchStop::running && accepted != rows.rend() && accepted->evaluation.mu != best.mu)
       out << "  the search ended at another design, of " << std::setprecision(10)
           << value(accepted->evaluation) << unit
           << (value(accepted->evaluation) < value(best) ? "; the one that keeps the limits best is shown\n"

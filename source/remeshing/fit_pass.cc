@@ -14,7 +14,7 @@ namespace retroforge
     // Part of the wanted edge length that a node may be away from its place.
     constexpr double near = 1e-3;
     // What cells may be spoiled to: the quality pass repairs them.
-    constexpr double lowest_quality = 0.1;
+    constexpr double lowest_quality_fitted = 0.1;
 
     std::optional<CavityChange>
     plan_move(const RemeshingContext &context, const NodeIndex node, const Vec3 &position)
@@ -27,7 +27,7 @@ namespace retroforge
       for (const CellIndex c : change.removed_cells)
         change.added_cells.push_back(mesh.cell(c));
       const double before = minimum_quality(mesh, change.removed_cells);
-      if (!evaluate(mesh, std::min(0.99 * before, lowest_quality), change))
+      if (!evaluate(mesh, std::min(0.99 * before, lowest_quality_fitted), change))
         return {};
       return change;
     }
@@ -70,7 +70,7 @@ namespace retroforge
           closest = other;
       if (closest == invalid_index)
         return;
-      const double bound = std::min(minimum_quality(mesh, mesh.cells_at(closest)), lowest_quality);
+      const double bound = std::min(minimum_quality(mesh, mesh.cells_at(closest)), lowest_quality_fitted);
       std::optional<CavityChange> best;
       for (const NodeIndex to : mesh.neighbours(closest))
       {

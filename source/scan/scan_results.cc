@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/csv.h>
 #include <retroforge/core/version.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/scan/scan_results.h>
@@ -43,14 +44,6 @@ namespace retroforge
       out << ',';
       if (std::isfinite(x))
         out << x;
-    }
-
-    std::string quoted(const std::string &text)
-    {
-      std::string result = "\"";
-      for (const char c : text)
-        result += c == '"' ? std::string("\"\"") : std::string(1, c);
-      return result + '"';
     }
 
     void print_number(std::ostream &out, const int width, const double x)
@@ -115,7 +108,7 @@ namespace retroforge
       for (std::size_t i = 0; i < lines_[l].points.size(); ++i)
       {
         const ScanPoint &point = lines_[l].points[i];
-        out << quoted(point.parameter) << ',' << point.value;
+        out << csv_quoted(point.parameter) << ',' << point.value;
         for (std::size_t o = 0; named != nullptr && o < named->size(); ++o)
         {
           const Judged *judged = o < judged_[l].size() ? &judged_[l][o] : nullptr;
@@ -124,7 +117,7 @@ namespace retroforge
           write_cell(out, judged != nullptr && judged->fit ? judged->fit->value(point.value) : NAN);
           write_cell(out, judged != nullptr && judged->fit ? judged->fit->slope(point.value) : NAN);
         }
-        out << ',' << (point.failure.empty() ? "" : quoted(point.failure)) << '\n';
+        out << ',' << (point.failure.empty() ? "" : csv_quoted(point.failure)) << '\n';
       }
     write_file(file, out.str());
   }
