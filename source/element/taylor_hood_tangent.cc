@@ -188,10 +188,10 @@ namespace retroforge
     }
 
     template <typename T>
-    RETROFORGE_INLINE void tangent_blocks(const TaylorHoodTangentInput<T>     &in,
-                                          const MaterialLaw<double> &law,
-                                          const Linearisation        linearisation,
-                                          TaylorHoodBlocks<T>       &t)
+    RETROFORGE_INLINE void tangent_blocks(const TaylorHoodTangentInput<T> &in,
+                                          const MaterialLaw<double>       &law,
+                                          const Linearisation              linearisation,
+                                          TaylorHoodBlocks<T>             &t)
     {
       const bool linear  = law.is_linear() || linearisation == Linearisation::picard;
       const T    quarter = 0.25 * in.volume;
@@ -217,15 +217,16 @@ namespace retroforge
     }
 
     RETROFORGE_ALSO_FOR("fma")
-    void tangent_pack(const TaylorHoodTangentInput<Pack>  &input,
-                      const MaterialLaw<double> &law,
-                      const Linearisation        linearisation,
-                      TaylorHoodPack            &tangent)
+    void tangent_pack(const TaylorHoodTangentInput<Pack> &input,
+                      const MaterialLaw<double>          &law,
+                      const Linearisation                 linearisation,
+                      TaylorHoodPack                     &tangent)
     {
       tangent_blocks(input, law, linearisation, tangent);
     }
 
-    TaylorHoodTangentInput<double> input_of(const CellGeometry<double> &geometry, const TaylorHoodValues<double> &w)
+    TaylorHoodTangentInput<double> input_of(const CellGeometry<double>     &geometry,
+                                            const TaylorHoodValues<double> &w)
     {
       TaylorHoodTangentInput<double> input;
       input.volume = geometry.volume;
