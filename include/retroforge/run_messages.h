@@ -9,7 +9,10 @@ namespace retroforge
   /// Before a mesh of millions of tetrahedra is made, which takes minutes: how many there will be.
   void print_meshing(const Parameters &parameters);
 
-  /// What runs: version, size, and what a user may not expect of it.
+  /// What a user may not expect of a case, a sentence each.
+  std::vector<std::string> notes_on(const Case &at);
+
+  /// What runs: version, size, and the notes on it.
   void print_begin(const Case &at);
 
   /// Where a run goes on from, and with what.

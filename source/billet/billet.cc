@@ -513,14 +513,17 @@ namespace retroforge
       "Billet", [&]() { return make_on_one_rank(parameters); }, communicator);
   }
 
+  double whole_volume(const BilletParameters &p)
+  {
+    return p.shape == "box"        ? p.size[0] * p.size[1] * p.size[2]
+           : p.shape == "cylinder" ? M_PI * p.radius * p.radius * p.height
+           : p.shape == "ring"     ? volume_of_revolution(p.ring.section())
+           : p.shape == "profile"  ? volume_of_revolution(p.profile.section())
+                                   : 0.;
+  }
+
   double expected_cells(const BilletParameters &p)
   {
-    if (p.shape == "file")
-      return 0.;
-    const double body = p.shape == "box"       ? p.size[0] * p.size[1] * p.size[2]
-                        : p.shape == "ring"    ? volume_of_revolution(p.ring.section())
-                        : p.shape == "profile" ? volume_of_revolution(p.profile.section())
-                                               : M_PI * p.radius * p.radius * p.height;
-    return expected_cells(body, p.element_size);
+    return p.shape == "file" ? 0. : expected_cells(whole_volume(p), p.element_size);
   }
 } // namespace retroforge
