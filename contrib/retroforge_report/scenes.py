@@ -10,6 +10,7 @@ from matplotlib import cm, colors
 
 from retroforge_report import sections, vtu
 from retroforge_report.document import Document, bad, number
+from retroforge_report.refine import refined
 from retroforge_report.render import METAL, Scene, View
 from retroforge_report.vtu import Surface
 from retroforge_report.whole import clipped, symmetries, whole
@@ -85,7 +86,7 @@ class ScenePage:
 
     def ways(self, scene):
         """Arrows at the dies that move, or None."""
-        moving = [(surface.points.mean(axis=0), np.array(die["velocity"])) for die, surface in zip(self.dies, self.surfaces) if any(die["velocity"])]
+        moving = [(surface.points.mean(axis=0), np.array(die["velocity"], float)) for die, surface in zip(self.dies, self.surfaces) if any(die["velocity"])]
         if not moving:
             return None
         starts, ways = (np.array(x) for x in zip(*moving))
@@ -106,14 +107,14 @@ class ScenePage:
         marks, through = [], middle
         if overlaps:
             die, deepest = overlaps[0]
-            marks.append((deepest["place"], f"{millimetres(deepest['distance'])} in die {die['name']}"))
+            marks.append((deepest["place"], f"{millimetres(deepest['distance'])} inside"))
         else:
             for die in self.dies:
                 touch = die.get("first_touch") or {}
                 if touch.get("place") and not die["touches"]:
                     marks.append((touch["place"], f"die {die['name']} after {millimetres(touch['distance'])}"))
         if marks:
-            mark = np.array(marks[0][0])
+            mark = np.array(marks[0][0], float)
             inwards = middle - mark
             through = mark + SHIFT * size * inwards / max(np.linalg.norm(inwards), SHIFT * size)
         path = next((die["velocity"] for die in self.dies if die["leads"]), [0, 0, -1])
@@ -122,13 +123,9 @@ class ScenePage:
         if overlaps and overlaps[0][1]["distance"] < SMALL * size:
             shown.append((planes[0], "where the overlap is deepest", (np.array(marks[0][0]), max(3 * overlaps[0][1]["distance"], 0.01 * size))))
         self.to.heading("Cut through the deepest overlap" if overlaps else "Cut through the first touch" if marks else "Cut through the middle")
-        self.to.picture("sections", sections.Picture(self.mesh, [(die["name"], s) for die, s in zip(self.dies, self.surfaces)],
-                                                     self.planes, marks).draw(shown))
+        self.to.picture("sections", sections.Picture(self.mesh, [(in_short(die), surface, die["velocity"]) for die, surface in
+                                                                 zip(self.dies, self.surfaces)], self.planes, marks).draw(shown))
         self.to.note("The band beside the line of a die is the die's side of its surface: metal must not lie there.")
-
-    def tolerance(self):
-        """What single precision leaves of a touch [mm]."""
-        return 1e-5 * np.linalg.norm(np.subtract(*self.extents()))
 
     def extents(self):
         points = np.concatenate([self.mesh.points] if self.mesh else [surface.points for surface in self.surfaces])
@@ -140,15 +137,15 @@ class ScenePage:
         self.to.heading("How far the billet is from the dies")
         surface = whole(self.mesh.surface(), self.planes)
         at_nodes = self.mesh.point_data["gap [mm]"][surface.node]
-        gap = surface.to_triangles(at_nodes)
-        figure = plt.figure(figsize=(11, 5), layout="constrained")
-        low, high = self.extents()
-        norm = colors.Normalize(0, max(gap.max(), 1e-3 * np.linalg.norm(high - low)))
+        size = np.linalg.norm(np.subtract(*self.extents()))
+        fine, gap = refined(surface, at_nodes, np.ptp(at_nodes) / 20, size / 150)
+        norm = colors.Normalize(0, max(gap.max(), 1e-3 * size))
         mapping = cm.ScalarMappable(norm, "viridis")
         rgba = mapping.to_rgba(gap)
-        rgba[at_nodes[surface.triangles].min(axis=1) < -self.tolerance()] = colors.to_rgba(INSIDE)
+        rgba[gap < -1e-5 * size] = colors.to_rgba(INSIDE)  # single precision leaves less of a touch
+        figure = plt.figure(figsize=(11, 5), layout="constrained")
         for position, (title, view) in enumerate((("from above", FROM_ABOVE), ("from below", FROM_BELOW)), 1):
-            axes = Scene(surface.points, self.use_vtk, view).draw(figure, (1, 2, position), surface, rgba)
+            axes = Scene(surface.points, self.use_vtk, view).draw(figure, (1, 2, position), fine, rgba, edges=False)
             axes.set_title(title, fontsize=11)
         figure.colorbar(mapping, ax=figure.axes, label="distance from the nearest die [mm]", shrink=0.8)
         self.to.picture("gaps", figure)
@@ -163,7 +160,9 @@ class ScenePage:
             touch = die.get("first_touch") or {}
             overlap = die.get("overlap")
             if overlap:
-                stands = bad(f"{millimetres(overlap['distance'])} inside at {place(overlap['place'])}; free when moved by {place(overlap['frees'])} mm")
+                inside = "a point of it inside the billet" if overlap["of_the_die"] else "inside the die"
+                stands = bad(f"{millimetres(overlap['distance'])} {inside}, at {place(overlap['place'])}; free when the die moves by "
+                             f"{place(overlap['frees'])} mm")
             elif die["touches"]:
                 stands = f"touches, at {place(die['gap']['place'])}"
             elif die["gap"]["distance"] is None:
@@ -174,7 +173,7 @@ class ScenePage:
             if not any(die["velocity"]) or die["touches"] or overlap:
                 first = "–"
             elif touch.get("distance") is None:
-                first = "does not within the stroke" if self.billet else "unknown"
+                first = "unknown" if not self.billet else "moves away from it" if die.get("moves_away") else "does not within the stroke"
             else:
                 first = f"after {millimetres(touch['distance'])}, at stroke {millimetres(touch['stroke'])}, at {place(touch['place'])}"
             rows.append((die["name"], die["shape"], where_it_is(die), stands, moves, first, number(die["friction"]),
@@ -230,6 +229,15 @@ def where(cut):
     if abs(cut.normal[axis]) > 1 - 1e-9:
         return f"at {'xyz'[axis]} = {cut.point[axis]:.4g} mm"
     return f"normal to {place(cut.normal)}"
+
+
+def in_short(die):
+    """For the legend of a picture."""
+    if die.get("overlap"):
+        return f"die {die['name']}: {millimetres(die['overlap']['distance'])} inside"
+    if die["touches"]:
+        return f"die {die['name']}: touches"
+    return f"die {die['name']}" + ("" if die["gap"]["distance"] is None else f": {millimetres(die['gap']['distance'])} away")
 
 
 def where_it_is(die):

@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
-from retroforge_report.curves import BLUE, GREEN, INK, ORANGE, PURPLE
+from retroforge_report.curves import BLUE, GREEN, INK, LEGEND_HEIGHT, ORANGE, PURPLE
 from retroforge_report.whole import clipped, symmetries, whole
 
 METAL, BAD = "#b9bcc2", "#b03000"
@@ -60,7 +60,7 @@ def lines(surface, cut):
         part = distance[row, alone] / (distance[row, alone] - distance[row, other])
         ends.append(corners[row, alone] + part[:, None] * (corners[row, other] - corners[row, alone]))
     normals = surface.area_vectors()[crossed]
-    return np.stack(ends, axis=1), normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.stack(ends, axis=1), normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
 
 
 def cells(mesh, cut):
@@ -84,12 +84,12 @@ def _around(flat):
 
 
 class Picture:
-    """Panels side by side of a scene: `billet` a mesh or None, `dies` names and surfaces, `planes` of symmetry, `marks` (place,
-    text)."""
+    """Panels side by side of a scene: `billet` a mesh or None, `dies` (what the legend says, surface, velocity), `planes` of symmetry,
+    `marks` (place, text)."""
 
     def __init__(self, billet, dies, planes, marks):
         self.billet, self.planes, self.marks = billet, planes, marks
-        self.dies = [(name, whole(clipped(surface, planes), planes)) for name, surface in dies]
+        self.dies = [(label, whole(clipped(surface, planes), planes), np.asarray(velocity, float)) for label, surface, velocity in dies]
 
     def draw(self, shown):
         """@param shown  (cut, title, window or None: (middle, half a width) of the part that is magnified)"""
@@ -98,22 +98,25 @@ class Picture:
             self._panel(axes, cut, window)
             axes.set_title(title, fontsize=11)
         handles, labels = panels[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=4)
+        room = LEGEND_HEIGHT / figure.get_figheight()
+        figure.get_layout_engine().set(rect=(0, room, 1, 1 - room))
+        figure.legend(handles, labels, loc="lower center", ncols=5)
         return figure
 
     def _panel(self, axes, cut, window):
         metal = [cut.flat(polygon) for polygon in cells(self.billet, cut)] if self.billet else []
-        pieces = [(name, *lines(surface, cut)) for name, surface in self.dies]
+        pieces = [lines(surface, cut) for _, surface, _ in self.dies]
         low, high = self._frame(cut, metal, pieces) if window is None else (cut.flat(window[0]) - window[1], cut.flat(window[0]) + window[1])
         size = (high - low).max()
         low, high = low - MARGIN * size, high + MARGIN * size
-        for (name, ends, normals), color in zip(pieces, COLORS * (1 + len(pieces) // len(COLORS))):
+        for (label, _, velocity), (ends, normals), color in zip(self.dies, pieces, COLORS * (1 + len(pieces) // len(COLORS))):
             flat, out = cut.flat(ends), cut.flat(normals)
             out /= np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-12)
             behind = flat - BAND * size * out[:, None]
-            axes.add_collection(PolyCollection(np.concatenate([flat, behind[:, ::-1]], axis=1), facecolors=color, alpha=0.25))
+            axes.add_collection(PolyCollection(np.concatenate([flat, behind[:, ::-1]], axis=1), facecolors=color, alpha=0.35, zorder=3))
             axes.add_collection(LineCollection(flat, colors=color, linewidths=2.2, zorder=4))
-            axes.plot([], [], color=color, label=f"die {name}")
+            axes.plot([], [], color=color, label=label)
+            _way(axes, flat, cut.flat(velocity), color, low, high)
         axes.add_collection(PolyCollection(metal, facecolors=METAL, edgecolors="#8d9199", linewidths=0.4, zorder=2))
         axes.fill([], [], color=METAL, label="billet")
         self._planes(axes, cut, low, high)
@@ -139,9 +142,9 @@ class Picture:
 
     def _frame(self, cut, metal, pieces):
         """Around the metal, and the point of each die that is next to it."""
-        points = np.concatenate(metal) if metal else np.concatenate([cut.flat(ends).reshape(-1, 2) for _, ends, _ in pieces] or [np.zeros((1, 2))])
+        points = np.concatenate(metal) if metal else np.concatenate([cut.flat(ends).reshape(-1, 2) for ends, _ in pieces] or [np.zeros((1, 2))])
         low, high = points.min(axis=0), points.max(axis=0)
-        for _, ends, _ in pieces if metal else ():
+        for ends, _ in pieces if metal else ():
             if len(ends):
                 flat = cut.flat(ends)
                 nearest = np.clip(_on_segments(flat, (low + high) / 2), flat.min(axis=1), flat.max(axis=1))
@@ -149,6 +152,18 @@ class Picture:
                 place = nearest[np.argmin(np.linalg.norm(outside, axis=1))]
                 low, high = np.minimum(low, place), np.maximum(high, place)
         return low, high
+
+
+def _way(axes, flat, way, color, low, high):
+    """An arrow along the velocity of a die, from behind it to the middle of its lines that are in the frame."""
+    middles = flat.mean(axis=1)
+    shown = ((middles >= low) & (middles <= high)).all(axis=1)
+    if not shown.any() or np.linalg.norm(way) == 0:
+        return
+    lengths = np.linalg.norm(flat[shown, 1] - flat[shown, 0], axis=1)
+    tip = np.average(middles[shown], axis=0, weights=np.maximum(lengths, 1e-300))
+    tail = tip - MARGIN * (high - low).max() * way / np.linalg.norm(way)
+    axes.annotate("", tip, tail, arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 2, "mutation_scale": 18}, zorder=5)
 
 
 def _on_segments(ends, point):

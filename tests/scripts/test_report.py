@@ -11,11 +11,12 @@ import unittest
 
 import numpy as np
 import synthetic_run
+import synthetic_scene
 from scripts import CONTRIB, ScratchTest, call
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(CONTRIB))
-from retroforge_report import data, effects, refine, render, shapes, units, vtu, whole  # noqa: E402
+from retroforge_report import data, effects, refine, render, sections, shapes, units, vtu, whole  # noqa: E402
 
 SIDE = synthetic_run.SIDE
 
@@ -261,6 +262,61 @@ class Report(ScratchTest):
         self.write("run/summary.json", '{"schema": 1, "command": "simulate"}')
         result = call("report", "--no-vtk", self.root / "run")
         self.assertEqual(result.returncode, 0, result.stderr)
+
+    def scene(self, **parts):
+        synthetic_scene.write(self.root / "scene", **parts)
+        result = call("report", "--no-vtk", self.root / "scene")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        return (self.root / "scene/report.html").read_text(), sorted(path.stem for path in (self.root / "scene/pictures").glob("*.png"))
+
+    def test_scene(self):
+        """The message of a scene that is refused is the first thing of its page; what could be made is drawn and listed."""
+        page, pictures = self.scene()
+        self.assertEqual(pictures, ["gaps", "scene", "sections"])
+        self.assertLess(page.index("The scene is refused"), page.index("<img"))
+        self.assertLess(page.index("the billet stands &lt;1 mm&gt; inside it"), page.index("<img"))
+        for text in ("Material/consistency = 200", "Cut through the deepest overlap", "Red: inside a die.",
+                     "1 mm inside the die, at (50, 50, 0); free when the die moves by (0, 0, -1) mm",
+                     "2 mm away, nearest to (25, 25, 50)", "after 2 mm, at stroke 2 mm, at (25, 25, 50)", "(0, 0, -100) mm/s, leads",
+                     "126250; the mesh has -0.99 % of it", "4 times the model, 500000 mm³", "through (0, 0, 0), outward normal (-1, 0, 0)",
+                     "20 of 0.5 mm, 0.005 s each", '<td class="n">1.25e+05</td>', "slab method", "case box.prm"):
+            self.assertIn(text, page)
+        page, pictures = self.scene(refused=False)
+        self.assertIn("The scene is sound: a run would begin", page)
+        self.assertNotIn("Red:", page)
+        self.assertIn("Cut through the first touch", page)
+
+    def test_scene_in_part(self):
+        """Without a billet the dies are drawn; without anything the message stands alone."""
+        page, pictures = self.scene(with_billet=False)
+        self.assertEqual(pictures, ["scene", "sections"])
+        self.assertIn("The billet could not be made.", page)
+        page, pictures = self.scene(with_dies=False)
+        self.assertIn("The scene is refused", page)
+        self.assertEqual(pictures, [])
+        page, pictures = self.scene(with_billet=False, with_dies=False)
+        self.assertIn("Neither billet nor dies could be made.", page)
+        self.assertEqual(pictures, [])
+
+    def test_sections(self):
+        """By hand: a cut of the cube is a square, of its quarter's whole one of twice the width; a plane is cut in a line."""
+        mesh = vtu.Mesh(*synthetic_run.cube(3), {}, {})
+        across, along = sections.cuts([0, 0, -100], [10.0, 20.0, 30.0])
+        for cut, normal, right in ((across, [1, 0, 0], [0, 1, 0]), (along, [0, 1, 0], [1, 0, 0])):
+            np.testing.assert_allclose(np.abs(cut.normal), normal, atol=1e-12)
+            np.testing.assert_allclose(cut.axes, [right, [0, 0, 1]], atol=1e-12)
+        ends, normals = sections.lines(mesh.surface(), across)
+        self.assertAlmostEqual(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum(), 4 * SIDE, 6)
+        np.testing.assert_allclose(ends[:, :, 0], 10, atol=1e-9)
+        np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1)
+        for planes, width in ((np.zeros((0, 6)), SIDE), (synthetic_scene.PLANES, 2 * SIDE)):
+            mesh.symmetry_planes = planes
+            area = sum(abs(np.sum(flat[:, 0] * np.roll(flat[:, 1], -1) - np.roll(flat[:, 0], -1) * flat[:, 1])) / 2
+                       for flat in (across.flat(polygon) for polygon in sections.cells(mesh, across)))
+            self.assertAlmostEqual(area, width * SIDE, 6)
+        oblique, _ = sections.cuts([0, -3, -4], [0, 0, 0])
+        self.assertAlmostEqual(oblique.normal @ [0, -3, -4], 0, 12)
+        np.testing.assert_allclose(oblique.axes @ oblique.axes.T, np.eye(2), atol=1e-12)
 
     def test_bad_input(self):
         self.assertIn("neither summary.json nor history.csv", call("report", "--no-vtk", self.root).stderr)
