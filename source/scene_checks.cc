@@ -24,6 +24,10 @@ namespace retroforge
     /// refused.
     constexpr double touching = 1e-3, inside = 0.05;
 
+    /// Edges of a smooth surface that turn by more [degrees] are told as a chamfer that may be none, where
+    /// the surface stands by more than this part of the element size in front of the facets.
+    constexpr double least_chamfer_angle = 15., chamfer_bulge = 0.02;
+
     std::string as_components(const Vec3 &x)
     {
       return as_text(x[0]) + ", " + as_text(x[1]) + ", " + as_text(x[2]);
@@ -32,6 +36,12 @@ namespace retroforge
     std::string in_brackets(const Vec3 &x)
     {
       return "(" + as_components(x) + ")";
+    }
+
+    /// To a tenth.
+    double rounded(const double x)
+    {
+      return std::round(10. * x) / 10.;
     }
 
     /// To two digits.
@@ -196,11 +206,61 @@ namespace retroforge
               place = X[k];
             }
         if (bulge > 0.)
-          warnings.push_back("Die " + scene.dies[d].name + ": the billet touches its facets, and is " +
-                             as_text(bulge) + " mm inside the smooth surface they stand for, at " +
-                             in_brackets(place) +
-                             ": if they are meant as they are there, a chamfer, lower `feature angle' or "
-                             "`largest sagitta', or set "
+          warnings.push_back(
+            "Die " + scene.dies[d].name + ": the billet touches its facets, and is " + as_text(bulge) +
+            " mm inside the smooth surface they stand for, at " + in_brackets(place) +
+            ": the first increment pushes it out; if facets are meant, set surface = facets");
+      }
+    }
+
+    /// The largest angle to its neighbours that a smooth surface turns by over a facet's edges [degrees].
+    double turn(const TriangleSurface &surface, const unsigned int f, const double feature_angle)
+    {
+      const auto normal = [&](const unsigned int facet) {
+        const Triangle &t = surface.triangles()[facet];
+        const auto     &x = surface.vertices();
+        return facet_vector(x[t[0]], x[t[1]], x[t[2]]);
+      };
+      double largest = 0.;
+      for (unsigned int e = 0; e < 3; ++e)
+        if (const unsigned int other = surface.neighbour(f, e).facet; other != invalid_index)
+        {
+          const Vec3   a = normal(f), b = normal(other);
+          const double angle = std::atan2(cross_product_3d(a, b).norm(), a * b) * 180. / M_PI;
+          if (angle <= feature_angle)
+            largest = std::max(largest, angle);
+        }
+      return largest;
+    }
+
+    /// Facets that turn as those of a chamfer may, and are taken for a rounding that stands far in front of
+    /// them.
+    void tell_chamfers(const Parameters &parameters, const Scene &scene, std::vector<std::string> &warnings)
+    {
+      const double least = chamfer_bulge * parameters.edge_length(scene.mesh);
+      for (const Die &die : scene.dies)
+      {
+        const TriangleSurface *surface = die.surface();
+        double                 bulge = least, angle = 0.;
+        Vec3                   place;
+        for (unsigned int f = 0; surface && f < surface->n_facets(); ++f)
+          if (const double turned = turn(*surface, f, die.feature_angle()); turned > least_chamfer_angle)
+          {
+            const Triangle &t      = surface->triangles()[f];
+            const auto     &x      = surface->vertices();
+            const Vec3      centre = (x[t[0]] + x[t[1]] + x[t[2]]) / 3.;
+            if (const double height = -die.signed_distance(centre, Vec3()); height > bulge)
+            {
+              bulge = height;
+              angle = turned;
+              place = centre;
+            }
+          }
+        if (bulge > least)
+          warnings.push_back("Die " + die.name + ": its smooth surface stands " + as_text(bulge) +
+                             " mm in front of facets that turn by " + as_text(rounded(angle)) +
+                             " degrees, at " + in_brackets(place) +
+                             "; if they are a chamfer and no coarse rounding, lower `feature angle', or set "
                              "surface = facets");
       }
     }
@@ -460,6 +520,7 @@ namespace retroforge
     check_outside(parameters, scene, process, X, approaches, warnings);
     check_reach(parameters, scene, process, X, approaches);
     tell_bulges(scene, process, X, warnings);
+    tell_chamfers(parameters, scene, warnings);
     tell_rims(parameters, scene, process, warnings);
     tell_unseen(parameters, scene, process, X, approaches, warnings);
     check_planes(parameters, scene, process);

@@ -66,7 +66,7 @@ namespace retroforge
         return;
       const MetalSurface::Foot foot  = metal.closest(x);
       const double             depth = -foot.distance - metal.hollow(foot.triangle);
-      if (!(depth > 0.))
+      if (!(depth > metal.rounding()))
         return;
       const double recess = die.signed_distance(x, displacement);
       if (const double left = depth - (std::isfinite(recess) ? std::max(0., recess) : 0.); left > 0.)

@@ -23,6 +23,9 @@ namespace retroforge
     const BoxTree               &tree() const { return tree_; }
     const BoundingBox           &box() const { return box_; }
 
+    /// Lengths below this are rounding [mm].
+    double rounding() const { return rounding_; }
+
     /// The closest point of the surface.
     struct Foot
     {
