@@ -91,6 +91,13 @@ namespace retroforge
     print_notes(notes_on(at));
   }
 
+  void print_warnings(const std::vector<std::string> &warnings)
+  {
+    for (const std::string &sentence : warnings)
+      std::cout << "  warning: " << sentence << '\n';
+    std::cout << std::flush;
+  }
+
   void print_resumed(const unsigned int                 n_increments,
                      const bool                         is_left,
                      const std::vector<ChangedSetting> &changes)

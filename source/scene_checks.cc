@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/geometry/facet_curvature.h>
 #include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/mesh/whole_part.h>
 #include <retroforge/objective/box.h>
 #include <retroforge/scene_checks.h>
 #include <retroforge/solver/rigid_modes.h>
@@ -18,8 +20,36 @@ namespace retroforge
     /// differ from millimetres.
     constexpr double smallest_die = 1e-2, largest_die = 1e3;
 
-    /// What lies nearer than this part of the billet's size touches.
-    constexpr double touching = 1e-3;
+    /// What lies nearer than this part of the billet's size touches; what is deeper in a die than that is
+    /// refused.
+    constexpr double touching = 1e-3, inside = 0.05;
+
+    /// Edges of a smooth surface that turn by more [degrees] are told as a chamfer that may be none, where
+    /// the surface stands by more than this part of the element size in front of the facets.
+    constexpr double least_chamfer_angle = 15., chamfer_bulge = 0.02;
+
+    std::string as_components(const Vec3 &x)
+    {
+      return as_text(x[0]) + ", " + as_text(x[1]) + ", " + as_text(x[2]);
+    }
+
+    std::string in_brackets(const Vec3 &x)
+    {
+      return "(" + as_components(x) + ")";
+    }
+
+    /// To a tenth.
+    double rounded(const double x)
+    {
+      return std::round(10. * x) / 10.;
+    }
+
+    /// To two digits.
+    double rounded_down(const double x)
+    {
+      const double digit = std::pow(10., std::floor(std::log10(x)) - 1.);
+      return std::floor(x / digit) * digit;
+    }
 
     std::string how_to_scale(const Parameters &parameters)
     {
@@ -28,15 +58,27 @@ namespace retroforge
                                                : "set the die's `scale', or correct the billet's measures";
     }
 
-    std::string how_to_stand_outside(const Parameters &parameters, const DieParameters &die)
+    std::string how_to_stand_outside(const Parameters    &parameters,
+                                     const DieParameters &die,
+                                     const DieApproach   &approach,
+                                     const bool           is_behind)
     {
+      // Rounding must not leave a part of the way.
+      const Vec3        move   = (1. + 1e-5) * approach.freeing;
+      const std::string remedy = "move the die by " + in_brackets(move) + " mm, to Die " + die.name +
+                                 "/point = " + as_components(die.point + move) +
+                                 ", or the billet as far the other way";
       if (!parameters.design.at.empty() && !die.follows_billet)
         return "set Die " + die.name +
                "/follows billet = true where a billet that grows lifts the die and ends at the same gap, or "
-               "stay closer "
-               "to the nominal design";
-      return "move the die's point, or the billet (Billet/translation), or turn the die's facing round; " +
-             how_to_scale(parameters);
+               "stay closer to the nominal design, or " +
+               remedy;
+      if (!is_behind)
+        return remedy + "; " + how_to_scale(parameters);
+      return (die.shape.name == "stl"
+                ? "turn the facets of its file round, whose normals point to the workpiece, or "
+                : "turn the die's facing round, or ") +
+             remedy;
     }
 
     double extent(const NodalVectors<double> &X)
@@ -72,82 +114,290 @@ namespace retroforge
             "leave it out, which takes a tenth of the die's extent");
     }
 
-    /// Signed distance of each surface node from a die.
-    std::vector<double>
-    distances(const Scene &scene, const Die &die, const Vec3 &displacement, const NodalVectors<double> &X)
+    /// What lies nearer than this touches [mm]: by the whole part, whatever symmetry leaves of it.
+    double touching_distance(const Scene &scene, const NodalVectors<double> &X)
     {
-      std::vector<double> delta;
+      const double copies = n_copies(symmetry_planes(scene.mesh));
+      return touching * std::cbrt((std::isfinite(copies) ? copies : 1.) * volume(scene.mesh.cells, X));
+    }
+
+    /// The deepest node in a die [mm]: what contact sees of an overlap, and pushes out.
+    double
+    deepest_node(const Scene &scene, const Die &die, const Vec3 &displacement, const NodalVectors<double> &X)
+    {
+      double deepest = 0.;
       for (NodeIndex k = 0; k < X.size(); ++k)
         if (scene.topology.is_on_surface(k))
-          delta.push_back(die.signed_distance(X[k], displacement));
-      return delta;
+          deepest = std::max(deepest, -die.signed_distance(X[k], displacement));
+      return deepest;
     }
 
-    void check_outside(const Parameters           &parameters,
-                       const Scene                &scene,
-                       const Process<double>      &process,
-                       const NodalVectors<double> &X)
+    /// Whether all of the billet is on the side of the die where none should be.
+    bool
+    is_behind(const Scene &scene, const Die &die, const Vec3 &displacement, const NodalVectors<double> &X)
     {
-      // A neighbour of a sound design may begin a little inside a die: contact pushes it out as the run
-      // begins.
-      const double allowed =
-        (parameters.design.at.empty() ? 1e-3 : 0.05) * std::cbrt(volume(scene.mesh.cells, X));
+      for (NodeIndex k = 0; k < X.size(); ++k)
+        if (scene.topology.is_on_surface(k) && die.facet_distance(X[k], displacement) > 0.)
+          return false;
+      return true;
+    }
+
+    /// What of a die stands in the billet, or the billet in it, and how deep.
+    std::string standing_inside(const Overlap &overlap)
+    {
+      return (overlap.is_of_die ? "a part of it stands " + as_text(overlap.depth) + " mm inside the billet"
+                                : "the billet stands " + as_text(overlap.depth) + " mm inside it") +
+             ", deepest at " + in_brackets(overlap.place);
+    }
+
+    /// Up to `inside` of the billet's size contact pushes out what is in a die, in the first increment: that
+    /// is how a neighbour of a sound design, or a die drawn anew, begins. It pushes nodes; a part of a die
+    /// that is deeper in the billet than twice what nodes are in it would stay there.
+    void check_outside(const Parameters               &parameters,
+                       const Scene                    &scene,
+                       const Process<double>          &process,
+                       const NodalVectors<double>     &X,
+                       const std::vector<DieApproach> &approaches,
+                       std::vector<std::string>       &warnings)
+    {
+      const double near = touching_distance(scene, X), most = near / touching * inside;
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
       {
-        const auto   delta   = distances(scene, scene.dies[d], process.dies[d].displacement, X);
-        const double deepest = -*std::min_element(delta.begin(), delta.end());
-        if (deepest > allowed)
-          throw Error("Die " + scene.dies[d].name,
-                      "the billet stands " + as_text(deepest) + " mm inside it",
-                      "a billet starts outside of all dies",
-                      how_to_stand_outside(parameters, parameters.dies[d]));
+        const Overlap &overlap = approaches[d].overlap;
+        if (!(overlap.depth > near))
+          continue;
+        const Vec3  &displacement = process.dies[d].displacement;
+        const double pushed_out =
+          overlap.is_of_die ? std::min(most, 2. * deepest_node(scene, scene.dies[d], displacement, X)) : most;
+        const std::string name = "Die " + scene.dies[d].name;
+        if (overlap.depth > pushed_out)
+          throw Error(name,
+                      standing_inside(overlap),
+                      "a billet starts outside of all dies, or in one by 5 % of its size, " + as_text(most) +
+                        " mm, where its nodes are",
+                      how_to_stand_outside(parameters,
+                                           parameters.dies[d],
+                                           approaches[d],
+                                           is_behind(scene, scene.dies[d], displacement, X)));
+        warnings.push_back(name + ": " + standing_inside(overlap) +
+                           ": the first increment pushes it out; it is free when the die is moved by " +
+                           in_brackets((1. + 1e-5) * approaches[d].freeing) + " mm");
       }
     }
 
-    /// Whether a die touches the billet, where it stands, from some point of its path on, and does not move
-    /// away from it there.
-    bool comes_against(const Scene                &scene,
-                       const unsigned int          d,
-                       const Process<double>      &process,
-                       const double                stroke,
-                       const NodalVectors<double> &X)
+    /// A smooth surface stands in front of its facets; where the billet touches these, it is in that.
+    void tell_bulges(const Scene                &scene,
+                     const Process<double>      &process,
+                     const NodalVectors<double> &X,
+                     std::vector<std::string>   &warnings)
     {
-      const double       near    = touching * std::cbrt(volume(scene.mesh.cells, X));
-      const auto         path    = process.dies[d].velocity * process.time(stroke);
-      const double       wanted  = scene.dies[d].surface() ? std::ceil(path.norm() / (50. * near)) : 1.;
-      const unsigned int n_steps = std::clamp(wanted, 1., 200.);
-      const auto         start   = distances(scene, scene.dies[d], process.dies[d].displacement, X);
-      for (unsigned int i = 1; i <= n_steps; ++i)
+      const double near = touching_distance(scene, X);
+      for (unsigned int d = 0; d < scene.dies.size(); ++d)
       {
-        const auto delta = distances(
-          scene, scene.dies[d], process.dies[d].displacement + path * (static_cast<double>(i) / n_steps), X);
-        for (std::size_t k = 0; k < delta.size(); ++k)
-          if (delta[k] <= near && delta[k] <= start[k] + 1e-9 * near)
-            return true;
+        const Vec3 &displacement = process.dies[d].displacement;
+        double      bulge        = 0.;
+        Vec3        place;
+        for (NodeIndex k = 0; k < X.size(); ++k)
+          if (scene.topology.is_on_surface(k))
+            if (const double depth = -scene.dies[d].signed_distance(X[k], displacement);
+                depth > std::max(bulge, near) && scene.dies[d].facet_distance(X[k], displacement) > -near)
+            {
+              bulge = depth;
+              place = X[k];
+            }
+        if (bulge > 0.)
+          warnings.push_back(
+            "Die " + scene.dies[d].name + ": the billet touches its facets, and is " + as_text(bulge) +
+            " mm inside the smooth surface they stand for, at " + in_brackets(place) +
+            ": the first increment pushes it out; if facets are meant, set surface = facets");
       }
-      return false;
+    }
+
+    /// The largest angle to its neighbours that a smooth surface turns by over a facet's edges [degrees].
+    double turn(const TriangleSurface &surface, const unsigned int f, const double feature_angle)
+    {
+      const auto normal = [&](const unsigned int facet) {
+        const Triangle &t = surface.triangles()[facet];
+        const auto     &x = surface.vertices();
+        return facet_vector(x[t[0]], x[t[1]], x[t[2]]);
+      };
+      double largest = 0.;
+      for (unsigned int e = 0; e < 3; ++e)
+        if (const unsigned int other = surface.neighbour(f, e).facet; other != invalid_index)
+        {
+          const Vec3   a = normal(f), b = normal(other);
+          const double angle = std::atan2(cross_product_3d(a, b).norm(), a * b) * 180. / M_PI;
+          if (angle <= feature_angle)
+            largest = std::max(largest, angle);
+        }
+      return largest;
+    }
+
+    /// Facets that turn as those of a chamfer may, and are taken for a rounding that stands far in front of
+    /// them.
+    void tell_chamfers(const Parameters &parameters, const Scene &scene, std::vector<std::string> &warnings)
+    {
+      const double least = chamfer_bulge * parameters.edge_length(scene.mesh);
+      for (const Die &die : scene.dies)
+      {
+        const TriangleSurface *surface = die.surface();
+        double                 bulge = least, angle = 0.;
+        Vec3                   place;
+        for (unsigned int f = 0; surface && f < surface->n_facets(); ++f)
+          if (const double turned = turn(*surface, f, die.feature_angle()); turned > least_chamfer_angle)
+          {
+            const Triangle &t      = surface->triangles()[f];
+            const auto     &x      = surface->vertices();
+            const Vec3      centre = (x[t[0]] + x[t[1]] + x[t[2]]) / 3.;
+            if (const double height = -die.signed_distance(centre, Vec3()); height > bulge)
+            {
+              bulge = height;
+              angle = turned;
+              place = centre;
+            }
+          }
+        if (bulge > least)
+          warnings.push_back("Die " + die.name + ": its smooth surface stands " + as_text(bulge) +
+                             " mm in front of facets that turn by " + as_text(rounded(angle)) +
+                             " degrees, at " + in_brackets(place) +
+                             "; if they are a chamfer and no coarse rounding, lower `feature angle', or set "
+                             "surface = facets");
+      }
+    }
+
+    /// Way of a die over the stroke.
+    Vec3 path(const Parameters &parameters, const Process<double> &process, const unsigned int d)
+    {
+      return process.dies[d].velocity * process.time(parameters.press.stroke);
+    }
+
+    [[noreturn]] void throw_out_of_reach(const Parameters           &parameters,
+                                         const Scene                &scene,
+                                         const Process<double>      &process,
+                                         const DieApproach          &approach,
+                                         const NodalVectors<double> &X)
+    {
+      const unsigned int lead  = process.leading_die;
+      const std::string  where = "Die " + scene.dies[lead].name, size = as_text(extent(X)),
+                        rule = "a die that moves must reach the billet within the stroke";
+      if (approach.moves_away)
+        throw Error(where,
+                    "moves away from the billet: it starts " + as_text(approach.gap) + " mm from it, at " +
+                      in_brackets(approach.gap_place),
+                    rule,
+                    "turn its velocity round");
+      if (!approach.meeting)
+        throw Error(
+          where,
+          "does not reach the billet, whose extent is " + size + " mm: it starts " + as_text(approach.gap) +
+            " mm away, nearest to " + in_brackets(approach.gap_place) + ", and passes by",
+          rule,
+          "move the die's point or the billet, or correct its velocity; " + how_to_scale(parameters));
+      throw Error(where,
+                  "does not reach the billet, whose extent is " + size + " mm: it starts " +
+                    as_text(approach.gap) + " mm away and meets it after " +
+                    as_text(approach.meeting->travel) + " mm, at " + in_brackets(approach.meeting->place) +
+                    ", and the stroke is " + as_text(parameters.press.stroke) + " mm",
+                  rule,
+                  "lengthen Press/stroke, move the die's point or the billet; " + how_to_scale(parameters));
     }
 
     /// The first die to touch the billet is one that moves.
-    void check_reach(const Parameters           &parameters,
-                     const Scene                &scene,
-                     const Process<double>      &process,
-                     const NodalVectors<double> &X)
+    void check_reach(const Parameters               &parameters,
+                     const Scene                    &scene,
+                     const Process<double>          &process,
+                     const NodalVectors<double>     &X,
+                     const std::vector<DieApproach> &approaches)
     {
+      const double near = touching_distance(scene, X);
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
-        if (process.dies[d].velocity.norm() > 0. &&
-            comes_against(scene, d, process, parameters.press.stroke, X))
+        if (approaches[d].meeting &&
+            approaches[d].meeting->travel <= path(parameters, process, d).norm() + near)
           return;
-      const unsigned int lead    = process.leading_die;
-      const auto         delta   = distances(scene, scene.dies[lead], process.dies[lead].displacement, X);
-      const double       nearest = *std::min_element(delta.begin(), delta.end()), size = extent(X);
-      throw Error("Die " + scene.dies[lead].name,
-                  "does not come against the billet, whose extent is " + as_text(size) + " mm: it starts " +
-                    as_text(std::max(0., nearest)) + " mm away, and the stroke is " +
-                    as_text(parameters.press.stroke) + " mm along its velocity",
-                  "a die that moves must reach the billet within the stroke",
-                  "turn the velocity round, move the die's point or the billet, or lengthen Press/stroke; " +
-                    how_to_scale(parameters));
+      throw_out_of_reach(parameters, scene, process, approaches[process.leading_die], X);
+    }
+
+    /// A die that ends a little before a plane of symmetry: nodes on the plane are beyond its rim, and not
+    /// held.
+    void tell_rims(const Parameters         &parameters,
+                   const Scene              &scene,
+                   const Process<double>    &process,
+                   std::vector<std::string> &warnings)
+    {
+      const double most = 0.5 * parameters.edge_length(scene.mesh);
+      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+        for (const Patch &patch : scene.mesh.patches)
+          if (const TriangleSurface *surface = scene.dies[d].surface(); surface && patch.symmetry)
+          {
+            double     shortest = most;
+            Vec3       place;
+            const auto before = [&](const Vec3 &x) {
+              return (patch.symmetry->point - x - process.dies[d].displacement) * patch.symmetry->normal;
+            };
+            for (const TriangleSurface::Edge &edge : rim(*surface))
+            {
+              const Triangle &t = surface->triangles()[edge.facet];
+              const Vec3     &a = surface->vertices()[t[edge.edge]],
+                         &b     = surface->vertices()[t[(edge.edge + 1) % 3]];
+              const double near = std::min(before(a), before(b)), far = std::max(before(a), before(b));
+              // One that runs along the plane.
+              if (near > surface->rounding() && far < shortest && far - near < 0.01 * (b - a).norm())
+              {
+                shortest = far;
+                place    = a + process.dies[d].displacement;
+              }
+            }
+            if (shortest < most)
+              warnings.push_back(
+                "Die " + scene.dies[d].name + " ends " + as_text(shortest) + " mm before the plane " +
+                patch.name + ", at " + in_brackets(place) +
+                ": nodes on the plane are beyond it, and it does not hold them; let it reach the "
+                "plane or go beyond");
+          }
+    }
+
+    /// Whether a remeshing before the first increment makes edges near dies as short as that.
+    bool refines_to(const Parameters &parameters, const double width, const double edge)
+    {
+      const RemesherParameters &remeshing = parameters.remeshing;
+      return remeshing.when != "never" && remeshing.sizes != "uniform" &&
+             remeshing.smallest_size * edge <= width;
+    }
+
+    /// Parts of dies that come into the metal between its nodes and the middles of its edges.
+    void tell_unseen(const Parameters               &parameters,
+                     const Scene                    &scene,
+                     const Process<double>          &process,
+                     const NodalVectors<double>     &X,
+                     const std::vector<DieApproach> &approaches,
+                     std::vector<std::string>       &warnings)
+    {
+      const MetalSurface metal = metal_surface(scene.mesh, X);
+      const double       edge = parameters.edge_length(scene.mesh), near = touching_distance(scene, X);
+      const Vec3        &lead = process.dies[process.leading_die].velocity;
+      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      {
+        if (!scene.dies[d].surface())
+          continue;
+        // Metal is pressed against a die that stands.
+        const bool   moves = process.dies[d].velocity.norm() > 0.;
+        const Vec3   way   = moves ? process.dies[d].velocity : Vec3(-lead);
+        const double most  = path(parameters, process, moves ? d : process.leading_die).norm();
+        const auto   met   = moves ? approaches[d].meeting
+                                   : first_meeting(scene.dies[d], process.dies[d].displacement, way, metal, near);
+        if (!met || !(met->travel < most))
+          continue;
+        const double travel = met->travel + std::min(most - met->travel, 0.5 * edge);
+        if (const auto unseen =
+              find_unseen(scene.dies[d], process.dies[d].displacement + travel / way.norm() * way, metal);
+            unseen && unseen->width > 0. && !refines_to(parameters, unseen->width, edge))
+          warnings.push_back("Die " + scene.dies[d].name + " is " + as_text(unseen->width) +
+                             " mm wide where it comes into the billet at " + in_brackets(unseen->place) +
+                             ", between nodes: contact does not see it; set " +
+                             (parameters.billet.shape == "file" ? "Remeshing" : "Billet") +
+                             "/element size = " + as_text(rounded_down(unseen->width)) +
+                             (parameters.remeshing.when == "never" ? ", or Remeshing/when = quality" : ""));
+      }
     }
 
     /// A plane that the workpiece cannot cross, at the end of the stroke.
@@ -219,7 +469,7 @@ namespace retroforge
     {
       const auto   faces_billet = beside(X, process.dies[process.leading_die].velocity);
       const auto   first = process.at_stroke(0.).dies, dies = process.at_stroke(parameters.press.stroke).dies;
-      const double allowed = touching * std::cbrt(volume(scene.mesh.cells, X));
+      const double allowed = touching_distance(scene, X);
       for (unsigned int a = 0; a < dies.size(); ++a)
         for (unsigned int b = 0; b < dies.size(); ++b)
           if (const TriangleSurface *surface = scene.dies[a].surface();
@@ -240,15 +490,39 @@ namespace retroforge
     }
   } // namespace
 
-  void check_scene(const Parameters           &parameters,
-                   const Scene                &scene,
-                   const Process<double>      &process,
-                   const NodalVectors<double> &X)
+  std::vector<DieApproach> find_approaches(const Parameters           &parameters,
+                                           const Scene                &scene,
+                                           const Process<double>      &process,
+                                           const NodalVectors<double> &X)
   {
+    const double             near  = touching_distance(scene, X);
+    const MetalSurface       metal = billet_surface(parameters.billet, scene.mesh, X, 0.2 * near);
+    std::vector<DieApproach> approaches;
+    for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      approaches.push_back(find_approach(scene.dies[d],
+                                         process.dies[d].displacement,
+                                         process.dies[d].velocity,
+                                         parameters.dies[d].facing,
+                                         metal,
+                                         near));
+    return approaches;
+  }
+
+  std::vector<std::string> check_scene(const Parameters           &parameters,
+                                       const Scene                &scene,
+                                       const Process<double>      &process,
+                                       const NodalVectors<double> &X)
+  {
+    std::vector<std::string> warnings;
     check_sizes(parameters, scene, X);
     check_depths(parameters, scene);
-    check_outside(parameters, scene, process, X);
-    check_reach(parameters, scene, process, X);
+    const std::vector<DieApproach> approaches = find_approaches(parameters, scene, process, X);
+    check_outside(parameters, scene, process, X, approaches, warnings);
+    check_reach(parameters, scene, process, X, approaches);
+    tell_bulges(scene, process, X, warnings);
+    tell_chamfers(parameters, scene, warnings);
+    tell_rims(parameters, scene, process, warnings);
+    tell_unseen(parameters, scene, process, X, approaches, warnings);
     check_planes(parameters, scene, process);
     check_surfaces(parameters, scene, process, X);
     if (const unsigned int n = n_free_rigid_modes(scene, process.at_stroke(0.), X); n > 0)
@@ -256,5 +530,6 @@ namespace retroforge
                   "the billet can slide or spin freely in " + std::to_string(n) + " rigid motion(s)",
                   "its velocity must be unique",
                   "cut it by symmetry planes, or give a die some friction");
+    return warnings;
   }
 } // namespace retroforge

@@ -15,6 +15,9 @@ namespace retroforge
   /// What runs: version, size, and the notes on it.
   void print_begin(const Case &at);
 
+  /// What is doubtful about the scene, a sentence each.
+  void print_warnings(const std::vector<std::string> &warnings);
+
   /// Where a run goes on from, and with what.
   /// @param is_left  whether some of the stroke is
   void print_resumed(unsigned int n_increments, bool is_left, const std::vector<ChangedSetting> &changes);
