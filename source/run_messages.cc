@@ -70,6 +70,13 @@ namespace retroforge
     std::cout << std::flush;
   }
 
+  void print_warnings(const std::vector<std::string> &warnings)
+  {
+    for (const std::string &warning : warnings)
+      std::cout << "  warning: " << warning << '\n';
+    std::cout << std::flush;
+  }
+
   void print_resumed(const unsigned int                 n_increments,
                      const bool                         is_left,
                      const std::vector<ChangedSetting> &changes)

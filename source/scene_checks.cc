@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
 #include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/mesh/whole_part.h>
 #include <retroforge/objective/box.h>
 #include <retroforge/scene_checks.h>
 #include <retroforge/solver/rigid_modes.h>
@@ -9,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <sstream>
 
 namespace retroforge
 {
@@ -106,14 +109,17 @@ namespace retroforge
 
     /// Whether a die touches the billet, where it stands, from some point of its path on, and does not move
     /// away from it there.
+    /// @param path        of the die, beside the billet's
+    /// @param must_close  whether moving along it is not enough
     bool comes_against(const Scene                &scene,
                        const unsigned int          d,
                        const Process<double>      &process,
-                       const double                stroke,
+                       const Vec3                 &path,
+                       const bool                  must_close,
                        const NodalVectors<double> &X)
     {
       const double       near    = touching * std::cbrt(volume(scene.mesh.cells, X));
-      const auto         path    = process.dies[d].velocity * process.time(stroke);
+      const double       least   = (must_close ? -1e-6 : 1e-9) * near;
       const double       wanted  = scene.dies[d].surface() ? std::ceil(path.norm() / (50. * near)) : 1.;
       const unsigned int n_steps = std::clamp(wanted, 1., 200.);
       const auto         start   = distances(scene, scene.dies[d], process.dies[d].displacement, X);
@@ -122,10 +128,40 @@ namespace retroforge
         const auto delta = distances(
           scene, scene.dies[d], process.dies[d].displacement + path * (static_cast<double>(i) / n_steps), X);
         for (std::size_t k = 0; k < delta.size(); ++k)
-          if (delta[k] <= near && delta[k] <= start[k] + 1e-9 * near)
+          if (delta[k] <= near && delta[k] <= start[k] + least)
             return true;
       }
       return false;
+    }
+
+    /// A billet that nothing holds against the die that comes first would fly along with it, at no force.
+    void check_held(const Parameters           &parameters,
+                    const Scene                &scene,
+                    const Process<double>      &process,
+                    const unsigned int          first,
+                    const NodalVectors<double> &X)
+    {
+      const Vec3 &velocity = process.dies[first].velocity;
+      for (const Plane &plane : symmetry_planes(scene.mesh))
+        if (std::abs(velocity * plane.normal) > 1e-6 * velocity.norm())
+          return;
+      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+        if (const Vec3 beside = process.dies[d].velocity - velocity; beside.norm() > 0.)
+          if (comes_against(scene,
+                            d,
+                            process,
+                            beside * process.time(parameters.press.stroke),
+                            process.dies[d].friction == 0.,
+                            X))
+            return;
+      std::ostringstream way;
+      way << velocity[0] << ", " << velocity[1] << ", " << velocity[2];
+      throw Error("Billet",
+                  "nothing holds it against die " + scene.dies[first].name + ", which pushes it along (" +
+                    way.str() + ")" +
+                    (scene.dies.size() > 1 ? ": no other die stands in its way within the stroke" : ""),
+                  "a billet is forged between dies, or a die and a symmetry plane across its way",
+                  "add the die that is missing to Dies/names, or move it into the way (point, facing)");
     }
 
     /// The first die to touch the billet is one that moves.
@@ -136,8 +172,12 @@ namespace retroforge
     {
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
         if (process.dies[d].velocity.norm() > 0. &&
-            comes_against(scene, d, process, parameters.press.stroke, X))
+            comes_against(
+              scene, d, process, process.dies[d].velocity * process.time(parameters.press.stroke), false, X))
+        {
+          check_held(parameters, scene, process, d, X);
           return;
+        }
       const unsigned int lead    = process.leading_die;
       const auto         delta   = distances(scene, scene.dies[lead], process.dies[lead].displacement, X);
       const double       nearest = *std::min_element(delta.begin(), delta.end()), size = extent(X);
@@ -251,10 +291,17 @@ namespace retroforge
     check_reach(parameters, scene, process, X);
     check_planes(parameters, scene, process);
     check_surfaces(parameters, scene, process, X);
-    if (const unsigned int n = n_free_rigid_modes(scene, process.at_stroke(0.), X); n > 0)
-      throw Error("Dies",
-                  "the billet can slide or spin freely in " + std::to_string(n) + " rigid motion(s)",
-                  "its velocity must be unique",
-                  "cut it by symmetry planes, or give a die some friction");
+    if (const auto motions = free_rigid_motions(scene, process.at_stroke(0.), X); !motions.empty())
+    {
+      const bool rubs = std::all_of(
+        process.dies.begin(), process.dies.end(), [](const auto &die) { return die.friction > 0.; });
+      throw Error(
+        "Billet",
+        "no die holds it: it is free to " + join(motions),
+        "its velocity must be unique",
+        rubs ? "its dies have friction, but touch it where that does not resist: cut the billet by symmetry "
+               "planes, or add a die that holds it"
+             : "cut it by symmetry planes, or give a die some friction");
+    }
   }
 } // namespace retroforge

@@ -12,6 +12,9 @@ namespace retroforge
   /// What runs: version, size, and what a user may not expect of it.
   void print_begin(const Case &at);
 
+  /// What of a scene is out of all proportion.
+  void print_warnings(const std::vector<std::string> &warnings);
+
   /// Where a run goes on from, and with what.
   /// @param is_left  whether some of the stroke is
   void print_resumed(unsigned int n_increments, bool is_left, const std::vector<ChangedSetting> &changes);
