@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
 #include <retroforge/geometry/facet_curvature.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/whole_part.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <sstream>
 
 namespace retroforge
 {
@@ -112,13 +114,6 @@ namespace retroforge
             "nodes deeper are lost to the die, so it must be a tenth of the element size at least, " +
               as_text(least) + " mm",
             "leave it out, which takes a tenth of the die's extent");
-    }
-
-    /// What lies nearer than this touches [mm]: by the whole part, whatever symmetry leaves of it.
-    double touching_distance(const Scene &scene, const NodalVectors<double> &X)
-    {
-      const double copies = n_copies(symmetry_planes(scene.mesh));
-      return touching * std::cbrt((std::isfinite(copies) ? copies : 1.) * volume(scene.mesh.cells, X));
     }
 
     /// The deepest node in a die [mm]: what contact sees of an overlap, and pushes out.
@@ -302,6 +297,74 @@ namespace retroforge
                   "lengthen Press/stroke, move the die's point or the billet; " + how_to_scale(parameters));
     }
 
+    /// Signed distance of each surface node from a die.
+    std::vector<double>
+    distances(const Scene &scene, const Die &die, const Vec3 &displacement, const NodalVectors<double> &X)
+    {
+      std::vector<double> delta;
+      for (NodeIndex k = 0; k < X.size(); ++k)
+        if (scene.topology.is_on_surface(k))
+          delta.push_back(die.signed_distance(X[k], displacement));
+      return delta;
+    }
+
+    /// Whether a die touches the billet, where it stands, from some point of its path on, and does not move
+    /// away from it there.
+    /// @param path        of the die, beside the billet's
+    /// @param must_close  whether moving along it is not enough
+    bool comes_against(const Scene                &scene,
+                       const unsigned int          d,
+                       const Process<double>      &process,
+                       const Vec3                 &path,
+                       const bool                  must_close,
+                       const NodalVectors<double> &X)
+    {
+      const double       near    = touching_distance(scene, X);
+      const double       least   = (must_close ? -1e-6 : 1e-9) * near;
+      const double       wanted  = scene.dies[d].surface() ? std::ceil(path.norm() / (50. * near)) : 1.;
+      const unsigned int n_steps = std::clamp(wanted, 1., 200.);
+      const auto         start   = distances(scene, scene.dies[d], process.dies[d].displacement, X);
+      for (unsigned int i = 1; i <= n_steps; ++i)
+      {
+        const auto delta = distances(
+          scene, scene.dies[d], process.dies[d].displacement + path * (static_cast<double>(i) / n_steps), X);
+        for (std::size_t k = 0; k < delta.size(); ++k)
+          if (delta[k] <= near && delta[k] <= start[k] + least)
+            return true;
+      }
+      return false;
+    }
+
+    /// A billet that nothing holds against the die that comes first would fly along with it, at no force.
+    void check_held(const Parameters           &parameters,
+                    const Scene                &scene,
+                    const Process<double>      &process,
+                    const unsigned int          first,
+                    const NodalVectors<double> &X)
+    {
+      const Vec3 &velocity = process.dies[first].velocity;
+      for (const Plane &plane : symmetry_planes(scene.mesh))
+        if (std::abs(velocity * plane.normal) > 1e-6 * velocity.norm())
+          return;
+      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+        if (const Vec3 beside = process.dies[d].velocity - velocity; beside.norm() > 0.)
+          if (comes_against(scene,
+                            d,
+                            process,
+                            beside * process.time(parameters.press.stroke),
+                            process.dies[d].friction == 0.,
+                            X))
+            return;
+      std::ostringstream way;
+      way << velocity[0] << ", " << velocity[1] << ", " << velocity[2];
+      throw Error("Billet",
+                  "nothing holds it against die " + scene.dies[first].name + ", which pushes it along (" +
+                    way.str() + ")" +
+                    (scene.dies.size() > 1 ? ": no other die stands in its way within the stroke" : ""),
+                  "a billet is forged between dies, or a die and a symmetry plane across its way",
+                  "add the die that is missing to Dies/names, or move it into the way (point, facing)");
+    }
+
     /// The first die to touch the billet is one that moves.
     void check_reach(const Parameters               &parameters,
                      const Scene                    &scene,
@@ -313,7 +376,10 @@ namespace retroforge
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
         if (approaches[d].meeting &&
             approaches[d].meeting->travel <= path(parameters, process, d).norm() + near)
+        {
+          check_held(parameters, scene, process, d, X);
           return;
+        }
       throw_out_of_reach(parameters, scene, process, approaches[process.leading_die], X);
     }
 
@@ -490,6 +556,12 @@ namespace retroforge
     }
   } // namespace
 
+  double touching_distance(const Scene &scene, const NodalVectors<double> &X)
+  {
+    const double copies = n_copies(symmetry_planes(scene.mesh));
+    return touching * std::cbrt((std::isfinite(copies) ? copies : 1.) * volume(scene.mesh.cells, X));
+  }
+
   std::vector<DieApproach> find_approaches(const Parameters           &parameters,
                                            const Scene                &scene,
                                            const Process<double>      &process,
@@ -525,11 +597,18 @@ namespace retroforge
     tell_unseen(parameters, scene, process, X, approaches, warnings);
     check_planes(parameters, scene, process);
     check_surfaces(parameters, scene, process, X);
-    if (const unsigned int n = n_free_rigid_modes(scene, process.at_stroke(0.), X); n > 0)
-      throw Error("Dies",
-                  "the billet can slide or spin freely in " + std::to_string(n) + " rigid motion(s)",
-                  "its velocity must be unique",
-                  "cut it by symmetry planes, or give a die some friction");
+    if (const auto motions = free_rigid_motions(scene, process.at_stroke(0.), X); !motions.empty())
+    {
+      const bool rubs = std::all_of(
+        process.dies.begin(), process.dies.end(), [](const auto &die) { return die.friction > 0.; });
+      throw Error(
+        "Billet",
+        "no die holds it: it is free to " + join(motions),
+        "its velocity must be unique",
+        rubs ? "its dies have friction, but touch it where that does not resist: cut the billet by symmetry "
+               "planes, or add a die that holds it"
+             : "cut it by symmetry planes, or give a die some friction");
+    }
     return warnings;
   }
 } // namespace retroforge

@@ -11,11 +11,13 @@
 #include <retroforge/output/scene_pictures.h>
 #include <retroforge/run_messages.h>
 #include <retroforge/scene_checks.h>
+#include <retroforge/scene_estimate.h>
 #include <retroforge/scene_view.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <utility>
 
 namespace retroforge
 {
@@ -75,32 +77,38 @@ namespace retroforge
       make_some();
     if (!parts_)
       return;
-    if (parts_->mesh)
-      describe_billet();
-    for (unsigned int d = 0; d < parts_->dies.size(); ++d)
-      describe_die(d);
-    describe_press();
-    if (parts_->mesh)
-      attempt([&]() { describe_sizes(); });
+    const PressParameters &press = parts_->parameters.press;
+    summary_.press               = {parts_->leading_die, press.stroke, parts_->seconds, press.increments};
+    describe_dies();
+    if (!parts_->mesh)
+      return;
+    describe_billet();
+    attempt([&]() {
+      const Scene scene(
+        *parts_->mesh, parts_->parameters.discretization.pair(), parts_->dies, MPI_COMM_SELF);
+      describe_approaches(scene);
+      if (made)
+        estimate(scene);
+      if (made)
+        warn(check_scene(parts_->parameters, scene, parts_->process, parts_->X));
+    });
+    attempt([&]() { describe_sizes(); });
   }
 
   void SceneView::make_all(const Case &made)
   {
-    parts_.emplace();
-    parts_->parameters = made.parameters;
-    parts_->mesh       = made.billet;
-    parts_->X          = made.X_0;
-    parts_->dies       = made.model.dies;
-    parts_->process    = made.process;
-    parts_->states     = made.process.at_stroke(0.).dies;
-    for (unsigned int d = 0; d < parts_->dies.size(); ++d)
-      parts_->numbers.push_back(d);
+    parts_ = {made.parameters, made.billet, made.X_0, made.model.dies, made.process, {}, {}, 0.};
+    lead(*parts_);
     for (const std::string &note : notes_on(made))
       summary_.warnings.push_back("note: " + note);
-    attempt([&]() {
-      const Scene scene(made.billet, made.model.element, made.model.dies, MPI_COMM_SELF);
-      check_scene(made.parameters, scene, made.process, made.X_0);
-    });
+  }
+
+  void SceneView::lead(Parts &parts)
+  {
+    const unsigned int die = parts.process.leading_die;
+    parts.leading_die      = parts.parameters.dies[die].name;
+    parts.seconds          = parts.process.time(parts.parameters.press.stroke);
+    parts.path             = parts.seconds * parts.process.dies[die].velocity;
   }
 
   void SceneView::make_some()
@@ -109,22 +117,40 @@ namespace retroforge
     std::string echo;
     if (!attempt([&]() { parts.parameters = Parameters::read(command_, echo); }))
       return;
-    attempt([&]() { parts.mesh = make_billet(parts.parameters.billet, MPI_COMM_SELF); });
+    Parameters &parameters = parts.parameters;
+    attempt([&]() { parts.mesh = make_billet(parameters.billet, MPI_COMM_SELF); });
     BilletSize size = {1., 1.}; // where it is unknown: what follows from it is not shown
     if (parts.mesh)
     {
       parts.X = parts.mesh->X;
-      size    = parts.parameters.size_of(*parts.mesh);
-      attempt([&]() { parts.parameters.settle(size); });
+      size    = parameters.size_of(*parts.mesh);
+      attempt([&]() { parameters.settle(size); });
     }
-    parts.process = parts.parameters.process(size);
-    for (unsigned int d = 0; d < parts.parameters.dies.size(); ++d)
+    parts.process = parameters.process(size);
+    lead(parts);
+    const auto asked  = std::exchange(parameters.dies, {});
+    const auto states = std::exchange(parts.process.dies, {});
+    for (unsigned int d = 0; d < asked.size(); ++d)
       attempt([&]() {
-        parts.dies.push_back(parts.parameters.dies[d].die());
-        parts.numbers.push_back(d);
-        parts.states.push_back(parts.process.dies[d]);
+        parts.dies.push_back(asked[d].die());
+        parameters.dies.push_back(asked[d]);
+        parts.process.dies.push_back(states[d]);
       });
     parts_ = std::move(parts);
+  }
+
+  void SceneView::warn(const std::vector<std::string> &warnings)
+  {
+    for (const std::string &warning : warnings)
+      summary_.warnings.push_back("warning: " + warning);
+  }
+
+  void SceneView::estimate(const Scene &scene)
+  {
+    const SceneEstimate made = estimate_scene(parts_->parameters, scene, parts_->process, parts_->X);
+    warn(made.warnings);
+    summary_.estimate = {
+      "slab method", made.speed, made.strain_rate, made.flow_stress, made.first_force, made.final_force};
   }
 
   namespace
@@ -177,7 +203,7 @@ namespace retroforge
     }
     billet.volume          = volume(mesh.cells, X);
     billet.volume_of_shape = volume_by_measures(parts_->parameters, X, mesh);
-    billet.whole           = whole_part(mesh, parts_->process.dies[parts_->process.leading_die].velocity);
+    billet.whole           = whole_part(mesh, parts_->path);
     for (unsigned int p = 0; p < mesh.patches.size(); ++p)
       if (const Patch &patch = mesh.patches[p]; patch.symmetry)
         billet.symmetry_planes.push_back({patch.name, patch.symmetry->point, patch.symmetry->normal});
@@ -186,34 +212,64 @@ namespace retroforge
     summary_.billet = std::move(billet);
   }
 
-  void SceneView::describe_die(const unsigned int d)
+  void SceneView::describe_dies()
   {
-    const unsigned int   number = parts_->numbers[d];
-    const DieParameters &given  = parts_->parameters.dies[number];
-    const Die           &die    = parts_->dies[d];
-    SceneSummary::Die    described;
-    described.name     = die.name;
-    described.shape    = given.shape.name;
-    described.n_facets = die.n_facets();
-    described.point    = given.point + parts_->states[d].displacement;
-    described.facing   = given.facing;
-    described.velocity = parts_->states[d].velocity;
-    described.friction = given.friction;
-    described.leads    = number == parts_->process.leading_die;
-    if (die.surface())
-      described.extents = corners_of(die.surface()->vertices(), parts_->states[d].displacement);
-    summary_.dies.push_back(std::move(described));
+    for (unsigned int d = 0; d < parts_->dies.size(); ++d)
+    {
+      const DieParameters    &given = parts_->parameters.dies[d];
+      const DieState<double> &state = parts_->process.dies[d];
+      const Die              &die   = parts_->dies[d];
+      SceneSummary::Die       described;
+      described.name     = die.name;
+      described.shape    = given.shape.name;
+      described.n_facets = die.n_facets();
+      described.point    = given.point + state.displacement;
+      described.facing   = given.facing;
+      described.velocity = state.velocity;
+      described.friction = given.friction;
+      described.leads    = die.name == parts_->leading_die;
+      if (die.surface())
+        described.extents = corners_of(die.surface()->vertices(), state.displacement);
+      summary_.dies.push_back(std::move(described));
+    }
+  }
+
+  void SceneView::describe_approaches(const Scene &scene)
+  {
+    const double touching   = touching_distance(scene, parts_->X);
+    const double seconds    = parts_->seconds;
+    const auto   approaches = find_approaches(parts_->parameters, scene, parts_->process, parts_->X);
+    for (unsigned int d = 0; d < approaches.size(); ++d)
+    {
+      const DieApproach &approach  = approaches[d];
+      SceneSummary::Die &described = summary_.dies[d];
+      described.gap                = {approach.gap, approach.gap_place};
+      described.moves_away         = approach.moves_away;
+      if (approach.overlap.depth > touching)
+      {
+        described.overlap   = {approach.overlap.depth, approach.overlap.place};
+        described.is_of_die = approach.overlap.is_of_die;
+        described.frees     = approach.freeing;
+      }
+      described.touches  = !described.overlap && approach.gap <= touching;
+      const double speed = described.velocity.norm();
+      if (approach.meeting && approach.meeting->travel <= speed * seconds + touching)
+      {
+        described.first_touch     = {approach.meeting->travel, approach.meeting->place};
+        described.stroke_at_touch = approach.meeting->travel / speed / seconds * summary_.press->stroke;
+      }
+    }
   }
 
   void SceneView::describe_sizes()
   {
-    const Parameters    &parameters = parts_->parameters;
-    const std::vector<Die> &dies = parts_->dies;
+    const Parameters       &parameters = parts_->parameters;
+    const std::vector<Die> &dies       = parts_->dies;
     for (unsigned int d = 0; d < dies.size(); ++d)
       if (const TriangleSurface *surface = dies[d].surface())
       {
         const std::vector<Die> alone = {dies[d]};
-        const Remesher  remesher(parameters.remeshing,
+        const Remesher         remesher(parameters.remeshing,
                                 parameters.edge_length(*parts_->mesh),
                                 alone,
                                 parts_->mesh->patches,
@@ -224,14 +280,6 @@ namespace retroforge
           smallest = std::min(smallest, size(x));
         summary_.dies[d].smallest_size = smallest;
       }
-  }
-
-  void SceneView::describe_press()
-  {
-    const PressParameters &press = parts_->parameters.press;
-    const unsigned int     lead  = parts_->process.leading_die;
-    summary_.press               = {
-      parts_->parameters.dies[lead].name, press.stroke, parts_->process.time(press.stroke), press.increments};
   }
 
   NodalVectors<double> SceneView::drawn_around() const
@@ -261,11 +309,12 @@ namespace retroforge
     if (!parts_)
       return;
     const NodalVectors<double> around = drawn_around();
-    ScenePictures pictures(command_.output_directory);
+    const std::vector<DieState<double>> &states = parts_->process.dies;
+    ScenePictures                        pictures(command_.output_directory);
     if (parts_->mesh)
-      pictures.add_billet(*parts_->mesh, parts_->X, parts_->dies, parts_->states);
+      pictures.add_billet(*parts_->mesh, parts_->X, parts_->dies, states);
     for (unsigned int d = 0; d < parts_->dies.size(); ++d)
-      pictures.add_die(parts_->dies[d], parts_->states[d].displacement, around);
+      pictures.add_die(parts_->dies[d], states[d].displacement, around);
     pictures.write_list();
   }
 } // namespace retroforge

@@ -15,6 +15,7 @@
 #include <retroforge/run_messages.h>
 #include <retroforge/run_summary.h>
 #include <retroforge/scene_checks.h>
+#include <retroforge/scene_estimate.h>
 #include <retroforge/simulation.h>
 
 #include <algorithm>
@@ -92,6 +93,7 @@ namespace retroforge
       write_inputs();
       print_begin(case_);
       print_warnings(warnings_);
+      print_warnings(estimate_scene(case_.parameters, first_leg_->scene, case_.process, case_.X_0).warnings);
     }
     try
     {

@@ -15,7 +15,7 @@ namespace retroforge
   /// What runs: version, size, and the notes on it.
   void print_begin(const Case &at);
 
-  /// What is doubtful about the scene, a sentence each.
+  /// What is doubtful about a scene, or out of all proportion, a sentence each.
   void print_warnings(const std::vector<std::string> &warnings);
 
   /// Where a run goes on from, and with what.

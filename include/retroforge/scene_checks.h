@@ -7,6 +7,10 @@
 
 namespace retroforge
 {
+  /// What lies nearer than this touches [mm]: by the whole part, whatever symmetry leaves of it.
+  /// @param X  positions of the billet's nodes
+  double touching_distance(const Scene &scene, const NodalVectors<double> &X);
+
   /// How each die stands to the billet at the start, and what becomes of it: of the billet as its measures
   /// give it, whatever its mesh.
   /// @param X  positions of the billet's nodes

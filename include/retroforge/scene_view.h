@@ -27,13 +27,14 @@ namespace retroforge
     /// What could be made of the case: all of it, or some.
     struct Parts
     {
-      Parameters                    parameters;
-      std::optional<TetMesh>        mesh;
-      NodalVectors<double>          X; ///< of its nodes [mm]
-      std::vector<unsigned int>     numbers; ///< of the dies among those of the parameters
-      std::vector<Die>              dies;
-      std::vector<DieState<double>> states;
-      Process<double>               process; ///< with all dies of the parameters
+      Parameters             parameters; ///< of the dies that could be made
+      std::optional<TetMesh> mesh;
+      NodalVectors<double>   X; ///< of its nodes [mm]
+      std::vector<Die>       dies;
+      Process<double>        process; ///< of these
+      std::string            leading_die;
+      Vec3                   path;         ///< of that die over the stroke [mm]
+      double                 seconds = 0.; ///< that it takes
     };
 
     void look();
@@ -42,10 +43,15 @@ namespace retroforge
     void make_all(const Case &made);
     void make_some();
 
+    /// Who leads, how far and how long, while all dies are there.
+    static void lead(Parts &parts);
+    void        warn(const std::vector<std::string> &warnings);
+
+    void estimate(const Scene &scene);
     void describe_billet();
-    void describe_die(unsigned int d);
+    void describe_dies();
+    void describe_approaches(const Scene &scene);
     void describe_sizes();
-    void describe_press();
     /// What pictures of planes cover.
     NodalVectors<double> drawn_around() const;
     void                 draw() const;

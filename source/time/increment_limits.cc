@@ -3,10 +3,12 @@
 #include <deal.II/base/mpi.h>
 
 #include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/parts_quality.h>
 #include <retroforge/mesh/self_crossing.h>
+#include <retroforge/solver/rigid_modes.h>
 #include <retroforge/time/increment_limits.h>
 
 #include <algorithm>
@@ -133,12 +135,24 @@ namespace retroforge
     return step < shortest() * (1. - 1e-9);
   }
 
-  void IncrementLimits::stop(const IncrementRecord &record, const Refusal &refusal) const
+  void IncrementLimits::stop(const Process<double> &process,
+                             const ForgingState    &state,
+                             const IncrementRecord &record,
+                             const Refusal         &refusal) const
   {
     std::ostringstream what;
     what.precision(5);
     what << "stops at stroke " << record.stroke << " mm, where even an increment of " << shortest()
          << " mm is too long: " << refusal.reason;
+    // A body that nothing holds has no velocity, however fine its mesh is.
+    if (const auto motions = free_rigid_motions(
+          state.leg->scene, process.at_stroke(record.stroke), state.X, model_.step.contact.ramp.width);
+        !motions.empty())
+      throw Error(
+        "Billet",
+        what.str() + "; no die holds the billet there, which is free to " + join(motions),
+        "dies that touch it, their friction, and symmetry planes must hold it in all directions",
+        "let the dies touch it where the run begins, give them friction, or cut it by symmetry planes");
     const char *remedy =
       record.stroke == 0. ? "nothing moved yet, so the stroke is not what is wrong: use values of the usual "
                             "size, penalty and friction above all, more increments, or a better mesh"

@@ -53,7 +53,10 @@ namespace retroforge
     bool too_short(double step) const;
 
     /// Where an increment that may not be halved any more is refused.  @throws Error
-    [[noreturn]] void stop(const IncrementRecord &record, const Refusal &refusal) const;
+    [[noreturn]] void stop(const Process<double> &process,
+                           const ForgingState    &state,
+                           const IncrementRecord &record,
+                           const Refusal         &refusal) const;
 
     /// Where a run can only go on to no good: it takes too many increments, or loses its volume.
     /// @throws Error
