@@ -84,8 +84,7 @@ namespace retroforge
       return;
     describe_billet();
     attempt([&]() {
-      const Scene scene(
-        *parts_->mesh, parts_->parameters.discretization.pair(), parts_->dies, MPI_COMM_SELF);
+      const Scene scene(*parts_->mesh, parts_->parameters.discretization.pair(), parts_->dies, MPI_COMM_SELF);
       describe_approaches(scene);
       if (made)
         estimate(scene);
@@ -155,7 +154,8 @@ namespace retroforge
 
   namespace
   {
-    double volume_by_measures(const Parameters &parameters, const NodalVectors<double> &X, const TetMesh &mesh)
+    double
+    volume_by_measures(const Parameters &parameters, const NodalVectors<double> &X, const TetMesh &mesh)
     {
       const BilletParameters &billet = parameters.billet;
       const bool              nominal =
@@ -274,8 +274,8 @@ namespace retroforge
                                 alone,
                                 parts_->mesh->patches,
                                 MPI_COMM_SELF);
-        const SizeField size     = remesher.size_field({DieState<double>()});
-        double          smallest = std::numeric_limits<double>::max();
+        const SizeField        size     = remesher.size_field({DieState<double>()});
+        double                 smallest = std::numeric_limits<double>::max();
         for (const Vec3 &x : surface->vertices())
           smallest = std::min(smallest, size(x));
         summary_.dies[d].smallest_size = smallest;
@@ -297,8 +297,7 @@ namespace retroforge
           points.push_back(base + Vec3({x, y, z}));
     for (const Die &die : parts_->dies)
       if (die.surface())
-        points.insert(
-          points.end(), die.surface()->vertices().begin(), die.surface()->vertices().end());
+        points.insert(points.end(), die.surface()->vertices().begin(), die.surface()->vertices().end());
     for (const DieParameters &die : parts_->parameters.dies)
       points.push_back(die.point);
     return points;
@@ -308,7 +307,7 @@ namespace retroforge
   {
     if (!parts_)
       return;
-    const NodalVectors<double> around = drawn_around();
+    const NodalVectors<double>           around = drawn_around();
     const std::vector<DieState<double>> &states = parts_->process.dies;
     ScenePictures                        pictures(command_.output_directory);
     if (parts_->mesh)

@@ -199,7 +199,8 @@ namespace retroforge
 
   const std::vector<std::string> &known_commands()
   {
-    static const std::vector<std::string> commands = {"simulate", "gradient", "check", "scan", "optimize", "scene"};
+    static const std::vector<std::string> commands = {
+      "simulate", "gradient", "check", "scan", "optimize", "scene"};
     return commands;
   }
 

@@ -69,7 +69,7 @@ namespace retroforge
                         {"touches", die.touches}};
       if (die.overlap)
       {
-        json["overlap"]          = in_json(*die.overlap);
+        json["overlap"]               = in_json(*die.overlap);
         json["overlap"]["of_the_die"] = die.is_of_die;
         json["overlap"]["frees"]      = in_json(die.frees);
       }
@@ -113,7 +113,8 @@ namespace retroforge
             << as_text(billet.whole.copies * billet.volume) << " mm^3";
       out << "\n    patches:";
       for (const auto &[name, area] : billet.patches)
-        out << (name == billet.patches.front().first ? " " : ", ") << name << " (" << as_text(area) << " mm^2)";
+        out << (name == billet.patches.front().first ? " " : ", ") << name << " (" << as_text(area)
+            << " mm^2)";
       out << '\n';
       for (const SceneSummary::SymmetryPlane &plane : billet.symmetry_planes)
         out << "    symmetry plane " << plane.name << " through " << point(plane.point) << ", outward normal "
@@ -142,13 +143,15 @@ namespace retroforge
         out << "    stands still\n";
         return;
       }
-      out << "    moves at " << point(die.velocity) << " mm/s" << (die.leads ? " and leads: the stroke is its path" : "");
+      out << "    moves at " << point(die.velocity) << " mm/s"
+          << (die.leads ? " and leads: the stroke is its path" : "");
       if (std::isnan(die.first_touch.distance))
         out << (die.moves_away ? "; moves away from the billet\n"
                                : "; does not touch the billet, as that stands now, within the stroke\n");
       else if (!die.touches)
         out << "; touches the billet first at " << point(die.first_touch.place) << " after a way of "
-            << as_text(die.first_touch.distance) << " mm, at stroke " << as_text(die.stroke_at_touch) << " mm\n";
+            << as_text(die.first_touch.distance) << " mm, at stroke " << as_text(die.stroke_at_touch)
+            << " mm\n";
       else
         out << '\n';
     }

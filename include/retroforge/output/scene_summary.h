@@ -37,13 +37,13 @@ namespace retroforge
       std::string  shape;
       Corners      extents;
       unsigned int n_nodes = 0, n_cells = 0;
-      double       element_size = unknown;                            ///< wanted away from dies [mm]
-      double       shortest_edge = unknown, longest_edge = unknown;   ///< of the surface [mm]
-      double       smallest_angle = unknown;                          ///< between two faces of a cell [degrees]
-      double       volume = unknown;                                  ///< of the mesh [mm^3]
-      double       volume_of_shape = unknown;                         ///< of the model, by its measures [mm^3]
+      double       element_size  = unknown;                         ///< wanted away from dies [mm]
+      double       shortest_edge = unknown, longest_edge = unknown; ///< of the surface [mm]
+      double       smallest_angle  = unknown;                       ///< between two faces of a cell [degrees]
+      double       volume          = unknown;                       ///< of the mesh [mm^3]
+      double       volume_of_shape = unknown;                       ///< of the model, by its measures [mm^3]
       WholePart    whole;
-      std::vector<std::pair<std::string, double>> patches;            ///< names and areas [mm^2]
+      std::vector<std::pair<std::string, double>> patches; ///< names and areas [mm^2]
       std::vector<SymmetryPlane>                  symmetry_planes;
     };
 
@@ -54,8 +54,8 @@ namespace retroforge
       unsigned int           n_facets = 0;
       Vec3                   point, facing; ///< of a plane: where it stands; facing of length one
       Vec3                   velocity;      ///< [mm/s]
-      double                 friction = 0.;
-      bool                   leads    = false;
+      double                 friction      = 0.;
+      bool                   leads         = false;
       double                 smallest_size = unknown; ///< of the edges wanted near it [mm]
 
       struct Place
@@ -71,8 +71,8 @@ namespace retroforge
       bool                 is_of_die = false; ///< whether it is the latter
       Vec3                 frees;             ///< the travel of the die that ends the overlap [mm]
 
-      /// Of a die that moves: its own path until it touches the billet as that stands at the start, and where;
-      /// unknown where it does not within the stroke.
+      /// Of a die that moves: its own path until it touches the billet as that stands at the start, and
+      /// where; unknown where it does not within the stroke.
       Place  first_touch;
       double stroke_at_touch = unknown; ///< of the leading die, then [mm]
       bool   moves_away      = false;   ///< it would touch the billet if it went back

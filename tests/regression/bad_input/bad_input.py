@@ -252,6 +252,8 @@ def resumed():
     judge_message("another run in its folder", run(["case.prm", "--output", "done"] + short), r"done.*already.*--overwrite")
     judge_message("a scan in its folder", run(["case.prm", "--output", "done"], "scan"), r"done.*already")
     judge_message("a scan that goes on with a run", run(["case.prm", "--output", "done", "--resume"], "scan"), r"done.*run")
+    judge_message("a look at a scene in its folder", run(["case.prm", "--output", "done"], "scene"), r"done.*already.*--overwrite")
+    judge_message("a look that goes on with a run", run(["case.prm", "--output", "done", "--resume"], "scene"), r"--resume.*scene")
     judge("none of them changed a file", contents("done") == before, "the folder differs")
     same = run(["case.prm", "--output", "done", "--resume"] + short + settings("Output/fields every=0", "Design/parameters=material/m"))
     judge("resumed with other output and design", same.returncode == 0, same.stderr)
