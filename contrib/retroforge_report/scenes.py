@@ -20,6 +20,7 @@ FROM_ABOVE, FROM_BELOW = View([1.0, -1.6, 0.75]), View([1.0, -1.6, -0.75])
 INSIDE = "#d00000"  # what lies in a die
 BARE = (0.45, 0.52, 0.62, 1.0)  # dies without a billet
 SHIFT = 0.02  # of the extent: sections pass so far inside of a place on the surface
+TOUCHING = 1e-3  # of the extent: what is less deep in a die touches it
 SMALL = 0.05  # of the extent: overlaps below it are magnified
 
 
@@ -142,7 +143,7 @@ class ScenePage:
         norm = colors.Normalize(0, max(gap.max(), 1e-3 * size))
         mapping = cm.ScalarMappable(norm, "viridis")
         rgba = mapping.to_rgba(gap)
-        rgba[gap < -1e-5 * size] = colors.to_rgba(INSIDE)  # single precision leaves less of a touch
+        rgba[gap < -TOUCHING * size] = colors.to_rgba(INSIDE)
         figure = plt.figure(figsize=(11, 5), layout="constrained")
         for position, (title, view) in enumerate((("from above", FROM_ABOVE), ("from below", FROM_BELOW)), 1):
             axes = Scene(surface.points, self.use_vtk, view).draw(figure, (1, 2, position), fine, rgba, edges=False)

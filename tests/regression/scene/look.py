@@ -241,6 +241,13 @@ def tutorial():
         judge(f"{case.name}: drawn", pictures(scene))
 
 
+def manual():
+    """The listing that the manual shows is that of the program."""
+    shown = re.search(r"^```\n(  billet, .*?)^```", (ROOT / "doc/manual/first_forging.md").read_text(encoding="utf-8"), re.M | re.S)
+    done = start([PROGRAM, "scene", str(ROOT / "prm/tutorial/upsetting/upsetting.prm"), "--output", "scene", "--overwrite"])
+    judge("the manual's listing", shown and shown[1] in done.stdout, done.stdout)
+
+
 def main():
     files = {"case.prm": CASE, "garbage.msh": "this is not a mesh\n", "cube.msh": block_meshes.msh_of_cube(2, 10.0)}
     ENVIRONMENT["OMPI_MCA_btl"] = "^tcp"
@@ -249,7 +256,7 @@ def main():
         with open("tip.stl", "wb") as file:
             file.write(stl(*tip(1.5, 2, 8, 4)))
 
-    whole_runs.main(files, (dies, sound, cylinder, gaps, refused, overlaps, folders, ranks, tutorial))
+    whole_runs.main(files, (dies, sound, cylinder, gaps, refused, overlaps, folders, ranks, tutorial, manual))
 
 
 main()
