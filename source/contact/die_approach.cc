@@ -105,7 +105,7 @@ namespace retroforge
                             MPI_Comm            comm,
                             const Use          &use)
     {
-      constexpr unsigned int n_samples = 7;
+      constexpr unsigned int n_samples = 8;
       const TriangleSurface &surface   = *die.surface();
       const auto [begin, end]          = share_of_rank(surface.vertices().size(), comm);
       for (std::size_t v = begin; v < end; ++v)
