@@ -7,9 +7,15 @@
 
 namespace retroforge
 {
-  /// What lies nearer than this touches [mm]: by the whole part, whatever symmetry leaves of it.
-  /// @param X  positions of the billet's nodes
+  /// What lies nearer than this touches [mm]: 1e-3 of the cube root of the whole part's volume, whatever
+  /// symmetry leaves of it.
   double touching_distance(const Scene &scene, const NodalVectors<double> &X);
+
+  /// Way of a die over the stroke [mm].
+  Vec3 path(const Parameters &parameters, const Process<double> &process, unsigned int die);
+
+  /// A place as messages have it: (x, y, z).
+  std::string in_brackets(const Vec3 &x);
 
   /// How each die stands to the billet at the start, and what becomes of it: of the billet as its measures
   /// give it, whatever its mesh.

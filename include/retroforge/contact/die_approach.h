@@ -26,7 +26,7 @@ namespace retroforge
   ///
   /// A die whose facets stand for a smooth surface, and a metal whose facets are chords of a hollow one, are
   /// in one another only where the surfaces and the facets both are: chords alone are no overlap. Edges are
-  /// measured where they pass through a face, at the sevenths between one face and the next.
+  /// measured where they pass through a face, at the eighths between one face and the next.
   Overlap find_overlap(const Die &die, const Vec3 &displacement, const MetalSurface &metal);
 
   /// The deepest vertex or edge of the die in the metal alone. Each rank finds that of its share of them.
