@@ -12,8 +12,9 @@ from retroforge_report import sections, vtu
 from retroforge_report.document import Document, bad, number
 from retroforge_report.refine import refined
 from retroforge_report.render import METAL, Scene, View
+from retroforge_report.units import readable
 from retroforge_report.vtu import Surface
-from retroforge_report.whole import clipped, symmetries, whole
+from retroforge_report.whole import clipped, symmetries, whole, within
 
 SCHEMA = 1
 FROM_ABOVE, FROM_BELOW = View([1.0, -1.6, 0.75]), View([1.0, -1.6, -0.75])
@@ -75,24 +76,26 @@ class ScenePage:
         body = whole(self.mesh.surface(), self.planes) if self.mesh else joined(dies)
         colour = METAL if self.mesh else BARE
         shown = np.concatenate([body.points, *(near(die.points, body.points) for die in dies)])
+        dies = [within(die, shown.min(axis=0), shown.max(axis=0)) for die in dies]
         figure = plt.figure(figsize=(11, 5), layout="constrained")
         for position, (title, view) in enumerate((("from above", FROM_ABOVE), ("from below", FROM_BELOW)), 1):
             scene = Scene(shown, self.use_vtk, view, margin=1.1)
-            axes = scene.draw(figure, (1, 2, position), body, np.tile(colour, (len(body.triangles), 1)), self.ways(scene),
-                              edges=bool(self.mesh), dies=dies if self.mesh else ())
+            axes = scene.draw(figure, (1, 2, position), body, np.tile(colour, (len(body.triangles), 1)), self.ways(scene, dies),
+                              edges=body if self.mesh else None, dies=dies)
             axes.set_title(title, fontsize=11)
         self.to.picture("scene", figure)
         mirrored = "The model is mirrored by its symmetry planes to the whole part. " if len(symmetries(self.planes)) > 1 else ""
         self.to.note(mirrored + "Arrows show where dies move. Of a plane die a rectangle is drawn, which has no end in the model.")
 
-    def ways(self, scene):
-        """Arrows at the dies that move, or None."""
-        moving = [(surface.points.mean(axis=0), np.array(die["velocity"], float)) for die, surface in zip(self.dies, self.surfaces) if any(die["velocity"])]
+    def ways(self, scene, dies):
+        """Arrows to the middles of the dies that move, or None."""
+        moving = [(middle(surface.points), np.array(die["velocity"], float)) for die, surface in zip(self.dies, dies)
+                  if any(die["velocity"]) and len(surface.points)]
         if not moving:
             return None
-        starts, ways = (np.array(x) for x in zip(*moving))
+        tips, ways = (np.array(x) for x in zip(*moving))
         ways *= 0.35 * scene.radius / np.linalg.norm(ways, axis=1).max()
-        return starts - ways, ways
+        return tips - ways, ways
 
     def overlaps(self):
         """(die, overlap), the deepest first."""
@@ -103,9 +106,9 @@ class ScenePage:
         if not self.surfaces:
             return
         low, high = self.extents()
-        middle, size = (low + high) / 2, np.linalg.norm(high - low)
+        centre, size = (low + high) / 2, np.linalg.norm(high - low)
         overlaps = self.overlaps()
-        marks, through = [], middle
+        marks, through = [], centre
         if overlaps:
             die, deepest = overlaps[0]
             marks.append((deepest["place"], f"{millimetres(deepest['distance'])} inside"))
@@ -116,7 +119,7 @@ class ScenePage:
                     marks.append((touch["place"], f"die {die['name']} after {millimetres(touch['distance'])}"))
         if marks:
             mark = np.array(marks[0][0], float)
-            inwards = middle - mark
+            inwards = centre - mark
             through = mark + SHIFT * size * inwards / max(np.linalg.norm(inwards), SHIFT * size)
         path = next((die["velocity"] for die in self.dies if die["leads"]), [0, 0, -1])
         planes = sections.cuts(path, through)
@@ -146,7 +149,7 @@ class ScenePage:
         rgba[gap < -TOUCHING * size] = colors.to_rgba(INSIDE)
         figure = plt.figure(figsize=(11, 5), layout="constrained")
         for position, (title, view) in enumerate((("from above", FROM_ABOVE), ("from below", FROM_BELOW)), 1):
-            axes = Scene(surface.points, self.use_vtk, view).draw(figure, (1, 2, position), fine, rgba, edges=False)
+            axes = Scene(surface.points, self.use_vtk, view).draw(figure, (1, 2, position), fine, rgba, edges=surface)
             axes.set_title(title, fontsize=11)
         figure.colorbar(mapping, ax=figure.axes, label="distance from the nearest die [mm]", shrink=0.8)
         self.to.picture("gaps", figure)
@@ -219,9 +222,15 @@ class ScenePage:
             self.to.table(("", "#"), [("speed at which the dies close [mm/s]", number(estimate["speed"], 4)),
                                       ("strain rate [1/s]", number(estimate["strain_rate"], 4)),
                                       ("flow stress [MPa]", number(estimate["stress"], 4)),
-                                      ("force of the press where the dies first press, whole part [N]", number(estimate["first_force"], 4)),
-                                      ("force after the stroke, whole part [N]", number(estimate["final_force"], 4))])
+                                      *((f"force of the press {when}, whole part [{unit}]", number(force / factor, 3))
+                                        for when, force in (("where the dies first press", estimate["first_force"]),
+                                                            ("after the stroke", estimate["final_force"])) if force is not None
+                                        for factor, unit in [readable("N", force)])])
             self.to.note(f"By the {estimate['name']}, without any forging: to a factor of two.")
+
+
+def middle(points):
+    return (points.min(axis=0) + points.max(axis=0)) / 2
 
 
 def where(cut):
