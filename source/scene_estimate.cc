@@ -24,7 +24,7 @@ namespace retroforge
     constexpr double largest_friction = 3.;
 
     /// Extents of an STL die or one by measures over that of the billet.
-    constexpr double smallest_die = 0.2, largest_die = 20.;
+    constexpr double small_die = 0.2, large_die = 20.;
 
     /// Over the height of the billet.
     constexpr double least_path = 1e-3, largest_step = 0.1;
@@ -143,7 +143,7 @@ namespace retroforge
       for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
         if (const TriangleSurface *surface = view.scene.dies[d].surface())
           if (const double ratio = surface->diagonal() / view.extent();
-              !(ratio >= smallest_die && ratio <= largest_die))
+              !(ratio >= small_die && ratio <= large_die))
             warnings.push_back(
               view.name(d) +
               (view.given(d).shape.name == "stl" ? "/scale"

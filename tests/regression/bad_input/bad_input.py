@@ -16,7 +16,7 @@ import sys
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import block_meshes  # noqa: E402
 import whole_runs  # noqa: E402
-from whole_runs import PROGRAM, ROOT, contents, judge, prm, start, summary_of, text_of, write  # noqa: E402
+from whole_runs import PROGRAM, ROOT, contents, judge, judge_message, prm, settings, start, summary_of, text_of, write  # noqa: E402
 
 CASE = prm(whole_runs.cube(10, 4, 1, 3))
 
@@ -88,10 +88,6 @@ STLS = {
     "in_metres.stl": binary_stl(*square(0.03), announced=2),
     "in_nanometres.stl": binary_stl(*square(3e7), announced=2),
 }
-
-
-def settings(*pairs):
-    return [word for pair in pairs for word in ("--set", pair)]
 
 
 # name: (arguments after the case file, what the message must say)
@@ -202,21 +198,6 @@ MISTAKES = {
 
 def run(arguments, command="gradient"):
     return start([PROGRAM, command, *arguments])
-
-
-def judge_message(name, done, pattern):
-    message = done.stderr.strip()
-    faults = []
-    if done.returncode <= 0:
-        faults.append(f"exit status {done.returncode}")
-    if len(message.splitlines()) != 1:
-        faults.append(f"{len(message.splitlines())} lines on the error stream")
-    if not re.match(r"retroforge: [^;]+: [^;]+;[^;]+;[^;]+", message):
-        faults.append("not of the form where: what; rule; remedy")
-    if not re.search(pattern, message, re.DOTALL):
-        faults.append(f"does not say {pattern}")
-    judge(name, not faults, "; ".join(faults))
-    print(f"         {message}")
 
 
 def whole_history(name, path, at_least):
