@@ -14,6 +14,7 @@
 #include <retroforge/output/safe_file.h>
 #include <retroforge/resume.h>
 #include <retroforge/run_messages.h>
+#include <retroforge/scene_estimate.h>
 
 #include <cmath>
 #include <cstdio>
@@ -404,9 +405,14 @@ namespace retroforge
   int Optimize::run()
   {
     prepare_folder();
+    std::set<std::string> warnings; // of operations that share a setting, once
+    for (std::size_t o = 0; o < operations_.size(); ++o)
+      for (const std::string &warning : estimate_scene(operations_.at(o)).warnings)
+        warnings.insert(warning);
     if (root_)
     {
       print_begin(case_);
+      print_warnings({warnings.begin(), warnings.end()});
       print_search();
       say_when_stopped("stopped; the same command with --resume goes on with the designs that are forged");
     }

@@ -6,6 +6,7 @@
 #include <retroforge/core/parameter_list.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/parameters.h>
+#include <retroforge/time/closing_speed.h>
 
 #include <algorithm>
 #include <cctype>
@@ -19,7 +20,7 @@ namespace retroforge
 
   namespace
   {
-    /// Below it the friction of a sticking node is infinitely stiff, in the leading die's speed.
+    /// Below it the friction of a sticking node is infinitely stiff, in the dies' closing speed.
     constexpr double least_slip = 1e-20;
   } // namespace
 
@@ -48,7 +49,7 @@ namespace retroforge
     prm.add_parameter(
       "edge sinking",
       edge_sinking,
-      "Part of the leading die's speed at which an edge sinks into a die under the mean pressure: the "
+      "Part of the dies' closing speed at which an edge sinks into a die under the mean pressure: the "
       "penalty of edges, softer than the nodes'. Units: none.",
       Double(1e-14, 1.));
     prm.add_parameter(
@@ -62,24 +63,27 @@ namespace retroforge
       layer,
       "Bends the speed at which a gap may close, so that the force on an arriving node sets in gradually: "
       "smooths the objective at less bias than `approach' does. 0.5 is moderate, 0.3 strong, 0.1 the least; "
-      "0, or the sharp law, for none. In units of approach times the increment's stroke. Units: none.",
+      "0, or the sharp law, for none. In units of approach times the path by which the dies close in an "
+      "increment: its stroke, where one die moves. Units: none.",
       Double(0.));
     prm.add_parameter(
       "ramp width",
       ramp_width,
-      "Gap over which friction sets in, in units of approach times the increment's stroke. Units: none.",
+      "Gap over which friction sets in, in units of approach times the path by which the dies close in an "
+      "increment: its stroke, where one die moves. Units: none.",
       Double(1e-6, 100.));
     prm.add_parameter(
       "penetration",
       penetration,
-      "Part of the leading die's speed at which a node sinks into a die under the mean pressure: sets the "
+      "Part of the dies' closing speed at which a node sinks into a die under the mean pressure: sets the "
       "penalty. Units: none.",
       Double(1e-14, 1.));
     prm.add_parameter("penalty", penalty, "rho; 0 takes it from `penetration`. Units: MPa s/mm.", Double(0.));
     prm.add_parameter(
       "slip regularisation",
       slip_fraction,
-      "v0 in |dv|^2 -> |dv|^2 + v0^2, as a part of the leading die's speed. Part of the model. Units: none.",
+      "v0 in |dv|^2 -> |dv|^2 + v0^2, as a part of the speed at which the dies close, that of the moving die "
+      "where there is one. Part of the model. Units: none.",
       Double(0.));
     prm.leave_subsection();
   }
@@ -479,7 +483,6 @@ end
   void Parameters::check_all()
   {
     billet.check();
-    material.check();
     contact.check();
     remeshing.check();
     scan.check();
@@ -567,11 +570,11 @@ end
     require(is_sound(mean_pressure(size.height)), "Material", "the flow stress");
     require(is_sound(made.contact.rho), "Contact", "the penalty (with the speed and the material)");
     // In words of Contact/penetration, and within its bounds.
-    const double penetration = mean_pressure(size.height) / (made.contact.rho * made.speed());
+    const double penetration = mean_pressure(size.height) / (made.contact.rho * closing_speed(made.dies));
     if (contact.penalty > 0. && !(penetration >= 1e-14 && penetration <= 1.))
       throw Error("Contact/penalty",
                   "is " + as_text(contact.penalty) + " MPa s/mm, with which nodes sink in at " +
-                    as_text(penetration) + " times the leading die's speed",
+                    as_text(penetration) + " times the speed at which the dies close",
                   "as for Contact/penetration that must be from 1e-14 to 1",
                   "leave it 0 and set Contact/penetration");
     const double n_cells =
@@ -590,7 +593,7 @@ end
     if (press.increments == 0)
     {
       constexpr double most   = 1e9;
-      const double     number = std::max(1., std::ceil(press.stroke / smooth_step - 1e-9));
+      const double     number = std::max(1., std::ceil(closing_path() / smooth_step - 1e-9));
       if (!(number <= most))
         throw Error("Press/stroke",
                     "is so long that it takes " + as_text(number) + " increments",
@@ -600,25 +603,37 @@ end
     }
     check_derived(size);
     const Process<double> made = process(size);
-    edge_stiffness_ =
-      std::min(1., mean_pressure(size.height) / (contact.edge_sinking * made.speed()) / made.contact.rho);
+    edge_stiffness_            = std::min(
+      1., mean_pressure(size.height) / (contact.edge_sinking * closing_speed(made.dies)) / made.contact.rho);
     return *this;
+  }
+
+  double Parameters::closing_path() const
+  {
+    return press.stroke * (closing_speed(initial_states()) / dies[leading_die()].velocity.norm());
+  }
+
+  std::vector<DieState<double>> Parameters::initial_states() const
+  {
+    std::vector<DieState<double>> states;
+    for (const DieParameters &die : dies)
+      states.push_back(die.initial_state());
+    return states;
   }
 
   double Parameters::mean_pressure(const double height) const
   {
-    const double rate = dies[leading_die()].velocity.norm() / height;
-    return material.law(1.5 * rate * rate) * 1.5 * rate;
+    const double rate = closing_speed(initial_states()) / height;
+    return material.law_at(rate)(1.5 * rate * rate) * 1.5 * rate;
   }
 
   Process<double> Parameters::process(const BilletSize &size) const
   {
     Process<double> process;
-    process.law         = material.law;
+    process.dies        = initial_states();
     process.leading_die = leading_die();
-    for (const DieParameters &die : dies)
-      process.dies.push_back(die.initial_state());
-    const double speed = process.speed();
+    const double speed  = closing_speed(process.dies);
+    process.law         = material.law_at(speed / size.height);
     process.contact.rho =
       contact.penalty > 0. ? contact.penalty : mean_pressure(size.height) / (contact.penetration * speed);
     process.contact.v0 = contact.slip_fraction * speed;
@@ -627,13 +642,10 @@ end
 
   Objectives Parameters::make_objectives(const std::vector<Die> &made_dies, const TetMesh &made_billet) const
   {
-    std::vector<DieState<double>> states;
-    for (const DieParameters &die : dies)
-      states.push_back(die.initial_state());
     Objectives made;
     for (const ObjectiveParameters &objective : objectives.all)
       made.push_back(objective.make({made_dies,
-                                     states,
+                                     initial_states(),
                                      leading_die(),
                                      press.stroke,
                                      material.law.K,
@@ -652,18 +664,19 @@ end
   {
     StepModel    model;
     const double step            = press.stroke / press.increments;
+    const double closing         = closing_path() / press.increments;
     model.scheme                 = Scheme::by_name(press.scheme);
     model.edges_touch            = contact.points == "nodes and edges";
     model.contact.approach       = contact.approach;
     model.contact.ramp.sharp     = contact.law == "sharp";
     model.contact.edge_stiffness = edge_stiffness_;
-    model.contact.ramp.width     = contact.ramp_width * contact.approach * step;
+    model.contact.ramp.width     = contact.ramp_width * contact.approach * closing;
     const double layer           = model.contact.ramp.sharp ? 0. : contact.layer;
-    model.contact.layer          = layer * contact.approach * step;
+    model.contact.layer          = layer * contact.approach * closing;
     model.contact.step           = step;
-    // Where a node at rest meets the approach speed.
+    // Where a node meets the approach speed that closes at that of the dies.
     const double arrival = layer == 0. ? 1. : layer * std::sinh(1. / layer);
-    model.reach          = std::max({3., 3. * contact.ramp_width, 1.5 * arrival}) * contact.approach * step;
+    model.reach = std::max({3., 3. * contact.ramp_width, 1.5 * arrival}) * contact.approach * closing;
     model.adjoint_tolerance = adjoint.tolerance;
     model.shape_derivatives = adjoint.shape_derivatives();
     return model;

@@ -5,6 +5,7 @@
 #include <retroforge/optimize.h>
 #include <retroforge/program.h>
 #include <retroforge/scan.h>
+#include <retroforge/scene_view.h>
 #include <retroforge/simulation.h>
 
 #include <chrono>
@@ -38,6 +39,8 @@ namespace retroforge
         return Scan(command, environment, MPI_COMM_WORLD).run();
       if (command.command == "optimize")
         return Optimize(command, MPI_COMM_WORLD).run();
+      if (command.command == "scene")
+        return SceneView(command, MPI_COMM_WORLD).run();
       return Simulation(command, MPI_COMM_WORLD).run();
     }
     catch (...)

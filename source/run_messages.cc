@@ -19,31 +19,63 @@ namespace retroforge
   {
     constexpr double many_cells = 1e6;
 
-    void note_fineness(const std::string &parameter, const double element_size, const double n_cells)
+    /// Nothing where it makes no millions.
+    std::vector<std::string>
+    note_on_fineness(const std::string &parameter, const double element_size, const double n_cells)
     {
-      if (n_cells > many_cells)
-        std::cout << "  note: " << parameter << " = " << element_size << " makes about " << as_text(n_cells)
-                  << " tetrahedra; expect hours, and gigabytes of memory\n"
-                  << std::flush;
+      if (!(n_cells > many_cells))
+        return {};
+      return {parameter + " = " + as_text(element_size) + " makes about " + as_text(n_cells) +
+              " tetrahedra; expect hours, and gigabytes of memory"};
     }
 
     /// An outer rim is what open dies have; another one may be that of a facet that an export lost.
-    void note_holes(const Die &die)
+    std::vector<std::string> notes_on_holes(const Die &die)
     {
+      std::vector<std::string> notes;
       if (!die.surface())
-        return;
+        return notes;
       const std::vector<SurfaceRim> rims = find_rims(*die.surface());
       for (std::size_t i = 1; i < rims.size(); ++i)
-        std::cout << "  note: the surface of die " << die.name << " has another rim, "
-                  << as_text(rims[i].length) << " mm around, at (" << rims[i].centre[0] << ", "
-                  << rims[i].centre[1] << ", " << rims[i].centre[2]
-                  << "): a hole, or a part by itself; if it is not meant, repair the file\n";
+        notes.push_back("the surface of die " + die.name + " has another rim, " + as_text(rims[i].length) +
+                        " mm around, at (" + as_text(rims[i].centre[0]) + ", " + as_text(rims[i].centre[1]) +
+                        ", " + as_text(rims[i].centre[2]) +
+                        "): a hole, or a part by itself; if it is not meant, repair the file");
+      return notes;
+    }
+
+    void print_notes(const std::vector<std::string> &notes)
+    {
+      for (const std::string &note : notes)
+        std::cout << "  note: " << note << '\n';
+      std::cout << std::flush;
     }
   } // namespace
 
   void print_meshing(const Parameters &parameters)
   {
-    note_fineness("Billet/element size", parameters.billet.element_size, expected_cells(parameters.billet));
+    print_notes(note_on_fineness(
+      "Billet/element size", parameters.billet.element_size, expected_cells(parameters.billet)));
+  }
+
+  std::vector<std::string> notes_on(const Case &at)
+  {
+    std::vector<std::string> notes = at.parameters.without_effect;
+    const auto               add   = [&](const std::vector<std::string> &more) {
+      notes.insert(notes.end(), more.begin(), more.end());
+    };
+    for (const Die &die : at.model.dies)
+      add(notes_on_holes(die));
+    if (const double size = at.parameters.remeshing.element_size;
+        size > 0. && at.parameters.remeshing.when != "never")
+      add(
+        note_on_fineness("Remeshing/element size", size, expected_cells(std::pow(at.size().side, 3), size)));
+    if (at.process.stretch != 1.)
+      notes.push_back("die " + at.parameters.dies[at.process.leading_die].name +
+                      " follows the billet: its path is " +
+                      as_text(at.process.stretch * at.parameters.press.stroke) +
+                      " mm, told as the nominal design's " + as_text(at.parameters.press.stroke) + " mm");
+    return notes;
   }
 
   void print_begin(const Case &at)
@@ -56,17 +88,13 @@ namespace retroforge
               << at.billet.n_cells() << " tetrahedra, " << ranks << " rank(s), BLAS: " << blas_in_use()
               << '\n'
               << note_on_load(ranks, load, std::thread::hardware_concurrency());
-    for (const std::string &sentence : at.parameters.without_effect)
-      std::cout << "  note: " << sentence << '\n';
-    for (const Die &die : at.model.dies)
-      note_holes(die);
-    if (const double size = at.parameters.remeshing.element_size;
-        size > 0. && at.parameters.remeshing.when != "never")
-      note_fineness("Remeshing/element size", size, expected_cells(std::pow(at.size().side, 3), size));
-    if (at.process.stretch != 1.)
-      std::cout << "  note: die " << at.parameters.dies[at.process.leading_die].name
-                << " follows the billet: its path is " << at.process.stretch * at.parameters.press.stroke
-                << " mm, told as the nominal design's " << at.parameters.press.stroke << " mm\n";
+    print_notes(notes_on(at));
+  }
+
+  void print_warnings(const std::vector<std::string> &warnings)
+  {
+    for (const std::string &sentence : warnings)
+      std::cout << "  warning: " << sentence << '\n';
     std::cout << std::flush;
   }
 

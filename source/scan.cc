@@ -7,8 +7,10 @@
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/resume.h>
+#include <retroforge/run_messages.h>
 #include <retroforge/scan.h>
 #include <retroforge/scene_checks.h>
+#include <retroforge/scene_estimate.h>
 #include <retroforge/time/leg.h>
 
 #include <cctype>
@@ -83,6 +85,7 @@ namespace retroforge
     Timings    timings;
     const Case scene(one_run, timings, comm);
     check_scene(scene.parameters, Leg(scene.billet, scene.model, timings).scene, scene.process, scene.X_0);
+    warnings_   = estimate_scene(scene).warnings;
     echo_       = scene.echo;
     parameters_ = scene.parameters;
     make_lines(scene);
@@ -209,6 +212,8 @@ namespace retroforge
                 at_a_time());
     for (const std::string &sentence : parameters_.without_effect)
       std::printf("  note: %s\n", sentence.c_str());
+    std::fflush(stdout);
+    print_warnings(warnings_);
     if (command_.resume)
       std::printf("  %zu of them are finished and reused\n", all - points.size());
     std::fflush(stdout);

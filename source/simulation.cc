@@ -15,6 +15,7 @@
 #include <retroforge/run_messages.h>
 #include <retroforge/run_summary.h>
 #include <retroforge/scene_checks.h>
+#include <retroforge/scene_estimate.h>
 #include <retroforge/simulation.h>
 
 #include <algorithm>
@@ -78,8 +79,8 @@ namespace retroforge
       , forging_(case_.model, case_.parameters.press, remesher_, timings_)
       , trace_(case_.objectives, case_.model, case_.process)
       , recording_(command.output_directory, kept_in_memory(case_))
+      , warnings_(check_scene(case_.parameters, first_leg_->scene, case_.process, case_.X_0))
   {
-    check_scene(case_.parameters, first_leg_->scene, case_.process, case_.X_0);
   }
 
   int Simulation::run()
@@ -91,6 +92,8 @@ namespace retroforge
       check_outputs();
       write_inputs();
       print_begin(case_);
+      print_warnings(warnings_);
+      print_warnings(estimate_scene(case_.parameters, first_leg_->scene, case_.process, case_.X_0).warnings);
     }
     try
     {

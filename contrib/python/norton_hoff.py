@@ -5,6 +5,11 @@
 
     norton_hoff.py                   K and m of some steels, from published flow curves
     norton_hoff.py 1:75.7 10:110.7   K and m of a flow stress of 75.7 MPa at 1 /s and 110.7 MPa at 10 /s
+    norton_hoff.py --m 0.14 --tresca 0.3 --length 10
+                                     alpha of Tresca's factor 0.3 where the slip speed is 10 mm times the strain rate
+    norton_hoff.py 1:75.7 10:110.7 --coulomb 0.1 --pressure 2 --slip 25 --rate 2.5
+                                     K, m, and alpha of Coulomb's 0.1 where the pressure is twice the flow stress, at
+                                     a slip of 25 mm/s and a strain rate of 2.5 /s
 
 Stresses in MPa, strain rates in 1/s, slip speeds in mm/s, temperatures in degrees Celsius.
 """
@@ -84,17 +89,64 @@ def point(text):
     return rate, stress
 
 
-def main():
-    parser = argparse.ArgumentParser(description="K and m of the Norton-Hoff law from two flow stresses.")
+def positive(text):
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text} is no positive number")
+    return value
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description="K and m of the Norton-Hoff law from two flow stresses, and alpha of its friction "
+                                                 "from the factor of Tresca or Coulomb's coefficient.")
     parser.add_argument("points", nargs="*", type=point, metavar="RATE:STRESS", help="two points, in 1/s and MPa")
-    points = parser.parse_args().points
-    if not points:
-        print(table())
-    elif len(points) == 2 and points[0][0] != points[1][0]:
-        K, m = law_through(*points[0], *points[1])
-        print(f"consistency {K:.6g} MPa s^m, strain rate sensitivity {m:.4g}")
-    else:
+    parser.add_argument("--m", type=positive, help="strain rate sensitivity, instead of two points")
+    law = parser.add_mutually_exclusive_group()
+    law.add_argument("--tresca", type=positive, metavar="FACTOR", help="friction over the shear flow stress, up to 1")
+    law.add_argument("--coulomb", type=positive, metavar="COEFFICIENT", help="friction over the contact pressure")
+    parser.add_argument("--pressure", type=positive, default=1., metavar="RATIO",
+                        help="contact pressure over flow stress, with --coulomb (default: 1)")
+    parser.add_argument("--slip", type=positive, help="slip speed [mm/s], with --rate")
+    parser.add_argument("--rate", type=positive, help="equivalent strain rate [1/s]")
+    parser.add_argument("--length", type=positive, help="slip speed over strain rate [mm], instead of these two: half the radius "
+                                                        "of a cylinder that is upset")
+    options = parser.parse_args()
+    if options.points and (len(options.points) != 2 or options.points[0][0] == options.points[1][0]):
         parser.error("give two points at different strain rates, or none for the table")
+    options.of_friction = options.tresca is not None or options.coulomb is not None
+    if options.of_friction:
+        check_friction(parser, options)
+    elif options.m or options.slip or options.rate or options.length:
+        parser.error("name the friction that is converted: --tresca or --coulomb")
+    return options
+
+
+def check_friction(parser, options):
+    if bool(options.points) == (options.m is not None):
+        parser.error("give m by --m or by two points")
+    if (options.length is None) == (options.slip is None) or (options.slip is None) != (options.rate is None):
+        parser.error("give --length, or --slip and --rate")
+    factor = options.tresca or math.sqrt(3) * options.coulomb * options.pressure
+    if factor > 1:
+        parser.error(f"the friction would be {factor:.3g} times the shear flow stress: beyond 1 the metal sticks and shears inside")
+
+
+def main():
+    options = parse_arguments()
+    m = options.m
+    if options.points:
+        K, m = law_through(*options.points[0], *options.points[1])
+        print(f"consistency {K:.6g} MPa s^m, strain rate sensitivity {m:.4g}")
+    elif not options.of_friction:
+        print(table())
+    if options.of_friction:
+        slip, rate = (options.length, 1.) if options.length else (options.slip, options.rate)
+        alpha = (friction_of_tresca(options.tresca, m, slip, rate) if options.tresca else
+                 friction_of_coulomb(options.coulomb, options.pressure, m, slip, rate))
+        print(f"friction {alpha:.4g} mm^-m")
 
 
 if __name__ == "__main__":

@@ -7,4 +7,5 @@ vtu      reads one VTU file            shapes  draws billet and dies, render  th
 effects  ranks parameters              units   as the page shows them
 document headings, tables, pictures    page    the sections of the page
 screen   a virtual one for VTK         gallery the page of the tutorial's scenes
+scenes   the page of a scene           sections billet and dies cut by planes
 """

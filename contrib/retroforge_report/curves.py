@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt  # noqa: E402 (after the choice of the backend)
 import numpy as np  # noqa: E402
 
 from retroforge_report.effects import relative_gradient  # noqa: E402
-from retroforge_report.units import bracketed, pretty  # noqa: E402
+from retroforge_report.units import bracketed, pretty, readable  # noqa: E402
 
 INK, BLUE, ORANGE, GREEN, PURPLE = "#333333", "#0072b2", "#d55e00", "#009e73", "#8e5aa8"  # colour-blind safe
 MOST_BARS = 30
@@ -27,24 +27,25 @@ plt.rcParams.update({
 def forging(history, energy_unit):
     """Force and energy over the stroke: of the model, and where symmetry cut it, of the whole part on a second scale."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 3.8), layout="constrained")
-    _over_stroke(left, history, history["force"], "press force [N]", BLUE)
-    _over_stroke(right, history, history["energy"], bracketed("energy", energy_unit or "mJ"), ORANGE)
-    for axes, name in ((left, "force"), (right, "energy")):
-        _add_whole(axes, history, name)
-    for axes in (left, right):
+    for axes, name, label, unit, color in ((left, "force", "press force", "N", BLUE),
+                                           (right, "energy", "energy", energy_unit or "mJ", ORANGE)):
+        factor, readable_unit = readable(unit, np.nanmax(np.abs(history[name])))
+        _over_stroke(axes, history, history[name] / factor, bracketed(label, readable_unit), color)
+        _add_whole(axes, history, name, label, unit, factor)
         axes.set_ylim(bottom=min(0, axes.get_ylim()[0]))
         axes.ticklabel_format(axis="y", style="sci", scilimits=(-2, 4), useMathText=True)
     return figure
 
 
-def _add_whole(axes, history, name):
+def _add_whole(axes, history, name, label, unit, model_factor):
     whole, model = history.get(f"whole_{name}"), history[name]
     if whole is None or not np.all(np.isfinite(whole)) or np.array_equal(whole, model):
         return
-    factor = whole[-1] / model[-1]
+    factor, readable_unit = readable(unit, np.abs(whole).max())
+    ratio = whole[-1] / model[-1] * model_factor / factor
     axes.set_ylabel(axes.get_ylabel() + " of the model")
-    second = axes.secondary_yaxis("right", functions=(lambda y: factor * y, lambda y: y / factor))
-    second.set_ylabel("of the whole part")
+    second = axes.secondary_yaxis("right", functions=(lambda y: ratio * y, lambda y: y / ratio))
+    second.set_ylabel(bracketed(label, readable_unit) + " of the whole part")
     second.ticklabel_format(axis="y", style="sci", scilimits=(-2, 4), useMathText=True)
 
 
@@ -80,10 +81,11 @@ def objectives(strokes, columns):
     figure, panels = _grid(len(shown), height=2.6)
     for axes, column in zip(panels, shown):
         parts = [c for c in columns if c.of == column.name and np.isfinite(c.values).any()]
+        factor, unit = readable(column.unit, np.nanmax(np.abs(column.values)))
         for part, color in zip(parts, (ORANGE, GREEN, PURPLE)):
-            axes.plot(strokes, part.values, ".-", color=color, linewidth=1.2, markersize=4, label=part.name)
-        axes.plot(strokes, column.values, ".-", color=BLUE)
-        axes.set(xlabel="stroke [mm]", ylabel=pretty(column.unit))
+            axes.plot(strokes, part.values / factor, ".-", color=color, linewidth=1.2, markersize=4, label=part.name)
+        axes.plot(strokes, column.values / factor, ".-", color=BLUE)
+        axes.set(xlabel="stroke [mm]", ylabel=pretty(unit))
         axes.set_title(column.name, fontsize=11)
         axes.set_xlim(0, 1.02 * strokes.max())
         axes.ticklabel_format(axis="y", style="sci", scilimits=(-2, 4), useMathText=True)

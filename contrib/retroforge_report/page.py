@@ -36,6 +36,8 @@ class Page:
         elif not self.run.finished:
             self.to.heading("The run was stopped, or goes on still")
             self.to.note("The same command with --resume goes on from its last increment.")
+        for warning in self.run.summary.get("warnings", []):
+            self.to.note(bad(f"Warning: {warning}"))
         if self.run.summary.get("check_remaining"):
             self.to.note(bad(f"{self.run.summary['check_remaining']} directions are not checked."))
 
@@ -73,7 +75,9 @@ class Page:
         self.to.picture("shapes", shapes.forging(self.run, self.use_vtk))
         if len(self.run.final.workpiece.symmetry_planes):
             self.to.note("Mirrored by the symmetry planes to the whole part, where they bound one, and cut open along them for "
-                         "what is inside. Fields are those of the last equilibrium solved; fields.pvd has more of them.")
+                         "what is inside. Fields are those of the last equilibrium solved, those of cells as means over the cells around "
+                         "each node; the contact pressure is evened out over the faces around each node. fields.pvd has them as "
+                         "computed, and more of them.")
 
     def force(self):
         if self.run.history is None:
@@ -192,7 +196,7 @@ class Page:
             self.to.picture("conduct", curves.health(history, summary.get("volume_initial")))
         rows = [(key.replace("_", " "), number(summary[key])) for key in
                 ("increments", "cuts", "newton_iterations", "krylov_iterations", "linear_solves_forward",
-                 "linear_solves_adjoint", "volume_initial", "volume_final", "record_bytes") if key in summary]
+                 "linear_solves_adjoint", "volume_of_shape", "volume_initial", "volume_final", "record_bytes") if key in summary]
         before, after = summary.get("volume_initial"), summary.get("volume_final")
         if before and after is not None:
             rows.append(("relative change of volume", f"{after / before - 1:.2e}"))

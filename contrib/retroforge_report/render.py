@@ -2,10 +2,12 @@
 # Copyright (C) 2026 The Retroforge authors
 """Draws a coloured surface and arrows: by VTK when it is there, by matplotlib otherwise."""
 import numpy as np
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 METAL = (0.72, 0.74, 0.77, 1.0)
-DIE = (0.45, 0.52, 0.62, 0.22)  # seen through
+DIE = (0.36, 0.47, 0.62, 0.3)  # seen through
+DIE_EDGE = (0.16, 0.24, 0.36)
+SHARP = 30  # degrees by which a die turns at the edges that are drawn
 PIXELS = 900
 SHADING = {True: 0.15, False: 0.3}  # with edges, without: little, so that colours stay close to the scale
 
@@ -46,10 +48,10 @@ class Scene:
         self.half_width, self.half_height = margin * np.maximum(extent, 0.3 * extent.max())
         self.use_vtk, self.view = use_vtk, view
 
-    def draw(self, figure, position, surface, rgba, arrows=None, edges=True, dies=()):
+    def draw(self, figure, position, surface, rgba, arrows=None, edges=None, dies=()):
         """Into one place of a figure. `rgba`: one colour per triangle. `arrows`: (origins, vectors). `dies`: surfaces.
 
-        Without the edges of triangles there is more shading instead.
+        `edges`: the surface whose edges are drawn, which may be one with fewer triangles; without, there is more shading instead.
         """
         if self.use_vtk:
             axes = figure.add_subplot(*position)
@@ -61,16 +63,33 @@ class Scene:
         return axes
 
 
+def sharp_edges(surface):
+    """Ends (edge, 2, 3) of the edges where the surface ends, or turns by much. Points at one place count as one."""
+    size = np.ptp(surface.points, axis=0).max() if len(surface.points) else 1.0
+    _, node = np.unique(np.round(surface.points / (1e-6 * size or 1.0)), axis=0, return_inverse=True)
+    pairs = np.concatenate([surface.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+    areas = surface.area_vectors()
+    normals = np.tile(areas / np.maximum(np.linalg.norm(areas, axis=1), 1e-300)[:, None], (3, 1))
+    _, first, edge, count = np.unique(np.sort(node.reshape(-1)[pairs], axis=1), axis=0, return_index=True, return_inverse=True,
+                                      return_counts=True)
+    sums = np.zeros((len(first), 3))
+    np.add.at(sums, edge.reshape(-1), normals)
+    # Two unit normals that turn by an angle have a sum of length 2 cos(angle/2).
+    is_sharp = (count == 1) | ((count == 2) & (np.linalg.norm(sums, axis=1) < 2 * np.cos(np.radians(SHARP / 2))))
+    return surface.points[pairs[first[is_sharp]]]
+
+
 def _plot(scene, axes, surface, rgba, arrows, edges, dies):
     normals = surface.area_vectors()
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     shaded = rgba.copy()
-    shading = SHADING[edges]
+    shading = SHADING[edges is not None]
     shaded[:, :3] *= (1 - shading + shading * np.clip(normals @ scene.view.light, -1, 1))[:, None]
     axes.add_collection3d(Poly3DCollection(surface.points[surface.triangles], facecolors=shaded,
-                                           edgecolors=(0.2, 0.2, 0.2, 0.35) if edges else shaded, linewidths=0.2))
+                                           edgecolors=(0.2, 0.2, 0.2, 0.35) if edges is surface else shaded, linewidths=0.2))
     for die in dies:
         axes.add_collection3d(Poly3DCollection(die.points[die.triangles], facecolors=DIE))
+        axes.add_collection3d(Line3DCollection(sharp_edges(die), colors=[DIE_EDGE], linewidths=0.6))
     if arrows:
         axes.computed_zorder = False  # by order of drawing: arrows begin where the surface faces the eye
         axes.quiver(*arrows[0].T, *arrows[1].T, color="#b03000", linewidth=0.8)
@@ -86,11 +105,16 @@ def _render(scene, surface, rgba, arrows, edges, dies):
     """Off-screen picture as an array (rows, columns, 3)."""
     import vtk
     from vtk.util.numpy_support import vtk_to_numpy
+    vtk.vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(1, 1, 1)
-    renderer.AddActor(_surface_actor(vtk, surface, rgba, edges))
+    renderer.AddActor(_surface_actor(vtk, surface, rgba, edges is not None))
+    if edges is not None:
+        renderer.AddActor(_line_actor(vtk, edges.points[_edges_of(edges)], (0.25, 0.25, 0.25), 0.6))
     for die in dies:
-        renderer.AddActor(_die_actor(vtk, die))
+        if len(die.triangles):
+            renderer.AddActor(_die_actor(vtk, die))
+            renderer.AddActor(_line_actor(vtk, sharp_edges(die), DIE_EDGE, 1.4))
     if arrows:
         renderer.AddActor(_arrow_actor(vtk, *arrows))
     view = scene.view
@@ -145,7 +169,32 @@ def _die_actor(vtk, surface):
     return actor
 
 
-def _surface_actor(vtk, surface, rgba, edges):
+def _edges_of(surface):
+    """Pairs of points, each edge once."""
+    pairs = np.concatenate([surface.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+    return np.unique(np.sort(pairs, axis=1), axis=0)
+
+
+def _line_actor(vtk, ends, color, width):
+    """Of segments (n, 2, 3)."""
+    from vtk.util.numpy_support import numpy_to_vtkIdTypeArray
+    data = vtk.vtkPolyData()
+    data.SetPoints(_vtk_points(vtk, ends.reshape(-1, 3)))
+    lines, n = vtk.vtkCellArray(), len(ends)
+    lines.SetData(numpy_to_vtkIdTypeArray(np.arange(0, 2 * n + 1, 2), deep=True), numpy_to_vtkIdTypeArray(np.arange(2 * n), deep=True))
+    data.SetLines(lines)
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -2)  # before the triangles they bound
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(*color)
+    actor.GetProperty().SetLineWidth(width)
+    actor.GetProperty().LightingOff()
+    return actor
+
+
+def _surface_actor(vtk, surface, rgba, with_edges):
     from vtk.util.numpy_support import numpy_to_vtk
     data = _poly_data(vtk, surface)
     data.GetCellData().SetScalars(numpy_to_vtk((255 * rgba[:, :3]).astype(np.uint8), deep=True))
@@ -155,11 +204,8 @@ def _surface_actor(vtk, surface, rgba, edges):
     actor.SetMapper(mapper)
     appearance = actor.GetProperty()
     appearance.SetInterpolationToFlat()
-    appearance.SetAmbient(0.93 - SHADING[edges])
-    appearance.SetDiffuse(0.1 + SHADING[edges])
-    appearance.SetEdgeVisibility(edges)
-    appearance.SetEdgeColor(0.25, 0.25, 0.25)
-    appearance.SetLineWidth(0.6)
+    appearance.SetAmbient(0.93 - SHADING[with_edges])
+    appearance.SetDiffuse(0.1 + SHADING[with_edges])
     return actor
 
 

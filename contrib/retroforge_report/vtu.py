@@ -40,11 +40,14 @@ class Surface:
 
     def nodal_areas(self):
         """One third of the areas of the triangles around each point; not below the length of their area vector."""
-        areas = np.zeros(len(self.points))
-        sizes = np.linalg.norm(self.area_vectors(), axis=1) / 3
+        return self.nodal_sums(np.linalg.norm(self.area_vectors(), axis=1) / 3)
+
+    def nodal_sums(self, values):
+        """Of the triangles around each point."""
+        sums = np.zeros(len(self.points))
         for corner in range(3):
-            np.add.at(areas, self.triangles[:, corner], sizes)
-        return areas
+            np.add.at(sums, self.triangles[:, corner], values)
+        return sums
 
     def to_triangles(self, nodal):
         return nodal[self.triangles].mean(axis=1)
@@ -68,6 +71,16 @@ class Mesh:
             faces, owner = self._boundary()
         node, triangles = np.unique(faces, return_inverse=True)
         return Surface(self.points[node], triangles.reshape(-1, 3), owner, node)
+
+    def to_nodes(self, cell_values):
+        """Means over the tetrahedra around each node, by their volume."""
+        a, b, c, d = (self.points[self.cells[:, i]] for i in range(4))
+        volumes = np.abs(np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a))
+        sums, weights = np.zeros(len(self.points)), np.zeros(len(self.points))
+        for corner in range(4):
+            np.add.at(sums, self.cells[:, corner], volumes * cell_values)
+            np.add.at(weights, self.cells[:, corner], volumes)
+        return sums / weights
 
     def _boundary(self):
         """Faces of one cell only, and that cell."""

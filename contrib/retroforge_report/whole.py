@@ -78,6 +78,12 @@ def clipped(surface, planes):
     return Surface(corners.reshape(-1, 3), node.reshape(-1, 3), cell, node)
 
 
+def within(surface, low, high):
+    """The part of a surface in a box."""
+    axes = np.eye(3)
+    return clipped(surface, [np.concatenate(plane) for plane in [*((low, -axis) for axis in axes), *((high, axis) for axis in axes)]])
+
+
 def _clip(corners, cell, distance):
     """Triangles cut where their corners' distances change from negative, inside, to positive."""
     inside = distance <= 0

@@ -154,6 +154,9 @@ namespace retroforge
 
     double edge_stiffness_ = 1.; ///< of edges' penalty over the nodes', once settled
 
+    /// By which the dies close over the stroke [mm]: the stroke itself, where one die moves.
+    double                        closing_path() const;
+    std::vector<DieState<double>> initial_states() const;
     /// Of a frictionless upsetting [MPa].
     double       mean_pressure(double height) const;
     void         check_all();

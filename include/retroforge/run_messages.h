@@ -9,8 +9,14 @@ namespace retroforge
   /// Before a mesh of millions of tetrahedra is made, which takes minutes: how many there will be.
   void print_meshing(const Parameters &parameters);
 
-  /// What runs: version, size, and what a user may not expect of it.
+  /// What a user may not expect of a case, a sentence each.
+  std::vector<std::string> notes_on(const Case &at);
+
+  /// What runs: version, size, and the notes on it.
   void print_begin(const Case &at);
+
+  /// What is doubtful about a scene, or out of all proportion, a sentence each.
+  void print_warnings(const std::vector<std::string> &warnings);
 
   /// Where a run goes on from, and with what.
   /// @param is_left  whether some of the stroke is

@@ -37,7 +37,8 @@ namespace retroforge
 
     const CommandLine              command_;
     const std::vector<std::string> environment_;
-    std::string                    echo_; ///< the parameters as understood
+    std::string                    echo_;     ///< the parameters as understood
+    std::vector<std::string>       warnings_; ///< of the scene
     Parameters                     parameters_;
     std::vector<ScanLine>          lines_;
   };

@@ -513,14 +513,38 @@ namespace retroforge
       "Billet", [&]() { return make_on_one_rank(parameters); }, communicator);
   }
 
+  double whole_volume(const BilletParameters &p)
+  {
+    return p.shape == "box"        ? p.size[0] * p.size[1] * p.size[2]
+           : p.shape == "cylinder" ? M_PI * p.radius * p.radius * p.height
+           : p.shape == "ring"     ? volume_of_revolution(p.ring.section())
+           : p.shape == "profile"  ? volume_of_revolution(p.profile.section())
+                                   : 0.;
+  }
+
+  void snap_to_shape(const BilletParameters &parameters, TetMesh &mesh)
+  {
+    if (parameters.shape == "file")
+      return;
+    const std::vector<PatchShape> known = shapes_of(solid_of(parameters));
+    std::vector<PatchShape>       shapes;
+    for (const Patch &patch : mesh.patches)
+      for (const PatchShape &shape : known)
+        if (shape.patch.name == patch.name)
+          shapes.push_back(shape);
+    AssertThrow(shapes.size() == mesh.patches.size(), dealii::ExcInternalError());
+    const Vec3   axis   = parameters.rotation_axis / parameters.rotation_axis.norm();
+    const double angle  = parameters.rotation_angle * M_PI / 180;
+    const auto   turned = [&](const Vec3 &x, const double by) { return by == 0 ? x : rotate(x, axis, by); };
+    for (Vec3 &x : mesh.X)
+      x = turned(x - parameters.translation, -angle);
+    snap_nodes(mesh, shapes);
+    for (Vec3 &x : mesh.X)
+      x = turned(x, angle) + parameters.translation;
+  }
+
   double expected_cells(const BilletParameters &p)
   {
-    if (p.shape == "file")
-      return 0.;
-    const double body = p.shape == "box"       ? p.size[0] * p.size[1] * p.size[2]
-                        : p.shape == "ring"    ? volume_of_revolution(p.ring.section())
-                        : p.shape == "profile" ? volume_of_revolution(p.profile.section())
-                                               : M_PI * p.radius * p.radius * p.height;
-    return expected_cells(body, p.element_size);
+    return p.shape == "file" ? 0. : expected_cells(whole_volume(p), p.element_size);
   }
 } // namespace retroforge

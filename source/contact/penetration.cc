@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/die_approach.h>
 #include <retroforge/contact/penetration.h>
 #include <retroforge/core/shares.h>
 
@@ -72,6 +73,11 @@ namespace retroforge
         if (const double depth = dies[d].depth_of(points[i].x, states[d].displacement, points[i].within);
             depth > deepest.depth)
           deepest = {depth, points[i].x, d};
+    const MetalSurface metal = metal_surface(mesh, X);
+    for (unsigned int d = 0; d < dies.size(); ++d)
+      if (const Overlap overlap = find_die_in_metal(dies[d], states[d].displacement, metal, comm);
+          overlap.depth > deepest.depth)
+        deepest = {overlap.depth, overlap.place, d};
     return deepest_of_ranks(deepest, comm);
   }
 } // namespace retroforge

@@ -184,6 +184,11 @@ namespace retroforge
                     "holds --check with '" + line.command + "'",
                     "it is an option of optimize; gradients of a case are checked by the command check",
                     "leave it out, or write retroforge check " + line.case_file);
+      if (line.resume && line.command == "scene")
+        throw Error(where,
+                    "holds --resume with 'scene'",
+                    "a scene is looked at anew each time",
+                    "leave it out, or replace what is in the folder with --overwrite");
       if (line.resume && line.overwrite)
         throw Error(where,
                     "holds --resume and --overwrite",
@@ -194,7 +199,8 @@ namespace retroforge
 
   const std::vector<std::string> &known_commands()
   {
-    static const std::vector<std::string> commands = {"simulate", "gradient", "check", "scan", "optimize"};
+    static const std::vector<std::string> commands = {
+      "simulate", "gradient", "check", "scan", "optimize", "scene"};
     return commands;
   }
 
@@ -213,8 +219,10 @@ namespace retroforge
     const bool is_question = line.print_parameters || line.version || line.help;
     if (!is_question)
       check_complete(line);
+    // A scene that was looked at is no reason to refuse the run after it.
     if (line.output_directory.empty() && !line.case_file.empty())
-      line.output_directory = std::filesystem::path(line.case_file).stem().string() + "-results";
+      line.output_directory = std::filesystem::path(line.case_file).stem().string() +
+                              (line.command == "scene" ? "-scene" : "-results");
     return line;
   }
 
@@ -246,12 +254,14 @@ Commands:
              there are cores: how smooth the objectives are, and how true their local gradients
   optimize   forge one design after the other, each better by the gradient, within bounds and limits (section
              Optimisation)
+  scene      run nothing, in seconds: check, list and draw billet, dies and symmetry planes as they stand, their gaps
+             and overlaps, first touches, sizes, volumes, and the force to expect; also of a scene that is refused
 
 Options:
   --set Section/name=value   replace a parameter of the case; may be repeated, the last one counts
   --at NAME=VALUE            change a design parameter (billet/radius, die upper/offset, ...) on the mesh of the
                              unchanged design; may be repeated; replaces Design/at
-  --output DIR               folder of the results (default: CASE-results in the current folder)
+  --output DIR               folder of the results (default: CASE-results in the current folder, CASE-scene of scene)
   --resume                   go on with the run in that folder, to the same bits as if it had not been stopped,
                              or with other numerics (--set Press/increments=80, --set Remeshing/when=quality);
                              of a check, keep the directions that are done; of a scan or an optimisation, what is
@@ -264,6 +274,7 @@ Options:
   --help                     write this text
 
 Examples:
+  retroforge scene upsetting.prm
   retroforge simulate upsetting.prm
   retroforge gradient upsetting.prm --set "Die upper/friction=0.4" --output rough-die
   retroforge gradient upsetting.prm --at billet/radius=20.2 --output wider

@@ -71,6 +71,16 @@ namespace retroforge
                            : std::numeric_limits<double>::infinity();
   }
 
+  double Die::facet_distance(const Vec3 &X, const Vec3 &displacement) const
+  {
+    if (!surface_)
+      return signed_distance(X, displacement);
+    const DieFeature feature = surface_->closest(X - displacement);
+    return feature.found()
+             ? project_on_feature(surface_->shape, surface_->shape.vertices(), feature, X, displacement).delta
+             : std::numeric_limits<double>::infinity();
+  }
+
   double Die::depth_of(const Vec3 &X, const Vec3 &displacement, const double within) const
   {
     const DieFeature feature = surface_ ? closest_on_surface(X - displacement, within) : DieFeature();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/core/error.h>
 #include <retroforge/material/material_parameters.h>
+
+#include <algorithm>
 
 namespace retroforge
 {
@@ -18,21 +19,22 @@ namespace retroforge
       law.m,
       "m of the Norton-Hoff law: 1 is a Newtonian fluid, hot steel is near 0.14. Units: none.",
       Double(1e-3, 1.));
-    prm.add_parameter(
-      "regularising strain rate",
-      law.e0,
-      "e0 in e^2 -> e^2 + e0^2: keeps the viscosity finite where the metal is still. Part of the "
-      "model. Zero only for m = 1. Units: 1/s.",
-      Double(0.));
+    prm.add_parameter("regularising strain rate",
+                      law.e0,
+                      "e0 in e^2 -> e^2 + e0^2: keeps the viscosity finite where the metal is still. Part of "
+                      "the model. 0 takes "
+                      "1e-3 or, where the scene is slow, a hundredth of the speed at which the dies close "
+                      "over the height of the "
+                      "billet. Units: 1/s.",
+                      Double(0.));
     prm.leave_subsection();
   }
 
-  void MaterialParameters::check() const
+  MaterialLaw<double> MaterialParameters::law_at(const double rate) const
   {
-    if (!law.is_linear() && law.e0 == 0.)
-      throw Error("Material/regularising strain rate",
-                  "is 0 with a strain rate sensitivity below 1",
-                  "the viscosity of still metal would be infinite",
-                  "use about 1e-3 of the mean strain rate");
+    MaterialLaw<double> complete = law;
+    if (law.e0 == 0.)
+      complete.e0 = std::min(1e-3, 1e-2 * rate);
+    return complete;
   }
 } // namespace retroforge

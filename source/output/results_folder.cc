@@ -14,11 +14,12 @@ namespace retroforge
   {
     namespace fs = std::filesystem;
 
-    /// Of files a run, a scan or the report writes.
+    /// Of files a run, a scan, a look at a scene or the report writes.
     const std::regex file_names(
       "(parameters|best)(_.*)?\\.prm|summary\\.json|check\\.json|(history|objectives|scan)\\.csv|scan\\.json|"
       "fields\\.pvd|fields_[0-9]{6,}\\.vtu|failed\\.vtu|failure\\.txt|"
       "(journal|confirmation)\\.jsonl|optimisation\\.(csv|json)|"
+      "scene\\.(json|pvd)|scene_(billet|die_.*)\\.vtu|"
       "sensitivity(_die_.*)?\\.vtu|die_.*\\.(stl|vtu)|record\\.h5|report\\.html");
 
     bool is_result(const fs::path &path)

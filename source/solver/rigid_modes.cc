@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/text.h>
 #include <retroforge/element/mini_element.templates.h>
 #include <retroforge/solver/rigid_modes.h>
 
 #include <deal.II/lac/lapack_full_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <algorithm>
 
 namespace retroforge
 {
@@ -14,71 +18,210 @@ namespace retroforge
     constexpr double touching = 0.05;
     /// Eigenvalues below this, of one per resisting direction, are of free motions.
     constexpr double unresisted = 1e-8;
-  } // namespace
 
-  unsigned int
-  n_free_rigid_modes(const Scene &scene, const Physics<double> &physics, const NodalVectors<double> &X)
-  {
-    Vec3 centre;
-    for (const Vec3 &x : X)
-      centre += x / static_cast<double>(X.size());
-    double size = 0.;
-    for (const Vec3 &x : X)
-      size = std::max(size, (x - centre).norm());
+    /// x -> slide + turn x (x - centre)/size
+    struct RigidMotion
+    {
+      Vec3 slide, turn;
 
-    // Gram matrix of the velocities that the resisting directions see: zero eigenvalues are free motions.
-    dealii::LAPACKFullMatrix<double> gram(6);
-    double                           n_resisting = 0.;
-    const auto                       resist      = [&](const NodeIndex k, const Vec3 &direction) {
-      const Vec3            arm    = (X[k] - centre) / size;
-      const Vec3            moment = cross(arm, direction);
-      std::array<double, 6> row;
+      double operator*(const RigidMotion &other) const { return slide * other.slide + turn * other.turn; }
+      void   add(const double factor, const RigidMotion &other)
+      {
+        slide += factor * other.slide;
+        turn += factor * other.turn;
+      }
+    };
+
+    /// What resists motions of a body.
+    class Resistance
+    {
+    public:
+      explicit Resistance(const NodalVectors<double> &X) : X_(X), gram_(6)
+      {
+        for (const Vec3 &x : X)
+          centre_ += x / static_cast<double>(X.size());
+        for (const Vec3 &x : X)
+          size_ = std::max(size_, (x - centre_).norm());
+      }
+
+      double      size() const { return size_; }
+      const Vec3 &centre() const { return centre_; }
+
+      void resist(const NodeIndex k, const Vec3 &direction)
+      {
+        const Vec3            moment = cross(Vec3((X_[k] - centre_) / size_), direction);
+        std::array<double, 6> row;
+        for (unsigned int i = 0; i < 3; ++i)
+        {
+          row[i]     = direction[i];
+          row[i + 3] = moment[i];
+        }
+        // Gram matrix of the velocities that the resisting directions see: zero eigenvalues are free motions.
+        for (unsigned int i = 0; i < 6; ++i)
+          for (unsigned int j = 0; j < 6; ++j)
+            gram_(i, j) += row[i] * row[j];
+        n_resisting_ += 1.;
+      }
+
+      /// An orthonormal basis.
+      std::vector<RigidMotion> free_motions()
+      {
+        dealii::Vector<double>     eigenvalues;
+        dealii::FullMatrix<double> eigenvectors;
+        gram_.compute_eigenvalues_symmetric(
+          -1., unresisted * std::max(1., n_resisting_), 0., eigenvalues, eigenvectors);
+        std::vector<RigidMotion> motions(eigenvalues.size());
+        for (unsigned int m = 0; m < motions.size(); ++m)
+          for (unsigned int i = 0; i < 3; ++i)
+          {
+            motions[m].slide[i] = eigenvectors(i, m);
+            motions[m].turn[i]  = eigenvectors(i + 3, m);
+          }
+        return motions;
+      }
+
+    private:
+      const NodalVectors<double>      &X_;
+      Vec3                             centre_;
+      double                           size_ = 0., n_resisting_ = 0.;
+      dealii::LAPACKFullMatrix<double> gram_;
+    };
+
+    /// The part of a motion that is made of those of an orthonormal basis.
+    RigidMotion projected(const RigidMotion &motion, const std::vector<RigidMotion> &basis)
+    {
+      RigidMotion sum;
+      for (const RigidMotion &of : basis)
+        sum.add(motion * of, of);
+      return sum;
+    }
+
+    /// Slides that are among the motions, along the axes where that is possible, each orthogonal to the
+    /// others.
+    std::vector<RigidMotion> slides_among(const std::vector<RigidMotion> &motions)
+    {
+      // Whatever turns is taken out: what is left of the motions spans their slides.
+      std::vector<RigidMotion> left = motions;
       for (unsigned int i = 0; i < 3; ++i)
       {
-        row[i]     = direction[i];
-        row[i + 3] = moment[i];
+        const auto pivot = std::max_element(left.begin(), left.end(), [&](const auto &a, const auto &b) {
+          return std::abs(a.turn[i]) < std::abs(b.turn[i]);
+        });
+        if (pivot == left.end() || std::abs(pivot->turn[i]) < 1e-3)
+          continue;
+        const RigidMotion turning = *pivot;
+        left.erase(pivot);
+        for (RigidMotion &motion : left)
+          motion.add(-motion.turn[i] / turning.turn[i], turning);
       }
-      for (unsigned int i = 0; i < 6; ++i)
-        for (unsigned int j = 0; j < 6; ++j)
-          gram(i, j) += row[i] * row[j];
-      n_resisting += 1.;
-    };
+      return left;
+    }
+
+    std::vector<RigidMotion> orthonormal(const std::vector<RigidMotion> &motions, const double least)
+    {
+      std::vector<RigidMotion> basis;
+      for (RigidMotion motion : motions)
+      {
+        motion.add(-1., projected(motion, basis));
+        if (const double length = std::sqrt(motion * motion); length > least)
+        {
+          RigidMotion unit;
+          unit.add(1. / length, motion);
+          basis.push_back(unit);
+        }
+      }
+      return basis;
+    }
+
+    std::string vector_text(Vec3 x, const double zero)
+    {
+      std::string text;
+      for (unsigned int i = 0; i < 3; ++i)
+        text += (i == 0 ? "" : ", ") + as_text(std::abs(x[i]) < zero ? 0. : x[i]);
+      return "(" + text + ")";
+    }
+
+    /// An axis, whichever way it points.
+    std::string axis_text(const Vec3 &direction)
+    {
+      for (unsigned int i = 0; i < 3; ++i)
+        if (std::abs(direction[i]) > 1. - 1e-4)
+          return std::string(1, "xyz"[i]);
+      return vector_text(direction, 1e-3);
+    }
+
+    std::string turn_text(const RigidMotion &motion, const Resistance &resistance)
+    {
+      const Vec3 turn = motion.turn;
+      // The axis is where the slide undoes the turning.
+      const Vec3 place = resistance.centre() + resistance.size() / (turn * turn) * cross(turn, motion.slide);
+      return "turn about " + axis_text(turn / turn.norm()) + " at " +
+             vector_text(place, 1e-3 * resistance.size());
+    }
+
+    std::vector<std::string> in_words(const std::vector<RigidMotion> &motions, const Resistance &resistance)
+    {
+      std::vector<std::string> words;
+      std::vector<RigidMotion> candidates, slides = orthonormal(slides_among(motions), 1e-6), along_axes;
+      for (unsigned int i = 0; i < 3; ++i)
+      {
+        RigidMotion unit;
+        unit.slide[i] = 1.;
+        along_axes.push_back(projected(unit, slides));
+      }
+      along_axes.insert(along_axes.end(), slides.begin(), slides.end());
+      slides = orthonormal(along_axes, 0.05);
+      for (const RigidMotion &slide : slides)
+        words.push_back("slide along " + axis_text(slide.slide));
+      candidates = slides;
+      candidates.insert(candidates.end(), motions.begin(), motions.end());
+      const std::vector<RigidMotion> all = orthonormal(candidates, 0.05);
+      for (std::size_t m = slides.size(); m < all.size(); ++m)
+        words.push_back(turn_text(all[m], resistance));
+      return words;
+    }
+  } // namespace
+
+  std::vector<std::string> free_rigid_motions(const Scene                &scene,
+                                              const Physics<double>      &physics,
+                                              const NodalVectors<double> &X,
+                                              const std::optional<double> within)
+  {
+    Resistance resistance(X);
     for (NodeIndex k = 0; k < X.size(); ++k)
       for (const Vec3 &direction : scene.topology.fixed_directions[k])
-        resist(k, direction);
+        resistance.resist(k, direction);
     for (unsigned int d = 0; d < scene.dies.size(); ++d)
     {
-      double nearest = std::numeric_limits<double>::max();
-      for (NodeIndex k = 0; k < X.size(); ++k)
-        if (scene.topology.is_on_surface(k))
-          nearest = std::min(nearest, scene.dies[d].signed_distance(X[k], physics.dies[d].displacement));
+      const Vec3 &displacement = physics.dies[d].displacement;
+      double      reach        = within.value_or(0.);
+      if (!within)
+      {
+        double nearest = std::numeric_limits<double>::max();
+        for (NodeIndex k = 0; k < X.size(); ++k)
+          if (scene.topology.is_on_surface(k))
+            nearest = std::min(nearest, scene.dies[d].signed_distance(X[k], displacement));
+        reach = nearest + touching * resistance.size();
+      }
       for (NodeIndex k = 0; k < X.size(); ++k)
         if (scene.topology.is_on_surface(k))
         {
-          const Vec3 &displacement = physics.dies[d].displacement;
-          const auto  feature      = scene.dies[d].closest(X[k], displacement, nearest + touching * size);
+          const auto feature = scene.dies[d].closest(X[k], displacement, reach);
           if (!feature.found())
             continue;
           const auto projection = scene.dies[d].project(X[k], displacement, feature);
-          if (projection.delta > nearest + touching * size)
+          if (projection.delta > reach)
             continue;
-          resist(k, projection.n);
+          resistance.resist(k, projection.n);
           if (physics.dies[d].friction > 0.)
             for (unsigned int i = 0; i < 3; ++i)
             {
               Vec3 unit;
               unit[i] = 1.;
-              resist(k, unit);
+              resistance.resist(k, unit);
             }
         }
     }
-    if (n_resisting == 0.)
-      return 6;
-    gram.compute_eigenvalues();
-    unsigned int n_free = 0;
-    for (unsigned int i = 0; i < 6; ++i)
-      if (gram.eigenvalue(i).real() < unresisted * n_resisting)
-        ++n_free;
-    return n_free;
+    return in_words(resistance.free_motions(), resistance);
   }
 } // namespace retroforge

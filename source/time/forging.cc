@@ -230,7 +230,7 @@ namespace retroforge
         {
           // A fold that is closing is the true reason.
           limits_.check_fold(state);
-          limits_.stop(record, refusal);
+          limits_.stop(process, state, record, refusal);
         }
       }
       finish_increment(process, record, solved, state, watch);

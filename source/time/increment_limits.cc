@@ -3,17 +3,25 @@
 #include <deal.II/base/mpi.h>
 
 #include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/parts_quality.h>
 #include <retroforge/mesh/self_crossing.h>
+#include <retroforge/solver/rigid_modes.h>
+#include <retroforge/time/closing_speed.h>
 #include <retroforge/time/increment_limits.h>
 
 #include <algorithm>
+#include <numeric>
 #include <sstream>
 
 namespace retroforge
 {
+  /// Mean pressure over the flow stress at which a cavity counts as full. A thin flash of a hundred times its
+  /// thickness has a twentieth of that, and what has no room a hundred times as much.
+  constexpr double most_pressure = 1e3;
+
   /// Times Press/increments that cuts may make of them.
   constexpr unsigned int most_increments = 10;
 
@@ -54,6 +62,8 @@ namespace retroforge
                                    const NodalVectors<double> &X,
                                    const NodalVectors<double> &X_next) const
   {
+    if (is_full(process, leg, record))
+      return {"the cavity is full", 1, false, true};
     if (const std::string reason = too_much(leg.scene, X, X_next); !reason.empty())
       return {reason};
     const Slip slip = largest_slip(process, record, X, X_next);
@@ -61,6 +71,17 @@ namespace retroforge
       return {};
     // Velocities hardly depend on the increment's length: what it must be is known at once.
     return {"a node would slip along " + slip.where, halvings(slip.of_edge / press_.largest_slip), false};
+  }
+
+  bool IncrementLimits::is_full(const Process<double> &process, const Leg &leg, const IncrementRecord &record)
+  {
+    const auto &P    = record.solves.back().P;
+    const double sum = std::accumulate(
+      P.begin(), P.end(), 0., [](const double so_far, const double p) { return so_far + std::abs(p); });
+    const double rate   = closing_speed(process.dies) / std::cbrt(volume(leg.scene.mesh.cells, leg.scene.mesh.X));
+    const double stress = process.law(1.5 * rate * rate) * 1.5 * rate;
+    if (getenv("RF_FULL")) fprintf(stderr, "mean p / stress %g\n", sum / P.size() / stress);
+    return sum > most_pressure * stress * P.size();
   }
 
   Refusal IncrementLimits::singular(const ForgingState &state)
@@ -133,12 +154,37 @@ namespace retroforge
     return step < shortest() * (1. - 1e-9);
   }
 
-  void IncrementLimits::stop(const IncrementRecord &record, const Refusal &refusal) const
+  namespace
+  {
+    [[noreturn]] void throw_full(const double stroke)
+    {
+      throw Error("Press/stroke",
+                  "the cavity is full at " + as_text(stroke) + " mm",
+                  "metal keeps its volume, and dies do not give way",
+                  "shorten the stroke to less than that, make the billet smaller, or leave it a way out, as a flash is");
+    }
+  } // namespace
+
+  void IncrementLimits::stop(const Process<double> &process,
+                             const ForgingState    &state,
+                             const IncrementRecord &record,
+                             const Refusal         &refusal) const
   {
     std::ostringstream what;
     what.precision(5);
     what << "stops at stroke " << record.stroke << " mm, where even an increment of " << shortest()
          << " mm is too long: " << refusal.reason;
+    // A body that nothing holds has no velocity, however fine its mesh is.
+    if (const auto motions = free_rigid_motions(
+          state.leg->scene, process.at_stroke(record.stroke), state.X, model_.step.contact.ramp.width);
+        !motions.empty())
+      throw Error(
+        "Billet",
+        what.str() + ", and no die holds the billet there, which is free to " + join(motions),
+        "dies that touch it, their friction, and symmetry planes must hold it in all directions",
+        "let the dies touch it where the run begins, give them friction, or cut it by symmetry planes");
+    if (refusal.is_full)
+      throw_full(record.stroke);
     const char *remedy =
       record.stroke == 0. ? "nothing moved yet, so the stroke is not what is wrong: use values of the usual "
                             "size, penalty and friction above all, more increments, or a better mesh"

@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -23,6 +24,22 @@ def judge(name, good, detail=""):
     print(f"passed {name}" if good else f"FAILED {name} {detail}", flush=True)
     if not good:
         failures.append(name)
+
+
+def judge_message(name, done, pattern):
+    """Whether the program ended with one message, of four parts."""
+    message = done.stderr.strip()
+    faults = []
+    if done.returncode <= 0:
+        faults.append(f"exit status {done.returncode}")
+    if len(message.splitlines()) != 1:
+        faults.append(f"{len(message.splitlines())} lines on the error stream")
+    if not re.match(r"retroforge: [^;]+: [^;]+;[^;]+;[^;]+", message):
+        faults.append("not of the form where: what; rule; remedy")
+    if not re.search(pattern, message, re.DOTALL):
+        faults.append(f"does not say {pattern}")
+    judge(name, not faults, "; ".join(faults))
+    print(f"         {message}")
 
 
 def upsetting(shape, size, element_size, height, stroke, increments, **press):
@@ -61,6 +78,10 @@ def write(name, text):
 def text_of(*path):
     with open(os.path.join(*path), encoding="utf-8") as file:
         return file.read()
+
+
+def settings(*pairs):
+    return [word for pair in pairs for word in ("--set", pair)]
 
 
 def command(word, output, *settings, case="case.prm"):

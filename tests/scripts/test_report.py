@@ -11,11 +11,12 @@ import unittest
 
 import numpy as np
 import synthetic_run
+import synthetic_scene
 from scripts import CONTRIB, ScratchTest, call
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(CONTRIB))
-from retroforge_report import data, effects, refine, render, shapes, units, vtu, whole  # noqa: E402
+from retroforge_report import data, effects, refine, render, sections, shapes, units, vtu, whole  # noqa: E402
 
 SIDE = synthetic_run.SIDE
 
@@ -99,6 +100,51 @@ class Report(ScratchTest):
         self.assertEqual(len(refine.refined(surface, field, 1e3, 0.0)[1]), 8)
         self.assertEqual(len(refine.refined(surface, field, 0.0, 1e3)[1]), 8)
 
+    def test_refined_with_holes(self):
+        """Triangles of which a corner has no value stay whole, and have none."""
+        surface = vtu.Mesh(*synthetic_run.dome(2, depth=0.0), {}, {}).surface()
+        field = surface.points @ [1.0, 2.0, 0.0]
+        field[0] = np.nan
+        fine, values = refine.refined(surface, field, tolerance=20.0, finest=0.0)
+        around = (surface.triangles == 0).any(axis=1).sum()
+        self.assertEqual(np.isnan(values).sum(), around)
+        np.testing.assert_allclose(fine.area_vectors().sum(axis=0), surface.area_vectors().sum(axis=0), atol=1e-9)
+
+    def test_cells_to_nodes(self):
+        """Of a constant the same; of two tetrahedra of volumes 1 and 2 with 0 and 3, a shared node has 2."""
+        points, cells = synthetic_run.cube(2)
+        np.testing.assert_allclose(vtu.Mesh(points, cells, {}, {}).to_nodes(np.full(len(cells), 7.0)), 7)
+        points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, -2.0]])
+        mesh = vtu.Mesh(points, np.array([[0, 1, 2, 3], [0, 2, 1, 4]]), {}, {})
+        np.testing.assert_allclose(mesh.to_nodes(np.array([0.0, 3.0])), [2, 2, 2, 0, 3])
+
+    def test_even_pressure(self):
+        """Nodal forces of an even pressure on part of a square, as a run writes them: smaller at the rim, where part of the area is free.
+        The picture has the pressure everywhere it acts, and nothing beside. A force that nodes carry by turns is evened out, and kept."""
+        surface = vtu.Mesh(*synthetic_run.dome(8, depth=0.0), {}, {}).surface()
+        pressed = (surface.points[surface.triangles][:, :, 0] < SIDE / 2 + 1e-9).all(axis=1)
+        areas = np.linalg.norm(surface.area_vectors(), axis=1)
+        nodal = surface.nodal_sums(np.where(pressed, 5 * areas / 3, 0)) / surface.nodal_areas()
+        even = shapes._even_pressure(surface, nodal)
+        np.testing.assert_allclose(even[nodal > 0], 5)
+        self.assertTrue(np.isnan(even[nodal == 0]).all())
+        mottled = 5 + np.random.default_rng(1).uniform(-2, 2, len(surface.points))
+        even = shapes._even_pressure(surface, mottled)
+        self.assertLess(np.std(even), 0.6 * np.std(mottled))
+        self.assertAlmostEqual(even @ surface.nodal_areas(), mottled @ surface.nodal_areas(), delta=1e-9 * 1e5)
+
+    def test_sharp_edges(self):
+        """A cube has 12 edges of n pieces; of a square that is clipped, with points of each triangle's own, the outline is left."""
+        cube = vtu.Mesh(*synthetic_run.cube(3), {}, {}).surface()
+        edges = render.sharp_edges(cube)
+        self.assertEqual(len(edges), 12 * 3)
+        self.assertAlmostEqual(np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1).sum(), 12 * SIDE, 9)
+        square = vtu.Mesh(*synthetic_run.dome(3, depth=0.0), {}, {}).surface()
+        part = whole.within(square, np.array([0.0, 0.0, 0.0]), np.array([40.0, 30.0, 100.0]))
+        ends = render.sharp_edges(part)
+        self.assertAlmostEqual(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum(), 140, 9)
+        self.assertEqual(len(render.sharp_edges(whole.within(square, np.full(3, 1e3), np.full(3, 2e3)))), 0)
+
     def test_whole_part(self):
         """A cube between 1, 2 and 3 of its planes and its images is a box of 2, 4 and 8 of it; in a wedge of 60 degrees six.
 
@@ -158,6 +204,9 @@ class Report(ScratchTest):
                          ["fold__a_4_", "Gr____e_2", "x_1"])
         self.assertEqual([units.pretty(u) for u in ("mm^2 s^-3", "none", None, "mm^(-m)", "s^10")],
                          ["mm² s⁻³", "", "", "mm^(-m)", "s¹⁰"])
+        self.assertEqual([units.readable(unit, largest) for unit, largest in (("N", 999.0), ("N", -1.5e5), ("N", 2e6), ("mJ", 2e4), ("mJ", 0.5),
+                                                                              ("mm^3", 1e9), (None, 1e9))],
+                         [(1, "N"), (1e3, "kN"), (1e6, "MN"), (1e3, "J"), (1, "mJ"), (1, "mm^3"), (1, None)])
         self.assertEqual([units.per_volume(u) for u in ("mJ", "none")], ["mJ/mm³", "1/mm³"])
 
     def test_ranking(self):
@@ -261,6 +310,61 @@ class Report(ScratchTest):
         self.write("run/summary.json", '{"schema": 1, "command": "simulate"}')
         result = call("report", "--no-vtk", self.root / "run")
         self.assertEqual(result.returncode, 0, result.stderr)
+
+    def scene(self, **parts):
+        synthetic_scene.write(self.root / "scene", **parts)
+        result = call("report", "--no-vtk", self.root / "scene")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        return (self.root / "scene/report.html").read_text(), sorted(path.stem for path in (self.root / "scene/pictures").glob("*.png"))
+
+    def test_scene(self):
+        """The message of a scene that is refused is the first thing of its page; what could be made is drawn and listed."""
+        page, pictures = self.scene()
+        self.assertEqual(pictures, ["gaps", "scene", "sections"])
+        self.assertLess(page.index("The scene is refused"), page.index("<img"))
+        self.assertLess(page.index("the billet stands &lt;1 mm&gt; inside it"), page.index("<img"))
+        for text in ("Material/consistency = 200", "Cut through the deepest overlap", "Red: inside a die.",
+                     "1 mm inside the die, at (50, 50, 0); free when the die moves by (0, 0, -1) mm",
+                     "2 mm away, nearest to (25, 25, 50)", "after 2 mm, at stroke 2 mm, at (25, 25, 50)", "(0, 0, -100) mm/s, leads",
+                     "126250; the mesh has -0.99 % of it", "4 times the model, 500000 mm³", "through (0, 0, 0), outward normal (-1, 0, 0)",
+                     "20 of 0.5 mm, 0.005 s each", "first press, whole part [kN]", '<td class="n">125</td>', "slab method", "case box.prm"):
+            self.assertIn(text, page)
+        page, pictures = self.scene(refused=False)
+        self.assertIn("The scene is sound: a run would begin", page)
+        self.assertNotIn("Red:", page)
+        self.assertIn("Cut through the first touch", page)
+
+    def test_scene_in_part(self):
+        """Without a billet the dies are drawn; without anything the message stands alone."""
+        page, pictures = self.scene(with_billet=False)
+        self.assertEqual(pictures, ["scene", "sections"])
+        self.assertIn("The billet could not be made.", page)
+        page, pictures = self.scene(with_dies=False)
+        self.assertIn("The scene is refused", page)
+        self.assertEqual(pictures, [])
+        page, pictures = self.scene(with_billet=False, with_dies=False)
+        self.assertIn("Neither billet nor dies could be made.", page)
+        self.assertEqual(pictures, [])
+
+    def test_sections(self):
+        """By hand: a cut of the cube is a square, of its quarter's whole one of twice the width; a plane is cut in a line."""
+        mesh = vtu.Mesh(*synthetic_run.cube(3), {}, {})
+        across, along = sections.cuts([0, 0, -100], [10.0, 20.0, 30.0])
+        for cut, normal, right in ((across, [1, 0, 0], [0, 1, 0]), (along, [0, 1, 0], [1, 0, 0])):
+            np.testing.assert_allclose(np.abs(cut.normal), normal, atol=1e-12)
+            np.testing.assert_allclose(cut.axes, [right, [0, 0, 1]], atol=1e-12)
+        ends, normals = sections.lines(mesh.surface(), across)
+        self.assertAlmostEqual(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum(), 4 * SIDE, 6)
+        np.testing.assert_allclose(ends[:, :, 0], 10, atol=1e-9)
+        np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1)
+        for planes, width in ((np.zeros((0, 6)), SIDE), (synthetic_scene.PLANES, 2 * SIDE)):
+            mesh.symmetry_planes = planes
+            area = sum(abs(np.sum(flat[:, 0] * np.roll(flat[:, 1], -1) - np.roll(flat[:, 0], -1) * flat[:, 1])) / 2
+                       for flat in (across.flat(polygon) for polygon in sections.cells(mesh, across)))
+            self.assertAlmostEqual(area, width * SIDE, 6)
+        oblique, _ = sections.cuts([0, -3, -4], [0, 0, 0])
+        self.assertAlmostEqual(oblique.normal @ [0, -3, -4], 0, 12)
+        np.testing.assert_allclose(oblique.axes @ oblique.axes.T, np.eye(2), atol=1e-12)
 
     def test_bad_input(self):
         self.assertIn("neither summary.json nor history.csv", call("report", "--no-vtk", self.root).stderr)

@@ -74,4 +74,9 @@ namespace retroforge
   /// those of the sector, then those listed. Patches of which the cuts leave nothing are absent. The names
   /// tell directions before the final rotation.
   TetMesh make_billet(const BilletParameters &parameters, MPI_Comm communicator);
+
+  /// Moves the nodes of the faces of a mesh onto the shape that the measures give, each by the shortest way
+  /// onto all patches it belongs to. Of the mesh faces and patches count, which are those of make_billet().
+  /// Of a billet from a file nothing moves.
+  void snap_to_shape(const BilletParameters &parameters, TetMesh &mesh);
 } // namespace retroforge

@@ -12,6 +12,9 @@ namespace retroforge
     return 8. * volume / (element_size * element_size * element_size);
   }
 
+  /// Volume of a billet that is meshed here, by its measures and before cuts [mm^3]; 0 of one from a file.
+  double whole_volume(const BilletParameters &parameters);
+
   /// Tetrahedra of a billet that is meshed here, as a whole; 0 of one from a file.
   double expected_cells(const BilletParameters &parameters);
 } // namespace retroforge

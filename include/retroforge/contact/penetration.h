@@ -9,7 +9,7 @@
 
 namespace retroforge
 {
-  /// The deepest point of the workpiece's surface in a die.
+  /// The deepest point of the workpiece's surface in a die, or of a die in the workpiece.
   struct Penetration
   {
     double       depth = 0.; ///< [mm]; 0 when none is in a die
@@ -17,9 +17,10 @@ namespace retroforge
     unsigned int die = invalid_index;
   };
 
-  /// Looks at the nodes, the middles of the edges and the centres of the faces of the surface. A point
-  /// farther inside than the edges there are long is not found: it is behind the die rather than in it. Each
-  /// rank looks at its share of the points, and all find the same. Collective.
+  /// Looks at the nodes, the middles of the edges and the centres of the faces of the surface, and at the
+  /// vertices and edges of the dies in the metal (find_die_in_metal). A point of the surface farther inside
+  /// than the edges there are long is not found: it is behind the die rather than in it. Each rank looks at
+  /// its share of the points, and all find the same. Collective.
   Penetration deepest_point(const TetMesh                       &mesh,
                             const Topology                      &topology,
                             const std::vector<Die>              &dies,

@@ -12,16 +12,16 @@ namespace retroforge
   /// [--at NAME=VALUE]... [--resume | --overwrite]`.
   struct CommandLine
   {
-    std::string command; ///< simulate, gradient, check, scan or optimize; empty only with one of the three
-                         ///< questions below
+    std::string command; ///< simulate, gradient, check, scan, optimize or scene; empty only with one of the
+                         ///< three questions below
     std::string case_file;
 
     /// Parameters that the case has instead of those of its file, which may change while a long run goes on;
     /// empty: those of the file.
     std::string case_text;
 
-    /// Folder of the results. Without --output: the name of the case followed by `-results`, in the
-    /// current folder (`prm/tutorial/upsetting.prm` -> `upsetting-results`).
+    /// Folder of the results. Without --output: the name of the case followed by `-results`, of the command
+    /// scene by `-scene`, in the current folder (`prm/tutorial/upsetting.prm` -> `upsetting-results`).
     std::string output_directory;
 
     /// Full path of a parameter (`Contact/Friction/coefficient`) and its new value, in the order given.

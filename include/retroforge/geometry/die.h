@@ -66,6 +66,9 @@ namespace retroforge
     /// Signed distance however far or deep [mm]; infinite behind the rim of an open surface.
     double signed_distance(const Vec3 &X, const Vec3 &displacement) const;
 
+    /// The same of the facets as they are, whatever surface they stand for [mm].
+    double facet_distance(const Vec3 &X, const Vec3 &displacement) const;
+
     /// How deep X is inside [mm]; 0 outside, and where it is deeper than `within`.
     double depth_of(const Vec3 &X, const Vec3 &displacement, double within) const;
 

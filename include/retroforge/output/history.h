@@ -19,7 +19,7 @@ namespace retroforge
     double       energy      = 0; ///< spent so far, mJ
     double       volume      = 0; ///< mm^3
     double       min_quality = 0; ///< of the worst cell, dimensionless
-    double       depth       = 0; ///< of the surface's deepest point in a die, mm
+    double       depth       = 0; ///< of the surface's deepest point in a die, or of a die's in the metal, mm
     unsigned int newton      = 0; ///< Newton iterations of the increment
     unsigned int krylov      = 0; ///< iterations of its linear solves
 

@@ -4,11 +4,18 @@
 
 #include <retroforge/solver/stage.h>
 
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace retroforge
 {
-  /// Number of rigid motions (of six) that neither symmetry planes, nor the dies' normals, nor friction
-  /// resist, judged with every die brought to its nearest nodes. Where it is not zero, velocities are not
-  /// unique and the adjoint has no solution.
-  unsigned int
-  n_free_rigid_modes(const Scene &scene, const Physics<double> &physics, const NodalVectors<double> &X);
+  /// The rigid motions (of six) that neither symmetry planes, nor the dies' normals, nor friction resist, in
+  /// words: `slide along x', `turn about z at (0, 0, 20)'. Where there are some, velocities are not unique
+  /// and the adjoint has no solution.
+  /// @param within  of a die, nodes are held by it [mm]; left out, every die is brought to its nearest nodes
+  std::vector<std::string> free_rigid_motions(const Scene                &scene,
+                                              const Physics<double>      &physics,
+                                              const NodalVectors<double> &X,
+                                              std::optional<double>       within = {});
 } // namespace retroforge

@@ -14,6 +14,7 @@ namespace retroforge
     std::string  reason;          ///< empty: it need not be
     unsigned int halvings = 1;    ///< that will do
     bool         of_mesh  = true; ///< a better mesh may be enough
+    bool         is_full  = false; ///< there is no room for the metal
   };
 
   /// What increments and runs may do. An increment that does more is refused, a run that does more is
@@ -49,11 +50,17 @@ namespace retroforge
     /// Whether nodes may slip that far, over the edge length wanted there.
     bool allow(const double slip) const { return slip <= press_.largest_slip; }
 
+    /// Whether metal is pressed as only the dies' penalty can press it, which it has no room to escape.
+    static bool is_full(const Process<double> &process, const Leg &leg, const IncrementRecord &record);
+
     /// Whether an increment may not be halved any more.
     bool too_short(double step) const;
 
     /// Where an increment that may not be halved any more is refused.  @throws Error
-    [[noreturn]] void stop(const IncrementRecord &record, const Refusal &refusal) const;
+    [[noreturn]] void stop(const Process<double> &process,
+                           const ForgingState    &state,
+                           const IncrementRecord &record,
+                           const Refusal         &refusal) const;
 
     /// Where a run can only go on to no good: it takes too many increments, or loses its volume.
     /// @throws Error

@@ -134,7 +134,7 @@ def draw(results, file):
     """Errors over seconds, one column for each scene."""
     import matplotlib
     matplotlib.use("Agg")
-    from matplotlib import pyplot
+    from matplotlib import pyplot, ticker
     page, axes = pyplot.subplots(2, len(results), figsize=(3.6 * len(results), 6.4), squeeze=False, sharex="col")
     for column, (name, (runs, reference)) in enumerate(results.items()):
         for row, what in enumerate(("energy", "derivative")):
@@ -144,6 +144,9 @@ def draw(results, file):
             axes[row][column].grid(True, which="both", alpha=0.3)
             axes[row][column].legend()
         axes[1][column].set_xlabel("seconds")
+        axes[1][column].xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+        axes[1][column].xaxis.set_major_formatter("{x:g}")
+        axes[1][column].xaxis.set_minor_formatter(ticker.NullFormatter())
     axes[0][0].set_ylabel("relative error")
     axes[1][0].set_ylabel("relative error")
     page.tight_layout()

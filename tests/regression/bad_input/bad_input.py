@@ -16,7 +16,7 @@ import sys
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import block_meshes  # noqa: E402
 import whole_runs  # noqa: E402
-from whole_runs import PROGRAM, ROOT, contents, judge, prm, start, summary_of, text_of, write  # noqa: E402
+from whole_runs import PROGRAM, ROOT, contents, judge, judge_message, prm, settings, start, summary_of, text_of, write  # noqa: E402
 
 CASE = prm(whole_runs.cube(10, 4, 1, 3))
 
@@ -90,10 +90,6 @@ STLS = {
 }
 
 
-def settings(*pairs):
-    return [word for pair in pairs for word in ("--set", pair)]
-
-
 # name: (arguments after the case file, what the message must say)
 MISTAKES = {
     "unknown parameter": (settings("Press/strok=3"), r"Press/strok\b.*stroke"),
@@ -161,9 +157,9 @@ MISTAKES = {
                                   r"Objective cylinder distance/patches.*'side'.*bottom, top, side \+x, side \+y"),
     "symmetry plane for a patch": (objective("cylinder distance", "patches=symmetry 1"), r"patches.*symmetry 1"),
     "scan of a parameter that does not exist": (settings("Scan/parameter=billet/radus"), r"Scan/parameter.*billet/radus.*billet/height"),
-    "die that moves away": (settings("Die upper/velocity=0, 0, 100"), r"Die upper.*does not come against the billet.*velocity"),
-    "leading die out of reach": (settings("Die upper/point=0, 0, 12"), r"Die upper.*starts 2 mm away.*stroke is 1 mm"),
-    "curved die out of reach": (settings("Die upper/shape=bell", "Die upper/point=0, 0, 80"), r"Die upper.*does not come against"),
+    "die that moves away": (settings("Die upper/velocity=0, 0, 100"), r"Die upper.*moves away from the billet.*velocity"),
+    "leading die out of reach": (settings("Die upper/point=0, 0, 12"), r"Die upper.*starts 2 mm away.*meets it after 2 mm.*stroke is 1 mm"),
+    "curved die out of reach": (settings("Die upper/shape=bell", "Die upper/point=0, 0, 80"), r"Die upper.*does not reach the billet"),
     "stroke as long as the dies are apart": (settings("Press/stroke=10"), r"Press/stroke.*die upper.*die lower.*less than 10 mm"),
     "stroke longer than that": (settings("Press/stroke=12"), r"Press/stroke.*2 mm beyond.*less than 10 mm"),
     "stroke up to a plane of symmetry": (settings(
@@ -178,7 +174,7 @@ MISTAKES = {
     "die in nanometres": (settings("Die lower/shape=stl", "Die lower/file=in_nanometres.stl"), r"Die lower.*4\.24264e\+07 mm.*scale"),
     "device for a die": (settings("Die lower/shape=stl", "Die lower/file=/dev/zero"), r"/dev/zero.*device"),
     "device for a mesh": (file_mesh("small") + settings("Billet/file name=/dev/zero"), r"/dev/zero.*device"),
-    "billet in metres": (file_mesh("small") + settings("Billet/scale=0.001"), r"Die upper.*does not come against the billet.*scale"),
+    "billet in metres": (file_mesh("small") + settings("Billet/scale=0.001"), r"Die upper.*does not reach the billet.*scale"),
     "two bodies": (file_mesh("two_bodies"), r"two_bodies\.msh.*bodies that no face connects"),
     "a mesh that is there twice": (file_mesh("twice"), r"twice\.msh.*bodies that no face connects"),
     "a layer felt too far": (settings("Contact/layer=1e-3"), r"Contact/layer.*0\.001.*0\.1"),
@@ -202,21 +198,6 @@ MISTAKES = {
 
 def run(arguments, command="gradient"):
     return start([PROGRAM, command, *arguments])
-
-
-def judge_message(name, done, pattern):
-    message = done.stderr.strip()
-    faults = []
-    if done.returncode <= 0:
-        faults.append(f"exit status {done.returncode}")
-    if len(message.splitlines()) != 1:
-        faults.append(f"{len(message.splitlines())} lines on the error stream")
-    if not re.match(r"retroforge: [^;]+: [^;]+;[^;]+;[^;]+", message):
-        faults.append("not of the form where: what; rule; remedy")
-    if not re.search(pattern, message, re.DOTALL):
-        faults.append(f"does not say {pattern}")
-    judge(name, not faults, "; ".join(faults))
-    print(f"         {message}")
 
 
 def whole_history(name, path, at_least):
@@ -252,6 +233,8 @@ def resumed():
     judge_message("another run in its folder", run(["case.prm", "--output", "done"] + short), r"done.*already.*--overwrite")
     judge_message("a scan in its folder", run(["case.prm", "--output", "done"], "scan"), r"done.*already")
     judge_message("a scan that goes on with a run", run(["case.prm", "--output", "done", "--resume"], "scan"), r"done.*run")
+    judge_message("a look at a scene in its folder", run(["case.prm", "--output", "done"], "scene"), r"done.*already.*--overwrite")
+    judge_message("a look that goes on with a run", run(["case.prm", "--output", "done", "--resume"], "scene"), r"--resume.*scene")
     judge("none of them changed a file", contents("done") == before, "the folder differs")
     same = run(["case.prm", "--output", "done", "--resume"] + short + settings("Output/fields every=0", "Design/parameters=material/m"))
     judge("resumed with other output and design", same.returncode == 0, same.stderr)

@@ -6,7 +6,8 @@
 
 A trial is a small scene of which a parameter file, a mesh, an STL file or a record was damaged; a third of the trials meet the results
 of an earlier run in their folder. A trial ends (exit status 0, results finite), or is refused or stopped with one message of the form
-`retroforge: where: what; rule; remedy`; results of the earlier run are left alone, but by `--overwrite` of a command that was accepted.
+`retroforge: where: what; rule; remedy`; results of the earlier run are left alone, but by `--overwrite` of a command that was accepted,
+as a look at a scene always is.
 A run that is still going on after a minute is stopped: input may well ask for a long one; but it must have printed something in the last
 half of that minute, unless its mesh is large, or was announced to be. Each trial depends on seed, kind and number alone. The exit
 status is zero when no trial is a defect."""
@@ -365,7 +366,7 @@ def trial(tools, kind, number, seed, keep):
     rng = random.Random(f"{seed}:{kind}:{number}")
     folder = pathlib.Path(tempfile.mkdtemp(dir=tools.folder)) / "run"
     arguments = KINDS[kind](rng, tools, folder)
-    word = "gradient" if kind == "records" else rng.choice(("gradient",) * 6 + ("simulate",) * 3 + ("check",))
+    word = "gradient" if kind == "records" else rng.choice(("gradient",) * 6 + ("simulate",) * 3 + ("check", "scene"))
     if word == "check":
         arguments += ["--set", "Check/steps=1e-3", "--set", "Check/free differences=false", "--set", "Check/taylor halvings=2"]
     output = folder / "out"
@@ -376,7 +377,8 @@ def trial(tools, kind, number, seed, keep):
     before = contents(output) if output.exists() else {}
     command = [tools.program, word, "case.prm", "--output", "out"] + arguments
     status, said, errors, silent = tools.server().follow(folder, command[1:])
-    accepted = re.search(r"^ +1 +\d", said, re.MULTILINE) is not None or status in (0, None)
+    # A scene that is refused is listed and drawn.
+    accepted = re.search(r"^ +1 +\d|^  REFUSED: ", said, re.MULTILINE) is not None or status in (0, None)
     defect = None
     if status is None:
         outcome = "long"

@@ -5,6 +5,7 @@
 Scenes are excerpts of cases or run themselves; settings, options, scripts, files and names in the code exist; tables that a script prints
 are as it prints them.
 """
+import math
 import pathlib
 import re
 import subprocess
@@ -163,10 +164,44 @@ class Materials(unittest.TestCase):
             computed = [f"{norton_hoff.friction_of_tresca(1., float(m), length, 1.):.2f}" for length in (1, 5, 10, 20, 50)]
             self.assertEqual(values.split(" | "), [" " + computed[0], *computed[1:-1], computed[-1] + " "])
 
-    def test_example(self):
-        done = subprocess.run([sys.executable, ROOT / "contrib/python/norton_hoff.py", "1:75.7", "10:110.7"],
-                              capture_output=True, text=True, check=True)
-        self.assertIn(f"`{done.stdout.strip()}`", self.page)
+    @staticmethod
+    def convert(*words):
+        return subprocess.run([sys.executable, "-B", ROOT / "contrib/python/norton_hoff.py", *words], capture_output=True, text=True,
+                              check=False)
+
+    def test_examples(self):
+        """Each command is followed by what it prints."""
+        examples = re.findall(r"^contrib/python/norton_hoff.py (.+)\n```\n\nprints `([^`]+)`", self.page, re.M)
+        self.assertEqual(len(examples), 2)
+        for words, printed in examples:
+            self.assertEqual(self.convert(*words.split()).stdout.strip(), printed)
+
+    def test_friction_by_hand(self):
+        """A factor of sqrt(3) 0.1 2 at a slip of 10 mm times the strain rate; m of a flow stress that doubles in two decades."""
+        done = self.convert("1:50", "100:100", "--coulomb", "0.1", "--pressure", "2", "--slip", "25", "--rate", "2.5")
+        m = math.log(2) / math.log(100)
+        self.assertEqual(done.stdout.splitlines()[1:], [f"friction {math.sqrt(3) * 0.2 * (math.sqrt(3) / 10) ** m:.4g} mm^-m"])
+
+    def test_friction_refused(self):
+        for words, said in (("--tresca 0.3 --length 10", "give m"), ("--m 0.14 --tresca 0.3", "give --length"),
+                            ("--m 0.14 --tresca 0.3 --slip 25", "give --length"), ("--m 0.14", "name the friction"),
+                            ("--m 0.14 --tresca 1.2 --length 10", "1.2 times the shear flow stress"),
+                            ("--m 0.14 --coulomb 0.3 --pressure 3 --length 10", "1.56 times"),
+                            ("1:50 1:60", "different strain rates"), ("--m 0 --tresca 0.3 --length 1", "0 is no positive number")):
+            done = self.convert(*words.split())
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(said, done.stderr)
+
+    def test_limits(self):
+        """The flow stresses of the page on what the model leaves out."""
+        page = PAGES["doc/manual/limits.md"]
+
+        def ratio(steel, temperature, strain):
+            return norton_hoff.spittel(steel, temperature, strain, 10.) / norton_hoff.spittel(steel, 1100, 0.5, 10.)
+        for steel, first in (("C45", "flow stress of C45 over that at 1100 °C"), ("S355J2", "S355J2")):
+            for head, values in ((first, [ratio(steel, T, 0.5) for T in (900, 1000, 1050, 1150, 1200)]),
+                                 (steel, [ratio(steel, 1100, strain) for strain in (0.05, 0.1, 0.2, 0.5, 1, 2)])):
+                self.assertIn(" | ".join([f"| {head}", *(f"{value:.2f}" for value in values)]) + " |", page)
 
     def test_sources_agree(self):
         """Two published flow curves of a steel with 0.45 % carbon."""

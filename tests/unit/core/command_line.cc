@@ -48,6 +48,7 @@ int main()
         "--at=billet/radius=20",
         "--at",
         "billet/radius=21"});
+  show({"retroforge", "scene", "prm/tutorial/upsetting.prm", "--at", "billet/radius=21"});
   show({"retroforge", "--print-parameters"});
   show({"retroforge", "simulate", "a.prm", "--print-parameters"});
   show({"retroforge", "--version"});
@@ -67,6 +68,7 @@ int main()
   show({"retroforge", "simulate", "a.prm", "--set", "=3"});
   show({"retroforge", "simulate", "a.prm", "--resume=yes"});
   show({"retroforge", "simulate", "a.prm", "--resume", "--overwrite"});
+  show({"retroforge", "scene", "a.prm", "--resume"});
   show({"retroforge", "simulate", "a.prm", "--at", "billet/radius"});
   show({"retroforge", "simulate", "a.prm", "--at", "billet/radius=20mm"});
   show({"retroforge", "simulate", "a.prm", "--at", "=20"});

@@ -35,6 +35,8 @@ Summary filled()
   s.linear_solves_adjoint = 40;
   s.volume_initial        = 8.;
   s.volume_final          = 7.5;
+  s.volume_of_shape       = 8.25;
+  s.warnings              = {"no node touched die side"};
   s.wall_seconds          = {{"assembly", 0.5}, {"total", 2.}};
   s.record_bytes          = 5000000000;
   s.spanned               = {80, 5, 0.07, 3., {{1., 2., 3.}}, "lower"};

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/discretization/triangulation.h>
+#include <retroforge/mesh/whole_part.h>
+#include <retroforge/output/die_pictures.h>
+#include <retroforge/output/field_file.h>
+#include <retroforge/output/safe_file.h>
+#include <retroforge/output/scene_pictures.h>
+
+#include <sstream>
+
+namespace retroforge
+{
+  void ScenePictures::add_billet(const TetMesh                       &mesh,
+                                 const NodalVectors<double>          &X,
+                                 const std::vector<Die>              &dies,
+                                 const std::vector<DieState<double>> &states)
+  {
+    const auto [low, high] = bounding_box(X);
+    std::vector<double> gap(X.size(), (high - low).norm()), nearest(X.size(), 0.);
+    for (NodeIndex k = 0; k < X.size(); ++k)
+      for (unsigned int d = 0; d < dies.size(); ++d)
+        if (const double distance = dies[d].signed_distance(X[k], states[d].displacement); distance < gap[k])
+        {
+          gap[k]     = distance;
+          nearest[k] = d + 1.;
+        }
+    dealii::Triangulation<3> triangulation;
+    make_triangulation(mesh, X, triangulation);
+    FieldFile<3> picture(triangulation);
+    picture.add_linear("gap", "mm", gap);
+    picture.add_linear("nearest_die", "", nearest);
+    picture.add_symmetry_planes(symmetry_planes(mesh));
+    add("scene_billet.vtu");
+    picture.write(directory_ + "/" + files_.back().second);
+  }
+
+  void ScenePictures::add_die(const Die &die, const Vec3 &displacement, const NodalVectors<double> &around)
+  {
+    dealii::Triangulation<2, 3> facets;
+    make_triangulation(die_picture(die, displacement, around), facets);
+    add("scene_die_" + die.name + ".vtu");
+    FieldFile<2>(facets).write(directory_ + "/" + files_.back().second);
+  }
+
+  void ScenePictures::write_list() const
+  {
+    std::ostringstream out;
+    dealii::DataOutBase::write_pvd_record(out, files_);
+    write_file(directory_ + "/scene.pvd", out.str());
+  }
+} // namespace retroforge

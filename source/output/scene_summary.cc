@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/text.h>
+#include <retroforge/output/scene_summary.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <sstream>
+
+namespace retroforge
+{
+  namespace
+  {
+    using SceneJson = nlohmann::ordered_json; // which writes numbers that are not finite as null
+
+    SceneJson in_json(const Vec3 &x)
+    {
+      return {x[0], x[1], x[2]};
+    }
+
+    SceneJson in_json(const SceneSummary::Corners &box)
+    {
+      return {in_json(box.first), in_json(box.second)};
+    }
+
+    SceneJson in_json(const SceneSummary::Die::Place &place)
+    {
+      return {{"distance", place.distance},
+              {"place", std::isfinite(place.distance) ? in_json(place.place) : SceneJson()}};
+    }
+
+    SceneJson in_json(const SceneSummary::Billet &billet)
+    {
+      SceneJson patches = SceneJson::array(), planes = SceneJson::array();
+      for (const auto &[name, area] : billet.patches)
+        patches.push_back({{"name", name}, {"area", area}});
+      for (const SceneSummary::SymmetryPlane &plane : billet.symmetry_planes)
+        planes.push_back(
+          {{"name", plane.name}, {"point", in_json(plane.point)}, {"normal", in_json(plane.normal)}});
+      return {{"shape", billet.shape},
+              {"extents", in_json(billet.extents)},
+              {"nodes", billet.n_nodes},
+              {"cells", billet.n_cells},
+              {"element_size", billet.element_size},
+              {"shortest_edge", billet.shortest_edge},
+              {"longest_edge", billet.longest_edge},
+              {"smallest_angle", billet.smallest_angle},
+              {"volume", billet.volume},
+              {"volume_of_shape", billet.volume_of_shape},
+              {"whole", {{"copies", billet.whole.copies}, {"force_factor", billet.whole.force}}},
+              {"patches", patches},
+              {"symmetry_planes", planes}};
+    }
+
+    SceneJson in_json(const SceneSummary::Die &die)
+    {
+      SceneJson json = {{"name", die.name},
+                        {"shape", die.shape},
+                        {"facets", die.n_facets},
+                        {"extents", die.extents ? in_json(*die.extents) : SceneJson()},
+                        {"point", in_json(die.point)},
+                        {"facing", in_json(die.facing)},
+                        {"velocity", in_json(die.velocity)},
+                        {"friction", die.friction},
+                        {"leads", die.leads},
+                        {"smallest_size", die.smallest_size},
+                        {"gap", in_json(die.gap)},
+                        {"touches", die.touches}};
+      if (die.overlap)
+      {
+        json["overlap"]               = in_json(*die.overlap);
+        json["overlap"]["of_the_die"] = die.is_of_die;
+        json["overlap"]["frees"]      = in_json(die.frees);
+      }
+      if (die.velocity.norm() > 0.)
+      {
+        json["first_touch"]           = in_json(die.first_touch);
+        json["first_touch"]["stroke"] = die.stroke_at_touch;
+        json["moves_away"]            = die.moves_away;
+      }
+      return json;
+    }
+
+    std::string point(const Vec3 &x)
+    {
+      return "(" + as_text(x[0]) + ", " + as_text(x[1]) + ", " + as_text(x[2]) + ")";
+    }
+
+    std::string range(const SceneSummary::Corners &box)
+    {
+      std::string text;
+      for (unsigned int i = 0; i < 3; ++i)
+        text += std::string(i > 0 ? ", " : "") + "xyz"[i] + " " + as_text(box.first[i]) + " to " +
+                as_text(box.second[i]);
+      return text + " mm";
+    }
+
+    void list(std::ostream &out, const SceneSummary::Billet &billet)
+    {
+      out << "  billet, " << billet.shape << "\n    " << range(billet.extents) << "\n    " << billet.n_nodes
+          << " nodes, " << billet.n_cells << " tetrahedra; edges of the surface from "
+          << as_text(billet.shortest_edge) << " to " << as_text(billet.longest_edge) << " mm, wanted "
+          << as_text(billet.element_size) << " mm; smallest angle " << as_text(billet.smallest_angle)
+          << " degrees\n    volume of the mesh " << as_text(billet.volume) << " mm^3";
+      if (std::isfinite(billet.volume_of_shape))
+        out << ", of the shape " << as_text(billet.volume_of_shape) << " mm^3 ("
+            << as_text(100. * (billet.volume / billet.volume_of_shape - 1.)) << " %)";
+      if (std::isnan(billet.whole.copies))
+        out << "; the symmetry planes bound no whole part";
+      else if (!billet.whole.is_model())
+        out << "; 1/" << as_text(billet.whole.copies) << " of the part, which has "
+            << as_text(billet.whole.copies * billet.volume) << " mm^3";
+      out << "\n    patches:";
+      for (const auto &[name, area] : billet.patches)
+        out << (name == billet.patches.front().first ? " " : ", ") << name << " (" << as_text(area)
+            << " mm^2)";
+      out << '\n';
+      for (const SceneSummary::SymmetryPlane &plane : billet.symmetry_planes)
+        out << "    symmetry plane " << plane.name << " through " << point(plane.point) << ", outward normal "
+            << point(plane.normal) << '\n';
+    }
+
+    void list_place(std::ostream &out, const SceneSummary::Die &die)
+    {
+      if (die.overlap)
+        out << "    OVERLAPS: " << (die.is_of_die ? "a point of it is " : "the billet is ")
+            << as_text(die.overlap->distance) << " mm inside the " << (die.is_of_die ? "billet" : "die")
+            << ", at " << point(die.overlap->place) << "; free when moved by " << point(die.frees) << " mm\n";
+      else if (die.touches)
+        out << "    touches the billet at the start, at " << point(die.gap.place) << '\n';
+      else if (std::isfinite(die.gap.distance))
+        out << "    stands " << as_text(die.gap.distance) << " mm away from the billet, nearest to "
+            << point(die.gap.place) << '\n';
+      else
+        out << "    sees no part of the billet: all of it is beside the die, behind its rim\n";
+    }
+
+    void list_path(std::ostream &out, const SceneSummary::Die &die)
+    {
+      if (die.velocity.norm() == 0.)
+      {
+        out << "    stands still\n";
+        return;
+      }
+      out << "    moves at " << point(die.velocity) << " mm/s"
+          << (die.leads ? " and leads: the stroke is its path" : "");
+      if (std::isnan(die.first_touch.distance))
+        out << (die.moves_away ? "; moves away from the billet\n"
+                               : "; does not touch the billet, as that stands now, within the stroke\n");
+      else if (!die.touches)
+        out << "; touches the billet first at " << point(die.first_touch.place) << " after a way of "
+            << as_text(die.first_touch.distance) << " mm, at stroke " << as_text(die.stroke_at_touch)
+            << " mm\n";
+      else
+        out << '\n';
+    }
+
+    void list(std::ostream &out, const SceneSummary::Die &die)
+    {
+      out << "  die " << die.name << ", " << die.shape << ", friction " << as_text(die.friction) << '\n';
+      if (die.extents)
+        out << "    " << range(*die.extents) << ", " << die.n_facets << " facets\n";
+      else
+        out << "    through " << point(die.point) << ", facing " << point(die.facing) << '\n';
+      list_place(out, die);
+      list_path(out, die);
+      if (std::isfinite(die.smallest_size))
+        out << "    edges near it are wanted down to " << as_text(die.smallest_size) << " mm\n";
+    }
+
+    void list(std::ostream &out, const SceneSummary::Press &press)
+    {
+      out << "  press\n    stroke " << as_text(press.stroke) << " mm of die " << press.leading_die << " in "
+          << press.increments << " increments of " << as_text(press.stroke / press.increments) << " mm; "
+          << as_text(press.seconds) << " s, " << as_text(press.seconds / press.increments) << " s each\n";
+    }
+
+    void list(std::ostream &out, const SceneSummary::Estimate &estimate)
+    {
+      out << "  to expect, by the " << estimate.name << "\n    dies close at " << as_text(estimate.speed)
+          << " mm/s, strain rate " << as_text(estimate.strain_rate) << " /s, flow stress "
+          << as_text(estimate.stress) << " MPa\n    force on the whole part " << as_text(estimate.first_force)
+          << " N where the dies first press, " << as_text(estimate.final_force)
+          << " N after the stroke, to a factor of two\n";
+    }
+  } // namespace
+
+  std::string SceneSummary::to_json() const
+  {
+    SceneJson json = {{"schema", schema},
+                      {"command", "scene"},
+                      {"version", version},
+                      {"commit", commit},
+                      {"case", case_file},
+                      {"refusals", refusals},
+                      {"warnings", warnings}};
+    if (billet)
+      json["billet"] = in_json(*billet);
+    json["dies"] = SceneJson::array();
+    for (const Die &die : dies)
+      json["dies"].push_back(in_json(die));
+    if (press)
+      json["press"] = {{"leading_die", press->leading_die},
+                       {"stroke", press->stroke},
+                       {"seconds", press->seconds},
+                       {"increments", press->increments}};
+    if (estimate)
+      json["estimate"] = {{"name", estimate->name},
+                          {"speed", estimate->speed},
+                          {"strain_rate", estimate->strain_rate},
+                          {"stress", estimate->stress},
+                          {"first_force", estimate->first_force},
+                          {"final_force", estimate->final_force}};
+    json["wall_seconds"] = seconds;
+    return json.dump(2, ' ', false, SceneJson::error_handler_t::replace) + "\n";
+  }
+
+  std::string SceneSummary::listing() const
+  {
+    std::ostringstream out;
+    out << "Retroforge " << version << ' ' << commit << ", scene of " << case_file << '\n';
+    for (const std::string &refusal : refusals)
+      out << "  REFUSED: " << refusal << '\n';
+    for (const std::string &warning : warnings)
+      out << "  " << warning << '\n';
+    if (billet)
+      list(out, *billet);
+    for (const Die &die : dies)
+      list(out, die);
+    if (press)
+      list(out, *press);
+    if (estimate)
+      list(out, *estimate);
+    return out.str();
+  }
+} // namespace retroforge
