@@ -37,7 +37,7 @@ namespace retroforge
         std::cout << "  note: the surface of die " << die.name << " has another rim, "
                   << as_text(rims[i].length) << " mm around, at (" << rims[i].centre[0] << ", "
                   << rims[i].centre[1] << ", " << rims[i].centre[2]
-                  << "): a hole, or a part by itself; if it is not meant, repair the file\n";
+                  << "): a hole or a separate part; if that is not intended, repair the file\n";
     }
   } // namespace
 
@@ -66,7 +66,8 @@ namespace retroforge
     if (at.process.stretch != 1.)
       std::cout << "  note: die " << at.parameters.dies[at.process.leading_die].name
                 << " follows the billet: its path is " << at.process.stretch * at.parameters.press.stroke
-                << " mm, told as the nominal design's " << at.parameters.press.stroke << " mm\n";
+                << " mm long; strokes are given as the nominal design's, " << at.parameters.press.stroke
+                << " mm\n";
     std::cout << std::flush;
   }
 
