@@ -99,18 +99,18 @@ class Surface:
         self.n = np.array([unit(n) for n in total])
 
     def foot(self, t, X):
-        """Coordinates and xi of (19), by Newton's method."""
+        """Coordinates of (19), by Newton's method."""
         x, n = self.x[t], self.n[t]
         y = np.array([1 / 3, 1 / 3, 0.])  # l_1, l_2, xi
-        for _ in range(12):
+        for _ in range(8):
             l = np.array([1 - y[0] - y[1], y[0], y[1]])
             J = np.column_stack([x[1] - x[0] + y[2] * (n[1] - n[0]), x[2] - x[0] + y[2] * (n[2] - n[0]), l @ n])
             y = y - np.linalg.solve(J, l @ x + y[2] * (l @ n) - X)
-        return np.array([1 - y[0] - y[1], y[0], y[1]]), y[2]
+        return np.array([1 - y[0] - y[1], y[0], y[1]])
 
     def gap(self, X):
-        feet = [(t, *self.foot(t, X)) for t in self.triangles]
-        t, l, _ = min((foot for foot in feet if foot[1].min() >= -1e-12), key=lambda foot: abs(foot[2]))
+        nearest = sorted(self.triangles, key=lambda t: np.linalg.norm(self.x[t].mean(axis=0) - X))
+        t, l = next((t, l) for t, l in ((t, self.foot(t, X)) for t in nearest) if l.min() >= -1e-12)
         x, n = l @ self.x[t], unit(-(l @ self.n[t]))
         lifted = x + sum(l[a] * ((self.x[t[a]] - x) @ self.n[t[a]]) * self.n[t[a]] for a in range(3)) / 2
         return (lifted - X) @ n, n  # (20)
