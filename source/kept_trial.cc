@@ -68,7 +68,7 @@ namespace retroforge
     if (again.failed())
       throw Error("optimize",
                   "forged a design again" + described(known.mu) + ", which now fails: " + again.failure,
-                  "a design gives the same twice on one machine",
+                  "the same design gives the same result on one machine",
                   "begin anew with --overwrite");
     if (known.values != again.values)
       throw Error("optimize",
@@ -91,7 +91,7 @@ namespace retroforge
           throw Error("optimize",
                       "found a derivative that is " + as_text(derivative) + described(known.mu),
                       "results must be finite numbers",
-                      "use values of the usual size: exponents and sharpness above all");
+                      "use values of the usual size, of exponents and sharpness in particular");
     }
     return gradients;
   }

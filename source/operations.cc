@@ -40,7 +40,7 @@ namespace retroforge
     {
       if (std::error_code ignored; !std::filesystem::is_regular_file(file, ignored))
         throw Error(entry,
-                    "names '" + file + "', which is no file here, nor beside the case",
+                    "names '" + file + "', which is a file neither in this folder nor in that of the case",
                     "each is the parameter file of a case",
                     "correct its name");
       CommandLine command = main.command;

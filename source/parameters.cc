@@ -179,14 +179,15 @@ namespace retroforge
       "shape: of a box billet/stretch, billet/height, of a cylinder billet/radius, billet/height, of a ring "
       "billet/mu1 to billet/mu4, of a profile `billet/control point I r', `billet/control point I z'; modes "
       "of free forms are `billet/free form I' and `die NAME/free form I'. "
-      "The gradient by every node of the billet always comes along. Units: none.");
+      "The gradient by every node of the billet is always computed, too. Units: none.");
     prm.add_parameter(
       "at",
       at,
       "Design parameters and values they have instead of the nominal ones, `NAME: VALUE, NAME: VALUE'; any "
       "that "
       "the scene offers. The mesh stays that of the nominal design, its nodes moved, and so do increments, "
-      "penalty and sizes that follow from the nominal design. Their gradients come along. Units: those of "
+      "penalty and sizes that follow from the nominal design. Their gradients are computed, too. Units: "
+      "those of "
       "the "
       "parameters.");
     prm.declare_entry(

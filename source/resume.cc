@@ -147,12 +147,12 @@ namespace retroforge
     for (unsigned int d = 0; d < dies.size(); ++d)
       if (d >= header.die_facets.size() || header.die_facets[d] != n[d] || header.die_fingerprints[d] != f[d])
         throw Error("Die " + dies[d].name,
-                    "its surface is another one than in the record of " + directory_,
+                    "its surface differs from that in the record of " + directory_,
                     "a run goes on with the dies it began with",
                     "restore the die's file" + anew + untouched);
     if (header.mesh.cells != mesh.cells || header.X_0 != X_0)
       throw Error("Billet",
-                  "its mesh is another one than that in the record of " + directory_,
+                  "its mesh differs from that in the record of " + directory_,
                   "a run goes on with the billet it began with",
                   "use the same mesh file and the same version of the mesher" + anew + untouched);
   }

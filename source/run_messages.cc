@@ -40,7 +40,7 @@ namespace retroforge
         notes.push_back("the surface of die " + die.name + " has another rim, " + as_text(rims[i].length) +
                         " mm around, at (" + as_text(rims[i].centre[0]) + ", " + as_text(rims[i].centre[1]) +
                         ", " + as_text(rims[i].centre[2]) +
-                        "): a hole, or a part by itself; if it is not meant, repair the file");
+                        "): a hole or a separate part; if that is not intended, repair the file");
       return notes;
     }
 

@@ -190,7 +190,7 @@ namespace retroforge
     else if (std::filesystem::exists(folder + "/history.csv"))
       throw Error(folder,
                   "holds the results of a run",
-                  "a scan goes on with a scan",
+                  "only a scan can be resumed as a scan",
                   "choose another folder with --output DIR");
     make_directory(folder);
   }

@@ -36,7 +36,7 @@ namespace retroforge
         throw Error(where,
                     what + " is " + as_text(x),
                     "results must be finite numbers",
-                    "use values of the usual size: exponents and sharpness above all");
+                    "use values of the usual size, of exponents and sharpness in particular");
     }
 
     void check_finite(const Objectives &objectives, const std::vector<double> &values)

@@ -89,7 +89,7 @@ namespace retroforge
         throw Error("Objective " + objectives_[j].name,
                     "its value is " + as_text(values[j]),
                     "results must be finite numbers",
-                    "use values of the usual size: exponents and sharpness above all");
+                    "use values of the usual size, of exponents and sharpness in particular");
     return values;
   }
 

@@ -173,7 +173,7 @@ namespace retroforge
     }
     throw Error("Billet/volume held by",
                 "no value of " + held.name + " keeps the volume " + in_words(volume_) + " mm^3",
-                "the other parameters of the shape must leave it one",
+                "there must be one for the other parameters of the shape",
                 "change them less, or hold the volume by another parameter");
   }
 

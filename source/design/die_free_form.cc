@@ -195,8 +195,8 @@ namespace retroforge
         throw Error(section + "/free form modes",
                     "is " + std::to_string(modes) + ", and " + std::to_string(free) +
                       " of the die's vertices are free to move",
-                    "there are as many modes as vertices in the region, of mirror images one",
-                    free == 0 ? "correct the region, which is where the die stands at the start"
+                    "a region has as many modes as vertices, mirror images counted once",
+                    free == 0 ? "correct the region, whose coordinates are those of the die at the start"
                               : "ask for fewer modes, widen the region, or give the surface more facets");
       if (n > most_moving_points)
         throw Error(section + "/free form modes",

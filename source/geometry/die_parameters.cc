@@ -37,7 +37,7 @@ namespace retroforge
                       "in the nominal design, "
                       "and ends, if it is the leading one, where it ends there: the stroke changes with the "
                       "height, the final gap "
-                      "does not. Strokes are told as those of the nominal design. The gradient by the "
+                      "does not. Strokes are given as those of the nominal design. The gradient by the "
                       "billet's nodes is that with "
                       "the dies held. Units: none.");
     shape.add_settings(prm);

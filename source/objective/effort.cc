@@ -73,7 +73,7 @@ namespace retroforge
         throw Error("Effort",
                     "no increment lies in the window",
                     "the window must overlap the run",
-                    "let it end with the stroke, or after it began");
+                    "let it begin before the end of the stroke and end after its beginning");
     }
   } // namespace
 
@@ -83,7 +83,7 @@ namespace retroforge
       throw Error(where,
                   "the window goes from " + as_text(begin) + " to " + as_text(end),
                   "it must end after it begins",
-                  "swap the two, or leave the end away");
+                  "swap the two, or leave out the end");
   }
 
   template <typename Number>

@@ -14,8 +14,9 @@ namespace retroforge
   {
     if (n_ranks == 1 || n_ranks + load <= n_cores + 0.5)
       return "";
-    return "  note: " + std::to_string(n_ranks) + " ranks beside a load of " + as_text(load) + " on " +
-           std::to_string(n_cores) + " cores wait for each other: fewer ranks, or one, may be faster\n";
+    return "  note: " + std::to_string(n_ranks) + " ranks share " + std::to_string(n_cores) +
+           " cores with a load of " + as_text(load) +
+           " and wait for each other: fewer ranks, or one, may be faster\n";
   }
 
   void print_part(const WholePart &whole)

@@ -73,14 +73,14 @@ namespace retroforge
       "Remesh when a surface edge with both ends on a curved die is deeper inside it than this "
       "part of the element size. Units: none.",
       Double(1e-6));
-    prm.add_parameter("largest repair",
-                      largest_repair,
-                      "Metal thinner than an element may be taken away where the surface crosses itself, or "
-                      "where a flat cell at "
-                      "it would stay, in all this part of the workpiece's volume; what crosses beyond that "
-                      "is a fold, and the "
-                      "run stops. Units: none.",
-                      Double(0., 1.));
+    prm.add_parameter(
+      "largest repair",
+      largest_repair,
+      "Metal thinner than an element may be taken away where the surface crosses itself, or "
+      "where a flat cell would stay there: over the run up to this part of the workpiece's volume. Beyond "
+      "that the crossing is a fold, and the "
+      "run stops. Units: none.",
+      Double(0., 1.));
     prm.add_parameter(
       "first mesh", first_mesh, "Improve the billet's mesh by one pass before the run begins. Units: none.");
     prm.leave_subsection();

@@ -10,7 +10,7 @@ namespace retroforge
   using SymmetricTensor = Symmetric<double>;
 
   /// Deviatoric stress of a cell [MPa]: the mean over the four sub-tetrahedra, of equal volume, of the law's
-  /// s_a = 2 K q_a^((m-1)/2) eps_a, without the trace that is left where the discrete flow is not quite
+  /// s_a = 2 K chi_a^((m-1)/2) eps_a, without the trace that is left where the discrete flow is not quite
   /// incompressible.
   SymmetricTensor cell_deviatoric_stress(const CellGeometry<double> &geometry,
                                          const CellValues<double>   &w,

@@ -8,11 +8,11 @@
 /// @file
 /// The tetrahedron with P1 + hat bubble velocity and P1 pressure, integrated in closed form.
 ///
-/// The bubble is 4 lambda_a on the sub-tetrahedron w_a spanned by the barycentre and the face opposite node
-/// a, so all gradients are constant there:  eps_a = sym( sum_c V_c (x) g_c + 4 beta (x) g_a ),  |w_a| =
-/// |T|/4,  and
-///   Pi_T(V, beta, P) = |T|/4 sum_a K/(m+1) q_a^((m+1)/2) - |T| pbar tr(L) + |T|/4 beta·grad p,   L = sum_c
-///   V_c (x) g_c
+/// The bubble is 4 l_a on the sub-tetrahedron T_a spanned by the barycentre and the face opposite node a, l_a
+/// the barycentric coordinates, so all gradients are constant there:
+///   eps_a = sym( sum_c V_c (x) g_c + 4 beta (x) g_a ),  |T_a| = |T|/4,  and
+///   Pi_T(V, beta, P) = |T|/4 sum_a K/(m+1) chi_a^((m+1)/2) - |T| pbar tr(L) + |T|/4 beta·grad p,
+///   chi_a = 2 eps_a:eps_a + 3 e0^2,  L = sum_c V_c (x) g_c
 /// is the element's part of the saddle functional, whose gradient is the residual.  @cite Laroussi2003, Eq.
 /// (36)-(39)
 namespace retroforge
@@ -89,14 +89,14 @@ namespace retroforge
     void condense(CellValues<double> &rhs) const;
   };
 
-  /// Second derivatives of Pi_T with the bubble eliminated: the symmetric 16 x 16 matrix [A B; B^T -C] of one
+  /// Second derivatives of Pi_T with the bubble eliminated: the symmetric 16 x 16 matrix [A B; B^T C] of one
   /// cell.
   template <typename Number>
   struct TangentBlocks : BubbleElimination<Number>
   {
     Number A[4][4][3][3]; ///< velocity-velocity
     Number B[4][4][3];    ///< velocity of the first node, pressure of the second
-    Number C[4][4];       ///< pressure-pressure, negative semi-definite (enters as it is)
+    Number C[4][4];       ///< pressure-pressure, negative semi-definite
     Number viscosity;     ///< mean stress factor / 2 [MPa s], for the Schur complement's scale
     Number volume;        ///< [mm^3]
   };

@@ -62,7 +62,7 @@ namespace retroforge
     return total;
   }
 
-  /// Sum of the law's potential  K/(m+1) q^((m+1)/2)  [mJ/s/mm^3] over the points.
+  /// Sum of the law's potential  K/(m+1) chi^((m+1)/2)  [mJ/s/mm^3] over the points.
   template <typename Number>
   Number potential_sum(const PointRates<Number> &eps, const MaterialLaw<Number> &law)
   {

@@ -9,13 +9,13 @@
 /// @file
 /// The tetrahedron of Taylor and Hood: P2 velocity and P1 pressure on straight edges.
 ///
-/// Velocity nodes are the corners and the middles of the edges. With W_cc = V of corner c and W_cd = V of the
+/// Velocity nodes are the corners and the middles of the edges. With V_cc = V_c of corner c and V_cd of the
 /// middle between c and d, the velocity gradient is that of a linear field whose nodal velocities vary,
-///   L(x) = sum_c U_c(x) (x) g_c,     U_c = 4 sum_d lambda_d W_cd - V_c.
-/// It is sampled at four points of equal weights, lambda_q = (5 + 3 sqrt5)/20 at point q and (5 - sqrt5)/20
-/// at the others, which integrate polynomials of degree two exactly: the constraint of incompressibility, and
-/// the potential where m = 1.  With a quarter of the volume each,
-///   Pi_T(V, P) = |T|/4 sum_q [ K/(m+1) q_q^((m+1)/2) - p_q tr L_q ]
+///   L(x) = sum_c U_c(x) (x) g_c,     U_c = 4 sum_d l_d V_cd - V_c.
+/// It is sampled at four points of equal weights, at point a of which l_a = (5 + 3 sqrt5)/20 and the other l
+/// are (5 - sqrt5)/20, which integrate polynomials of degree two exactly: the constraint of
+/// incompressibility, and the potential where m = 1.  With a quarter of the volume each,
+///   Pi_T(V, P) = |T|/4 sum_a [ K/(m+1) chi_a^((m+1)/2) - p_a tr L_a ]
 /// is the element's part of the saddle functional, convex in V since the weights are positive; its gradient
 /// is the residual.  @cite Taylor1973, quadrature: @cite Hammer1956
 namespace retroforge
@@ -53,7 +53,7 @@ namespace retroforge
   /// Equivalent strain rates e = sqrt(2/3 eps:eps) [1/s] at the four points.
   Four<double> cell_strain_rates(const CellGeometry<double> &geometry, const TaylorHoodValues<double> &w);
 
-  /// 1/4 sum_q e_q [1/s]. Not smooth where an eps_q vanishes: the derivative of that e_q, where one is asked
+  /// 1/4 sum_a e_a [1/s]. Not smooth where an eps_a vanishes: the derivative of that e_a, where one is asked
   /// for, is then zero.
   template <typename Number>
   Number cell_strain_rate(const CellGeometry<Number> &geometry, const TaylorHoodValues<Number> &w);

@@ -6,8 +6,9 @@
 
 namespace retroforge
 {
-  /// Norton-Hoff law  s = 2 K q^((m-1)/2) eps,  q = 2 eps:eps + 3 e0^2 = 3 (e^2 + e0^2),  e^2 = 2/3 eps:eps.
-  /// It derives from the potential  K/(m+1) q^((m+1)/2).  @cite Laroussi2003, Eq. (18), regularised by e0.
+  /// Norton-Hoff law  s = 2 K chi^((m-1)/2) eps,  chi = 2 eps:eps + 3 e0^2 = 3 (e^2 + e0^2),
+  /// e^2 = 2/3 eps:eps. It derives from the potential  K/(m+1) chi^((m+1)/2).  @cite Laroussi2003, Eq. (18),
+  /// regularised by e0.
   template <typename Number>
   struct NortonHoff
   {
@@ -36,20 +37,20 @@ namespace retroforge
     /// Whether the stress is proportional to the strain rate.
     bool is_linear() const { return value_of(m) == 1.; }
 
-    /// Factor  2 K q^((m-1)/2)  of  s = factor * eps  [MPa s] at  eps2 = eps:eps  [1/s^2].
-    Number operator()(const Number &eps2) const { return 2. * K * power(q(eps2), Number(0.5 * (m - 1.))); }
+    /// Factor  2 K chi^((m-1)/2)  of  s = factor * eps  [MPa s] at  eps2 = eps:eps  [1/s^2].
+    Number operator()(const Number &eps2) const { return 2. * K * power(chi(eps2), Number(0.5 * (m - 1.))); }
 
-    /// Potential over factor  q/(2 (m+1))  [1/s^2].
-    Number potential_ratio(const Number &eps2) const { return q(eps2) / (2. * (m + 1.)); }
+    /// Potential over factor  chi/(2 (m+1))  [1/s^2].
+    Number potential_ratio(const Number &eps2) const { return chi(eps2) / (2. * (m + 1.)); }
 
     /// d log(factor) / d eps2  [s^2].
-    Number slope(const Number &eps2) const { return is_linear() ? Number(0.) : Number((m - 1.) / q(eps2)); }
+    Number slope(const Number &eps2) const { return is_linear() ? Number(0.) : Number((m - 1.) / chi(eps2)); }
 
     /// Adds to `bar` the derivatives in K, m and e0 of a scalar whose derivative in log(factor) is `log_bar`.
     void reverse(const double eps2, const double log_bar, NortonHoff<double> &bar) const
     {
       bar.K += log_bar / K;
-      bar.m += log_bar * 0.5 * log_or_zero(q(eps2));
+      bar.m += log_bar * 0.5 * log_or_zero(chi(eps2));
       bar.e0 += log_bar * slope(eps2) * 3. * e0;
     }
 
@@ -60,6 +61,6 @@ namespace retroforge
     }
 
   private:
-    Number q(const Number &eps2) const { return 2. * eps2 + 3. * e0 * e0; }
+    Number chi(const Number &eps2) const { return 2. * eps2 + 3. * e0 * e0; }
   };
 } // namespace retroforge

@@ -7,7 +7,7 @@
 namespace retroforge
 {
   /// Smooth maximum over nodes and time of the contact pressure on a die [MPa],
-  ///   ( sum_i dt_i sum_k S_k p_k^q / sum_i dt_i sum_k S_k w_k )^(1/q),
+  ///   ( sum_i dt_i sum_k S_k p_k^gamma / sum_i dt_i sum_k S_k w_k )^(1/gamma),
   /// p_k the force that pushes a node of the mesh, that of its own and half of that of each edge at it, over
   /// S_k; k the nodes in reach of the die, S_k a third of the surface at k, w_k the friction ramp: the mean
   /// over the surface in contact. The same with linear and with quadratic velocities: these have an even
@@ -19,8 +19,8 @@ namespace retroforge
   public:
     static constexpr unsigned int n_terms = 2;
 
-    /// @param exponent   q >= 1, 10 to 50 for a maximum
-    /// @param reference  a pressure of the expected size, so that p^q neither overflows nor vanishes: it
+    /// @param exponent   gamma >= 1, 10 to 50 for a maximum
+    /// @param reference  a pressure of the expected size, so that p^gamma neither overflows nor vanishes: it
     /// cancels [MPa]  @throws Error
     ContactPressure(unsigned int die, double exponent, double reference);
 
