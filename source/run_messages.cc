@@ -27,6 +27,12 @@ namespace retroforge
                   << std::flush;
     }
 
+    void note_remarks(const std::string &what, const std::vector<std::string> &remarks)
+    {
+      for (const std::string &remark : remarks)
+        std::cout << "  note: " << what << ": " << remark << '\n';
+    }
+
     /// An outer rim is what open dies have; another one may be that of a facet that an export lost.
     void note_holes(const Die &die)
     {
@@ -58,6 +64,10 @@ namespace retroforge
               << note_on_load(ranks, load, std::thread::hardware_concurrency());
     for (const std::string &sentence : at.parameters.without_effect)
       std::cout << "  note: " << sentence << '\n';
+    note_remarks("the file of the billet", at.nominal_billet.remarks);
+    for (const Die &die : at.model.dies)
+      if (die.surface())
+        note_remarks("the file of die " + die.name, die.surface()->remarks);
     for (const Die &die : at.model.dies)
       note_holes(die);
     if (const double size = at.parameters.remeshing.element_size;
