@@ -250,12 +250,13 @@ namespace retroforge
       return all;
     }
 
+    /// Of a file that is made of another one, in the folder where the command is given.
     std::string name_with(const std::string &file_name, const std::string &ending)
     {
-      const auto slash = file_name.find_last_of('/');
-      const auto base  = slash == std::string::npos ? file_name : file_name.substr(slash + 1);
-      const auto dot   = base.find_last_of('.');
-      return (dot == std::string::npos || dot == 0 ? base : base.substr(0, dot)) + ending;
+      const std::string base = file_name.substr(file_name.find_last_of('/') + 1);
+      const auto        dot  = base.find_last_of('.');
+      const std::string name = (dot == std::string::npos || dot == 0 ? base : base.substr(0, dot)) + ending;
+      return name == base ? "new" + ending : name;
     }
 
     std::string as_billet_of_surface(const std::string &stl)
@@ -287,7 +288,7 @@ namespace retroforge
 
     std::string way_to_volume(const OtherFormat &format, const std::string &from)
     {
-      const std::string msh = name_with(from, ".msh") == from ? "new.msh" : name_with(from, ".msh");
+      const std::string msh = name_with(from, ".msh");
       switch (format.group)
       {
         case FormatGroup::cad:
