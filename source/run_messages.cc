@@ -4,10 +4,12 @@
 #include <retroforge/core/text.h>
 #include <retroforge/core/version.h>
 #include <retroforge/geometry/surface_rims.h>
+#include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/output/blas.h>
 #include <retroforge/output/console.h>
 #include <retroforge/run_messages.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -33,17 +35,56 @@ namespace retroforge
         std::cout << "  note: " << what << ": " << remark << '\n';
     }
 
-    /// An outer rim is what open dies have; another one may be that of a facet that an export lost.
+    /// Whether what is missing is small beside the surface: what closes it has the area vector  -sum_f A_f
+    /// n_f.
+    bool is_nearly_closed(const TriangleSurface &surface)
+    {
+      constexpr double small = 0.05;
+      Vec3             sum;
+      double           area = 0.;
+      for (const Triangle &t : surface.triangles())
+      {
+        const auto &x = surface.vertices();
+        const Vec3  v = facet_vector(x[t[0]], x[t[1]], x[t[2]]);
+        sum += v;
+        area += v.norm();
+      }
+      return sum.norm() < small * area;
+    }
+
+    /// An outer rim is what open dies have; another one, or that of a body, may be that of a facet that an
+    /// export lost.
     void note_holes(const Die &die)
     {
       if (!die.surface())
         return;
       const std::vector<SurfaceRim> rims = find_rims(*die.surface());
-      for (std::size_t i = 1; i < rims.size(); ++i)
-        std::cout << "  note: the surface of die " << die.name << " has another rim, "
-                  << as_text(rims[i].length) << " mm around, at (" << rims[i].centre[0] << ", "
+      for (std::size_t i = is_nearly_closed(*die.surface()) ? 0 : 1; i < rims.size(); ++i)
+        std::cout << "  note: the surface of die " << die.name << " has " << (i == 0 ? "a" : "another")
+                  << " rim, " << as_text(rims[i].length) << " mm around, at (" << rims[i].centre[0] << ", "
                   << rims[i].centre[1] << ", " << rims[i].centre[2]
                   << "): a hole, or a part by itself; if it is not meant, repair the file\n";
+    }
+    /// Equations of flat and slender tetrahedra are nearly dependent, and multigrid does not see it.
+    void note_slender(const Case &at)
+    {
+      constexpr double slender = 10., poor = 15.; // degrees
+      double           least  = 180.;
+      unsigned int     n_poor = 0;
+      for (const auto &cell : at.billet.cells)
+      {
+        const double angle = minimum_dihedral_angle(corners(cell, at.X_0));
+        least              = std::min(least, angle);
+        n_poor += angle < poor;
+      }
+      if (least < slender)
+        std::cout << "  note: faces of the billet's mesh meet at " << as_text(least) << " degrees, and "
+                  << n_poor << " of " << at.billet.n_cells() << " tetrahedra have less than " << poor
+                  << ": linear systems take longer"
+                  << (at.parameters.remeshing.first_mesh
+                        ? ""
+                        : "; `Remeshing/first mesh = true' makes a better mesh before the run begins")
+                  << '\n';
     }
   } // namespace
 
@@ -68,6 +109,7 @@ namespace retroforge
     for (const Die &die : at.model.dies)
       if (die.surface())
         note_remarks("the file of die " + die.name, die.surface()->remarks);
+    note_slender(at);
     for (const Die &die : at.model.dies)
       note_holes(die);
     if (const double size = at.parameters.remeshing.element_size;

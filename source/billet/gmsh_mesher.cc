@@ -244,10 +244,8 @@ namespace retroforge
 
     // Nodes of cells only: Gmsh also keeps points of the geometry.
     // cells: node tags, four for each; tags, X: of all nodes
-    TetMesh cells_and_nodes(const Tags                 &cells,
-                            const Tags                 &tags,
-                            const NodalVectors<double> &X,
-                            TagToNode                  &number)
+    TetMesh
+    cells_and_nodes(const Tags &cells, const Tags &tags, const NodalVectors<double> &X, TagToNode &number)
     {
       TetMesh mesh;
       number = number_tags(cells);
@@ -447,7 +445,7 @@ namespace retroforge
                          const std::string                           &where)
   {
     return within_gmsh(where, "check that the surface is closed and does not cross itself", [&]() {
-      const auto [low, high] = bounding_box(X);
+      const auto [low, high]     = bounding_box(X);
       const Vec3           sides = high - low;
       const LengthUnit     unit(std::max({sides[0], sides[1], sides[2]}));
       NodalVectors<double> in_unit;
@@ -465,7 +463,8 @@ namespace retroforge
       gmsh::model::mesh::generate(3);
       TetMesh mesh = cells_and_nodes(where);
       put_in_mm(unit, mesh);
-      std::copy_n(X.begin(), std::min(X.size(), mesh.X.size()), mesh.X.begin()); // the surface to the last bit
+      std::copy_n(
+        X.begin(), std::min(X.size(), mesh.X.size()), mesh.X.begin()); // the surface to the last bit
       return mesh;
     });
   }

@@ -49,7 +49,8 @@ namespace retroforge
   LengthUnit unit_of(const CutSolid &solid)
   {
     const bool is_round = solid.is_cylinder || !solid.section.empty();
-    return LengthUnit(std::max(solid.height, is_round ? 2 * solid.radius : std::max(solid.size[0], solid.size[1])));
+    return LengthUnit(
+      std::max(solid.height, is_round ? 2 * solid.radius : std::max(solid.size[0], solid.size[1])));
   }
 
   CutSolid in_unit(const LengthUnit &unit, const CutSolid &solid)

@@ -39,16 +39,16 @@ namespace retroforge
     private:
       using ByEntity = std::map<int, Tags>;
 
-      const std::string               file_name_;
-      MshScanner                      in_;
-      MshFile                         file_;
-      double                          version_ = 0.;
-      ByEntity                        tetrahedra_, triangles_;
-      std::map<int, std::vector<int>> physical_;         ///< physical surfaces of each surface
-      std::map<int, std::vector<int>> physical_volumes_; ///< and physical volumes of each volume
-      std::map<int, std::string>      names_;    ///< of physical surfaces
-      std::set<int>                   volumes_;  ///< physical volumes of the tetrahedra
-      std::size_t                     n_curved_ = 0; ///< tetrahedra of higher order
+      const std::string                        file_name_;
+      MshScanner                               in_;
+      MshFile                                  file_;
+      double                                   version_ = 0.;
+      ByEntity                                 tetrahedra_, triangles_;
+      std::map<int, std::vector<int>>          physical_;         ///< physical surfaces of each surface
+      std::map<int, std::vector<int>>          physical_volumes_; ///< and physical volumes of each volume
+      std::map<int, std::string>               names_;            ///< of physical surfaces
+      std::set<int>                            volumes_;          ///< physical volumes of the tetrahedra
+      std::size_t                              n_curved_ = 0;     ///< tetrahedra of higher order
       std::map<MshElement::Shape, std::size_t> other_volume_elements_;
 
       void read_section(const std::string &name)
@@ -133,7 +133,7 @@ namespace retroforge
       /// Parts for parallel programs, each an entity by itself with the physical groups of its parent.
       void read_partitioned_entities()
       {
-        in_.count(0);                      // partitions
+        in_.count(0);                        // partitions
         in_.skip_integers(2 * in_.count(2)); // ghost entities
         read_entities(true);
       }

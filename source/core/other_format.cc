@@ -46,7 +46,8 @@ namespace retroforge
     class FileHead
     {
     public:
-      explicit FileHead(const std::string &bytes) : raw_(bytes.substr(0, longest)), text_(as_plain_lines(raw_))
+      explicit FileHead(const std::string &bytes)
+          : raw_(bytes.substr(0, longest)), text_(as_plain_lines(raw_))
       {
         std::transform(text_.begin(), text_.end(), text_.begin(), [](const unsigned char c) {
           return static_cast<char>(std::tolower(c));
@@ -175,7 +176,7 @@ namespace retroforge
     /// The first that fits counts.
     const std::vector<Signature> &signatures()
     {
-      using G = FormatGroup;
+      using G                                 = FormatGroup;
       static const std::vector<Signature> all = {
         {begins_with("version https://git-lfs"), {"a pointer of Git LFS", G::lfs}},
         {[](const FileHead &head) { return head.begins("/annex/") || head.holds(".git/annex/objects"); },
@@ -198,7 +199,7 @@ namespace retroforge
         {has_magic("\x1f\x8b"), {"packed with gzip", G::archive}},
         {has_magic("BZh"), {"packed with bzip2", G::archive}},
         {has_magic("\xfd"
-               "7zXZ"),
+                   "7zXZ"),
          {"packed with xz", G::archive}},
         {has_magic("\x28\xb5\x2f\xfd"), {"packed with zstd", G::archive}},
         {has_magic("7z\xbc\xaf"), {"a 7z archive", G::archive}},
@@ -262,8 +263,8 @@ namespace retroforge
     std::string as_billet_of_surface(const std::string &stl)
     {
       return "`echo 'Merge \"" + stl + "\"; Surface Loop(1) = {1}; Volume(1) = {1};' > " +
-             name_with(stl, ".geo") + " && gmsh " + name_with(stl, ".geo") + " -3 -o " + name_with(stl, ".msh") +
-             "'";
+             name_with(stl, ".geo") + " && gmsh " + name_with(stl, ".geo") + " -3 -o " +
+             name_with(stl, ".msh") + "'";
     }
 
     std::string way_to_surface(const OtherFormat &format, const std::string &from)
@@ -301,7 +302,8 @@ namespace retroforge
           return "it is a surface; `meshio convert " + from + " " + name_with(from, ".stl") + "', then " +
                  as_billet_of_surface(name_with(from, ".stl")) + " fills it";
         case FormatGroup::scene:
-          return "it is a surface; export it as STL from a mesh tool, MeshLab or Blender for instance, then " +
+          return "it is a surface; export it as STL from a mesh tool, MeshLab or Blender for instance, "
+                 "then " +
                  as_billet_of_surface(name_with(from, ".stl")) + " fills it";
         case FormatGroup::gmsh_reads:
         case FormatGroup::old_msh:
@@ -309,11 +311,12 @@ namespace retroforge
         case FormatGroup::meshio_reads:
           return "`meshio convert " + from + " " + msh + " --output-format gmsh' converts it";
         case FormatGroup::nobody_reads:
-          return "save it as a Nastran or Abaqus file from a preprocessor, then `gmsh part.bdf -0 -save_all -o " +
+          return "save it as a Nastran or Abaqus file from a preprocessor, then `gmsh part.bdf -0 -save_all "
+                 "-o " +
                  msh + "' or `meshio convert part.inp " + msh + " --output-format gmsh'";
         default:
-          return "export STEP from the program that made the file, then `gmsh part.step -3 -clmax 3 -o " + msh +
-                 "'";
+          return "export STEP from the program that made the file, then `gmsh part.step -3 -clmax 3 -o " +
+                 msh + "'";
       }
     }
 
@@ -341,9 +344,9 @@ namespace retroforge
 
   void refuse_other_format(const std::string &file_name, const std::string &bytes, const Wanted wanted)
   {
-    const std::string rule = wanted == Wanted::surface
-                               ? "a surface is read from an STL file"
-                               : "a billet is read from a Gmsh file (.msh) of version 2 or 4";
+    const std::string rule   = wanted == Wanted::surface
+                                 ? "a surface is read from an STL file"
+                                 : "a billet is read from a Gmsh file (.msh) of version 2 or 4";
     const auto        refuse = [&](const OtherFormat &format) {
       throw Error(file_name, "is " + format.name, rule, way(format, file_name, wanted));
     };

@@ -319,8 +319,8 @@ namespace retroforge
     {
       unsigned int n = 0;
       for (unsigned int f = 0; f < surface.n_facets(); ++f)
-        n += surface.neighbour(f, 0).facet == invalid_index && surface.neighbour(f, 1).facet == invalid_index &&
-             surface.neighbour(f, 2).facet == invalid_index;
+        n += surface.neighbour(f, 0).facet == invalid_index &&
+             surface.neighbour(f, 1).facet == invalid_index && surface.neighbour(f, 2).facet == invalid_index;
       return n;
     }
 
@@ -339,8 +339,8 @@ namespace retroforge
 
   TriangleSurface read_stl(const std::string &file_name)
   {
-    auto              facets        = parse(file_name);
-    const std::size_t n_bad_normals = forget_bad_normals(facets);
+    auto                 facets        = parse(file_name);
+    const std::size_t    n_bad_normals = forget_bad_normals(facets);
     NodalVectors<double> corners, normals;
     for (const StlFacet &facet : facets)
     {
@@ -354,8 +354,8 @@ namespace retroforge
     for (const std::string &remark : check_normals(file_name, merged))
       remarks.push_back(remark);
     if (n_bad_normals > 0)
-      remarks.push_back((n_bad_normals == 1 ? "one normal is no number" :
-                                              std::to_string(n_bad_normals) + " normals are no numbers") +
+      remarks.push_back((n_bad_normals == 1 ? "one normal is no number"
+                                            : std::to_string(n_bad_normals) + " normals are no numbers") +
                         ": the order of the corners counts");
     if (rounding > seam * size)
       remarks.push_back("it is so far from the origin that single precision rounds its corners to " +

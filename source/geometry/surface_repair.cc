@@ -95,7 +95,10 @@ namespace retroforge
       return n;
     }
 
-    unsigned int leave_out_equal_corners(Facets &facets) { return leave_out(facets, has_equal_corners); }
+    unsigned int leave_out_equal_corners(Facets &facets)
+    {
+      return leave_out(facets, has_equal_corners);
+    }
 
     /// The same corners in the same order, from whichever on.
     unsigned int leave_out_doubles(Facets &facets)
@@ -153,8 +156,8 @@ namespace retroforge
     {
       std::vector<Triangle> &triangles = facets.triangles;
       const unsigned int     b = triangles[f][corner], c = triangles[f][(corner + 1) % 3],
-                         a     = triangles[f][(corner + 2) % 3];
-      unsigned int other       = invalid_index;
+                         a = triangles[f][(corner + 2) % 3];
+      unsigned int other   = invalid_index;
       for (unsigned int g = 0; g < triangles.size(); ++g)
         if (g != f && std::count(triangles[g].begin(), triangles[g].end(), a) > 0 &&
             std::count(triangles[g].begin(), triangles[g].end(), c) > 0)
@@ -260,12 +263,12 @@ namespace retroforge
     /// @return how many were turned
     unsigned int turn_minority(Facets &facets)
     {
-      std::vector<unsigned int> pieces;
-      const std::vector<bool>   turned = turned_facets(facets, pieces);
+      std::vector<unsigned int>                     pieces;
+      const std::vector<bool>                       turned = turned_facets(facets, pieces);
       std::map<unsigned int, std::array<double, 2>> areas; // of the piece, by side
       for (unsigned int f = 0; f < turned.size(); ++f)
-        areas.try_emplace(pieces[f], std::array<double, 2>{{0., 0.}})
-          .first->second[turned[f] ? 1 : 0] += area_of(facets, f);
+        areas.try_emplace(pieces[f], std::array<double, 2>{{0., 0.}}).first->second[turned[f] ? 1 : 0] +=
+          area_of(facets, f);
       for (const auto &[piece, area] : areas)
         if (std::min(area[0], area[1]) > largest_minority * (area[0] + area[1]))
           return 0;
@@ -299,8 +302,9 @@ namespace retroforge
     }
   } // namespace
 
-  Facets
-  merge_corners(const NodalVectors<double> &corners, const NodalVectors<double> &normals, const double distance)
+  Facets merge_corners(const NodalVectors<double> &corners,
+                       const NodalVectors<double> &normals,
+                       const double                distance)
   {
     Merger merge(distance);
     Facets facets;
@@ -314,12 +318,12 @@ namespace retroforge
   std::vector<std::string> mend(Facets &facets, const double seam)
   {
     std::vector<std::string> done;
-    const auto               tell = [&](const unsigned int n, const std::string &one, const std::string &many) {
+    const auto tell = [&](const unsigned int n, const std::string &one, const std::string &many) {
       if (n > 0)
         done.push_back(n == 1 ? "one " + one : std::to_string(n) + " " + many);
     };
     unsigned int n_collapsed = leave_out_equal_corners(facets);
-    const auto n_doubles = leave_out_doubles(facets);
+    const auto   n_doubles   = leave_out_doubles(facets);
     const auto   n_joined    = close_seams(facets, seam);
     n_collapsed += leave_out_equal_corners(facets);
     n_collapsed += leave_out_flat(facets);
@@ -344,7 +348,7 @@ namespace retroforge
     {
       const Triangle &t      = facets.triangles[f];
       const Vec3     &normal = facets.normals[f];
-      const Vec3 v = facet_vector(facets.vertices[t[0]], facets.vertices[t[1]], facets.vertices[t[2]]);
+      const Vec3      v = facet_vector(facets.vertices[t[0]], facets.vertices[t[1]], facets.vertices[t[2]]);
       if (!(normal.norm() > 0.))
         continue;
       area_with_normal += v.norm();

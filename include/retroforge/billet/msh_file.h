@@ -32,8 +32,10 @@ namespace retroforge
 
   /// Reads a Gmsh file of version 2 or 4.1, ASCII or binary with this machine's order of bytes, or of version
   /// 4.0, ASCII. Of elements of higher order the corners are read, tetrahedra that are there twice once, and
-  /// all volumes as one: the remarks say so. Gmsh itself is not asked: on a damaged file it crashes, or asks for all memory there is.
+  /// all volumes as one: the remarks say so. Gmsh itself is not asked: on a damaged file it crashes, or asks
+  /// for all memory there is.
   /// @throws Error  for what is missing, no number, or announced and not there; nodes that are twice there or
-  /// nowhere; coordinates that are not finite; volume elements that are no tetrahedra; files of another format
+  /// nowhere; coordinates that are not finite; volume elements that are no tetrahedra; files of another
+  /// format
   MshFile read_msh_file(const std::string &file_name);
 } // namespace retroforge

@@ -3,9 +3,10 @@
 
 // Meshes from Gmsh files, written here by hand: the unit cube in five tetrahedra, corners at 0 and 1. Proved:
 // versions 2 and 4 give the same mesh; physical surfaces become patches with the areas of the sides (1 mm2
-// each); planes of symmetry patches are fitted; tetrahedra numbered the other way round are turned; line ends,
-// a byte order mark, elements without tags or of second order, several volumes and tetrahedra that are there
-// twice leave the mesh as it is, with a remark where something was left out; each kind of bad file is refused.
+// each); planes of symmetry patches are fitted; tetrahedra numbered the other way round are turned; line
+// ends, a byte order mark, elements without tags or of second order, several volumes and tetrahedra that are
+// there twice leave the mesh as it is, with a remark where something was left out; each kind of bad file is
+// refused.
 
 #include <deal.II/base/mpi.h>
 
@@ -108,9 +109,9 @@ std::string replaced(std::string text, const std::string &from, const std::strin
 // The cube with the middles of all edges, its elements of second order.
 void write_second_order(const std::string &name)
 {
-  Cube                               cube;
-  std::map<std::array<int, 2>, int>  middle;
-  const auto                         node = [&](int a, int b) {
+  Cube                              cube;
+  std::map<std::array<int, 2>, int> middle;
+  const auto                        node = [&](int a, int b) {
     if (a > b)
       std::swap(a, b);
     const auto [found, is_new] = middle.insert({{{a, b}}, static_cast<int>(cube.nodes.size()) + 1});
@@ -128,8 +129,8 @@ void write_second_order(const std::string &name)
              << node(t[1], t[2]) << " " << node(t[2], t[3]) << " " << node(t[3], t[1]) << "\n";
   for (const auto &t : cube.tets)
     elements << ++number << " 11 2 9 9 " << t[0] << " " << t[1] << " " << t[2] << " " << t[3] << " "
-             << node(t[0], t[1]) << " " << node(t[1], t[2]) << " " << node(t[2], t[0]) << " " << node(t[3], t[0])
-             << " " << node(t[3], t[2]) << " " << node(t[3], t[1]) << "\n";
+             << node(t[0], t[1]) << " " << node(t[1], t[2]) << " " << node(t[2], t[0]) << " "
+             << node(t[3], t[0]) << " " << node(t[3], t[2]) << " " << node(t[3], t[1]) << "\n";
   std::ofstream out(name);
   out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << cube.nodes.size() << "\n";
   for (std::size_t i = 0; i < cube.nodes.size(); ++i)
@@ -177,7 +178,9 @@ void sound_files()
          {"no tags", replaced(text, " 4 2 9 9 ", " 4 0 ")},
          {"two volumes", replaced(text, "9 4 2 9 9 ", "9 4 2 8 8 ")},
          {"a tetrahedron in two groups",
-          replaced(replaced(text, "$Elements\n9", "$Elements\n10"), "\n9 4 2 9 9 ", "\n10 4 2 8 9 2 4 5 7\n9 4 2 9 9 ")},
+          replaced(replaced(text, "$Elements\n9", "$Elements\n10"),
+                   "\n9 4 2 9 9 ",
+                   "\n10 4 2 8 9 2 4 5 7\n9 4 2 9 9 ")},
          {"data of elements", text + "$ElementData\n1\n\"E\"\n1\n0\n3\n0\n1\n1\n9 1.5\n$EndElementData\n"}})
   {
     std::ofstream("form.msh", std::ios::binary) << bytes;

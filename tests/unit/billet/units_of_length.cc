@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 
-// Billets in millimetres, metres, micrometres and what else there is. Proved: bodies that differ by a power of ten
-// have the same mesh, cell by cell and patch by patch, with nodes that differ by this power to rounding.
+// Billets in millimetres, metres, micrometres and what else there is. Proved: bodies that differ by a power
+// of ten have the same mesh, cell by cell and patch by patch, with nodes that differ by this power to
+// rounding.
 
 #include <deal.II/base/mpi.h>
 
@@ -23,9 +24,11 @@ std::string scaled(const std::string &text, const int exponent)
   for (std::string word; std::getline(in, word, ' ');)
   {
     const bool        is_number = word.find_first_of("0123456789") != std::string::npos;
-    const std::string end       = is_number && (word.back() == ',' || word.back() == ';') ? word.substr(word.size() - 1) : "";
-    result += (result.empty() ? "" : " ") +
-              (is_number ? word.substr(0, word.size() - end.size()) + "e" + std::to_string(exponent) + end : word);
+    const std::string end =
+      is_number && (word.back() == ',' || word.back() == ';') ? word.substr(word.size() - 1) : "";
+    result +=
+      (result.empty() ? "" : " ") +
+      (is_number ? word.substr(0, word.size() - end.size()) + "e" + std::to_string(exponent) + end : word);
   }
   return result;
 }
@@ -51,7 +54,7 @@ bool same_cells(const TetMesh &a, const TetMesh &b)
 
 void check(const std::string &title, const Entries &lengths, const Entries &others)
 {
-  const TetMesh mesh = scaled_billet(lengths, others, 0);
+  const TetMesh mesh     = scaled_billet(lengths, others, 0);
   const auto [low, high] = std::minmax_element(
     mesh.X.begin(), mesh.X.end(), [](const Vec3 &a, const Vec3 &b) { return a.norm() < b.norm(); });
   const double size = high->norm();
@@ -81,7 +84,9 @@ int main(int argc, char **argv)
         {{"shape", "cylinder"}, {"sector angle", "60"}});
   check("quarter of a cylinder, half its height",
         {{"radius", "20"}, {"height", "40"}, {"element size", "7"}},
-        {{"shape", "cylinder"}, {"symmetry planes", "-1, 0, 0; 0, -1, 0; 0, 0, 1"}, {"symmetry point", "centre"}});
+        {{"shape", "cylinder"},
+         {"symmetry planes", "-1, 0, 0; 0, -1, 0; 0, 0, 1"},
+         {"symmetry point", "centre"}});
   check("profile",
         {{"control points", "20, 0; 26, 15; 26, 30; 20, 45"}, {"element size", "7"}},
         {{"shape", "profile"}, {"sector angle", "90"}});

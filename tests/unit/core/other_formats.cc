@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 
-// Files of other formats than the wanted one. Proved: each known format is told by its first bytes, whatever the
-// name of the file, with its name and the way to convert it, as a die and as a billet; and STL and Gmsh files,
-// noise and nothing at all are left to their readers. Text with a byte order mark, in UTF-16 or with carriage
-// returns for line ends becomes plain lines, and plain lines stay.
+// Files of other formats than the wanted one. Proved: each known format is told by its first bytes, whatever
+// the name of the file, with its name and the way to convert it, as a die and as a billet; and STL and Gmsh
+// files, noise and nothing at all are left to their readers. Text with a byte order mark, in UTF-16 or with
+// carriage returns for line ends becomes plain lines, and plain lines stay.
 
 #include <retroforge/core/error.h>
 #include <retroforge/core/input_file.h>
@@ -100,11 +100,18 @@ void show_lines()
   show("of Windows", "one\r\ntwo\r\n");
   show("of an old Macintosh", "one\rtwo\r");
   show("byte order mark", "\xef\xbb\xbfone\ntwo\n");
-  show("UTF-16, low byte first", std::string("\xff\xfe"
-                                             "o\0n\0\xac\x20\n\0", 10));
-  show("UTF-16, high byte first", std::string("\xfe\xff" "\0o\0n\x20\xac\0\n", 10));
-  show("UTF-16, odd", std::string("\xff\xfe"
-                                             "o\0n", 5));
+  show("UTF-16, low byte first",
+       std::string("\xff\xfe"
+                   "o\0n\0\xac\x20\n\0",
+                   10));
+  show("UTF-16, high byte first",
+       std::string("\xfe\xff"
+                   "\0o\0n\x20\xac\0\n",
+                   10));
+  show("UTF-16, odd",
+       std::string("\xff\xfe"
+                   "o\0n",
+                   5));
 }
 
 int main()

@@ -66,15 +66,15 @@ void check_forms()
 {
   const TriangleSurface surface = bumpy_sphere(2);
   write_stl("whole.stl", surface, StlFormat::ascii);
-  const std::string text = bytes_of("whole.stl");
-  std::string       bad_normals;
+  const std::string  text = bytes_of("whole.stl");
+  std::string        bad_normals;
   std::istringstream lines(text);
   unsigned int       n = 0;
   for (std::string line; std::getline(lines, line);)
-    bad_normals += (line.find("normal") == std::string::npos ? line :
-                    n++ % 3 == 0                             ? "facet normal nan nan nan" :
-                    n % 3 == 1                               ? "facet normal -nan(ind) 0 1.#QNAN" :
-                                                               "facet normal inf 0 0") +
+    bad_normals += (line.find("normal") == std::string::npos ? line
+                    : n++ % 3 == 0                           ? "facet normal nan nan nan"
+                    : n % 3 == 1                             ? "facet normal -nan(ind) 0 1.#QNAN"
+                                                             : "facet normal inf 0 0") +
                    "\n";
   write_stl("whole_binary.stl", surface, StlFormat::binary);
   std::string bad_binary = bytes_of("whole_binary.stl");
@@ -86,7 +86,9 @@ void check_forms()
          {"UTF-16", in_utf_16(text), 0.},
          {"line ends \\r", replaced(text, "\n", "\r"), 0.},
          {"line ends \\r\\n", replaced(text, "\n", "\r\n"), 0.},
-         {"end solid, end facet", replaced(replaced(text, "endsolid", "end solid"), "endfacet", "end facet"), 0.},
+         {"end solid, end facet",
+          replaced(replaced(text, "endsolid", "end solid"), "endfacet", "end facet"),
+          0.},
          {"exponents of three digits", replaced(replaced(text, "e-0", "e-00"), "e-1", "e-01"), 0.},
          {"normals that are no numbers", bad_normals, 0.},
          {"the same, binary", bad_binary, 2e-7}})
@@ -168,7 +170,7 @@ void check_mending()
   const auto beyond = std::find_if(facets.begin() + 1, facets.end(), [&](const auto &facet) {
     return std::count(facet.begin(), facet.end(), a) > 0 && std::count(facet.begin(), facet.end(), b) > 0;
   });
-  auto half = *beyond;
+  auto       half   = *beyond;
   std::replace(beyond->begin(), beyond->end(), a, middle);
   std::replace(half.begin(), half.end(), b, middle);
   facets.push_back(half);
