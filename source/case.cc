@@ -37,9 +37,11 @@ namespace retroforge
       std::vector<DieState<double>> states;
       for (const DieParameters &die : parameters.dies)
         states.push_back(die.initial_state());
-      return Remesher(parameters.remeshing, parameters.edge_length(mesh), dies, mesh.patches, comm)
-        .remesh(mesh, mesh.X, states, {}, 0., timings)
-        ->mesh;
+      TetMesh remade = Remesher(parameters.remeshing, parameters.edge_length(mesh), dies, mesh.patches, comm)
+                         .remesh(mesh, mesh.X, states, {}, 0., timings)
+                         ->mesh;
+      remade.remarks = mesh.remarks;
+      return remade;
     }
 
     TetMesh make_nominal_mesh(const Parameters &parameters, Timings &timings, MPI_Comm comm)

@@ -6,6 +6,7 @@
 #include <retroforge/billet/billet.h>
 #include <retroforge/billet/fineness.h>
 #include <retroforge/billet/gmsh_mesher.h>
+#include <retroforge/billet/length_unit.h>
 #include <retroforge/billet/surface_slivers.h>
 #include <retroforge/core/error.h>
 #include <retroforge/geometry/triangle_surface.h>
@@ -260,20 +261,23 @@ namespace retroforge
 
     TetMesh mesh_solid(const BilletParameters &p)
     {
-      const CutSolid solid  = solid_of(p);
-      const auto     assign = [shapes = shapes_of(solid)](TetMesh &mesh) {
+      const CutSolid   in_mm  = solid_of(p);
+      const LengthUnit unit   = unit_of(in_mm);
+      const CutSolid   solid  = in_unit(unit, in_mm);
+      const auto       assign = [shapes = shapes_of(solid)](TetMesh &mesh) {
         return assign_patches(mesh, shapes, 1e-6 * mesh_size(mesh), "Billet");
       };
       const auto improve = [&](TetMesh &mesh, const double angle) {
         assign(mesh);
         take_away_surface_slivers(mesh, angle);
       };
-      TetMesh mesh = mesh_with_gmsh(solid, p.element_size, improve, "Billet");
+      TetMesh mesh = mesh_with_gmsh(solid, unit.rounded_from_mm(p.element_size), improve, "Billet");
       if (mesh.cells.empty())
         return mesh;
       snap_nodes(mesh, assign(mesh));
       check_all_planes_cut(mesh, solid);
       put_symmetry_last(mesh);
+      put_in_mm(unit, mesh);
       return mesh;
     }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/billet/gmsh_mesher.h>
+#include <retroforge/billet/length_unit.h>
 #include <retroforge/billet/msh_file.h>
 #include <retroforge/core/error.h>
+#include <retroforge/geometry/triangle_surface.h>
 #include <retroforge/mesh/cell_faces.h>
 #include <retroforge/mesh/mesh_quality.h>
 
@@ -10,8 +12,6 @@
 #include <cfenv>
 #include <clocale>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <gmsh.h>
 #include <map>
 #include <sstream>
@@ -226,35 +226,26 @@ namespace retroforge
       return tags;
     }
 
-    // Turns all cells when all are inverted; a mixture is an error.
-    void orient_cells(TetMesh &mesh, const std::string &where)
+    // Turns the cells that are inverted. Whether they then overlap, check_mesh() finds.
+    // @return how many they were
+    unsigned int turn_inverted(TetMesh &mesh)
     {
-      std::vector<CellIndex> inverted;
-      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
-        if (tet_volume(corners(mesh.cells[c], mesh.X)) < 0)
-          inverted.push_back(c);
-      if (inverted.size() == mesh.n_cells())
-        for (auto &cell : mesh.cells)
+      unsigned int n = 0;
+      for (auto &cell : mesh.cells)
+        if (tet_volume(corners(cell, mesh.X)) < 0)
+        {
           std::swap(cell[2], cell[3]);
-      else if (!inverted.empty())
-      {
-        std::ostringstream what;
-        what << inverted.size() << " of " << mesh.n_cells()
-             << " tetrahedra are inverted, the first is number " << inverted[0] << " with volume "
-             << tet_volume(corners(mesh.cells[inverted[0]], mesh.X));
-        throw Error(where, what.str(), "all tetrahedra must be oriented alike", "repair the mesh");
-      }
+          ++n;
+        }
+      return n;
     }
 
     using TagToNode = std::unordered_map<std::size_t, NodeIndex>;
 
     // Nodes of cells only: Gmsh also keeps points of the geometry.
     // cells: node tags, four for each; tags, X: of all nodes
-    TetMesh cells_and_nodes(const Tags                 &cells,
-                            const Tags                 &tags,
-                            const NodalVectors<double> &X,
-                            const std::string          &where,
-                            TagToNode                  &number)
+    TetMesh
+    cells_and_nodes(const Tags &cells, const Tags &tags, const NodalVectors<double> &X, TagToNode &number)
     {
       TetMesh mesh;
       number = number_tags(cells);
@@ -266,7 +257,9 @@ namespace retroforge
       for (std::size_t i = 0; i < tags.size(); ++i)
         if (const auto node = number.find(tags[i]); node != number.end())
           mesh.X[node->second] = X[i];
-      orient_cells(mesh, where);
+      if (const unsigned int n = turn_inverted(mesh); n > 0 && n < mesh.n_cells())
+        mesh.remarks.push_back(std::to_string(n) + " of its " + std::to_string(mesh.n_cells()) +
+                               " tetrahedra, numbered the other way round, were turned");
       return mesh;
     }
 
@@ -280,7 +273,7 @@ namespace retroforge
       for (std::size_t i = 0; i < tags.size(); ++i)
         X.push_back(Vec3({coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]}));
       TagToNode number;
-      return cells_and_nodes(cell_tags(where), tags, X, where, number);
+      return cells_and_nodes(cell_tags(where), tags, X, number);
     }
 
     TetMesh attempt_mesh(const Attempt &attempt, const double element_size, const std::string &where)
@@ -313,30 +306,6 @@ namespace retroforge
       gmsh::model::mesh::addElementsByType(surface, linear_triangle, {}, nodes);
       gmsh::model::geo::addVolume({gmsh::model::geo::addSurfaceLoop({surface})});
       gmsh::model::geo::synchronize();
-    }
-
-    // Refuses what is another kind of file.
-    void check_is_msh(const std::string &file_name)
-    {
-      std::ifstream   file(file_name);
-      std::error_code ignored;
-      const bool      is_device = std::filesystem::is_character_file(file_name, ignored);
-      if (!file || is_device)
-        throw Error(file_name,
-                    is_device ? "is a device" : "the file cannot be read",
-                    "the mesh of the billet must exist",
-                    "check the path; it is taken from the folder in which the program runs");
-      const auto  dot = file_name.rfind('.');
-      std::string line;
-      double      version = 0;
-      while (line != "$MeshFormat" && std::getline(file, line))
-        line.erase(line.find_last_not_of(" \r") + 1);
-      file >> version;
-      if (dot == std::string::npos || file_name.substr(dot) != ".msh" || version < 2 || version >= 5)
-        throw Error(file_name,
-                    "this is not a Gmsh mesh of version 2 or 4",
-                    "the name must end in .msh, the content begin with $MeshFormat",
-                    "save the mesh from Gmsh with `-format msh4'");
     }
 
     struct PhysicalSurface
@@ -476,26 +445,36 @@ namespace retroforge
                          const std::string                           &where)
   {
     return within_gmsh(where, "check that the surface is closed and does not cross itself", [&]() {
+      const auto [low, high]     = bounding_box(X);
+      const Vec3           sides = high - low;
+      const LengthUnit     unit(std::max({sides[0], sides[1], sides[2]}));
+      NodalVectors<double> in_unit;
+      for (const Vec3 &x : X)
+        in_unit.push_back(unit.from_mm(x));
       gmsh::model::add("enclosed");
-      build_enclosed_volume(X, triangles);
+      build_enclosed_volume(in_unit, triangles);
       gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
       gmsh::option::setNumber("Mesh.OptimizeThreshold", attempts[0].threshold);
       // From Gmsh 4.9 on, a last argument says what size Gmsh itself would take.
       gmsh::model::mesh::setSizeCallback(
         [&](int, int, const double x, const double y, const double z, const auto...) {
-          return size(Vec3({x, y, z}));
+          return unit.from_mm(size(unit.to_mm(Vec3({x, y, z}))));
         });
       gmsh::model::mesh::generate(3);
-      return cells_and_nodes(where);
+      TetMesh mesh = cells_and_nodes(where);
+      put_in_mm(unit, mesh);
+      std::copy_n(
+        X.begin(), std::min(X.size(), mesh.X.size()), mesh.X.begin()); // the surface to the last bit
+      return mesh;
     });
   }
 
   TetMesh read_msh(const std::string &file_name, const std::vector<std::string> &symmetry_patches)
   {
-    check_is_msh(file_name);
     const MshFile file = read_msh_file(file_name);
     TagToNode     number;
-    TetMesh       mesh = cells_and_nodes(file.tetrahedra, file.tags, file.X, file_name, number);
+    TetMesh       mesh = cells_and_nodes(file.tetrahedra, file.tags, file.X, number);
+    mesh.remarks.insert(mesh.remarks.begin(), file.remarks.begin(), file.remarks.end());
     if (mesh.cells.empty())
       return mesh;
     const auto surfaces    = add_faces(mesh, file, number, file_name);

@@ -1,40 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/billet/msh_elements.h>
 #include <retroforge/billet/msh_file.h>
 #include <retroforge/billet/msh_scanner.h>
 #include <retroforge/core/error.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
-#include <iterator>
 #include <limits>
+#include <set>
 
 namespace retroforge
 {
   namespace
   {
     using Tags = MshFile::Tags;
-
-    constexpr int linear_triangle = 2, linear_tetrahedron = 4;
-
-    struct ElementShape
-    {
-      int          dimension = 0;
-      unsigned int n_nodes   = 0; ///< 0: no such type
-    };
-
-    /// Of Gmsh's types, which are counted from 1.
-    ElementShape element_shape(const int type)
-    {
-      constexpr ElementShape shapes[] = {
-        {1, 2},  {2, 3},  {2, 4},  {3, 4}, {3, 8}, {3, 6},  {3, 5},  {1, 3},  {2, 6}, {2, 9},  {3, 10},
-        {3, 27}, {3, 18}, {3, 14}, {0, 1}, {2, 8}, {3, 20}, {3, 15}, {3, 13}, {2, 9}, {2, 10}, {2, 12},
-        {2, 15}, {2, 15}, {2, 21}, {1, 4}, {1, 5}, {1, 6},  {3, 20}, {3, 35}, {3, 56}};
-      if (type == 92 || type == 93)
-        return {3, type == 92 ? 64u : 125u};
-      return type < 1 || type > static_cast<int>(std::size(shapes)) ? ElementShape() : shapes[type - 1];
-    }
 
     class Reader
     {
@@ -57,14 +39,17 @@ namespace retroforge
     private:
       using ByEntity = std::map<int, Tags>;
 
-      const std::string               file_name_;
-      MshScanner                      in_;
-      MshFile                         file_;
-      double                          version_ = 0.;
-      ByEntity                        tetrahedra_, triangles_;
-      std::map<int, std::vector<int>> physical_; ///< physical surfaces of each surface
-      std::map<int, std::string>      names_;
-      std::map<int, std::size_t>      other_volume_elements_; ///< number of them by type
+      const std::string                        file_name_;
+      MshScanner                               in_;
+      MshFile                                  file_;
+      double                                   version_ = 0.;
+      ByEntity                                 tetrahedra_, triangles_;
+      std::map<int, std::vector<int>>          physical_;         ///< physical surfaces of each surface
+      std::map<int, std::vector<int>>          physical_volumes_; ///< and physical volumes of each volume
+      std::map<int, std::string>               names_;            ///< of physical surfaces
+      std::set<int>                            volumes_;          ///< physical volumes of the tetrahedra
+      std::size_t                              n_curved_ = 0;     ///< tetrahedra of higher order
+      std::map<MshElement::Shape, std::size_t> other_volume_elements_;
 
       void read_section(const std::string &name)
       {
@@ -76,11 +61,13 @@ namespace retroforge
         else if (name == "PhysicalNames")
           read_names();
         else if (name == "Entities" && !old)
-          read_entities();
+          read_entities(false);
         else if (name == "Nodes")
           old ? read_nodes_2() : read_nodes_4();
         else if (name == "Elements")
           old ? read_elements_2() : read_elements_4();
+        else if (name == "PartitionedEntities" && version_ >= 4.1)
+          read_partitioned_entities();
         else if (name == "PartitionedEntities" || name == "ParametricNodes")
           in_.fail("there is a section $" + name,
                    "the mesh must be in one piece, saved without parametric coordinates");
@@ -130,7 +117,7 @@ namespace retroforge
         }
       }
 
-      void read_entities()
+      void read_entities(const bool are_parts)
       {
         std::size_t n[4];
         for (std::size_t &number : n)
@@ -139,19 +126,34 @@ namespace retroforge
         {
           in_.check_room(n[dimension], 5);
           for (std::size_t i = 0; i < n[dimension]; ++i)
-            read_entity(dimension);
+            read_entity(dimension, are_parts);
         }
       }
 
-      void read_entity(const int dimension)
+      /// Parts for parallel programs, each an entity by itself with the physical groups of its parent.
+      void read_partitioned_entities()
+      {
+        in_.count(0);                        // partitions
+        in_.skip_integers(2 * in_.count(2)); // ghost entities
+        read_entities(true);
+      }
+
+      void read_entity(const int dimension, const bool is_part)
       {
         const int tag = in_.integer();
+        if (is_part)
+        {
+          in_.skip_integers(2); // the parent
+          in_.skip_integers(in_.count(1));
+        }
         in_.skip_reals(dimension == 0 && version_ >= 4.1 ? 3 : 6); // position or box
         for (std::size_t n = in_.count(1); n > 0; --n)
         {
           const int physical = in_.integer();
           if (dimension == 2)
             physical_[tag].push_back(physical);
+          else if (dimension == 3)
+            physical_volumes_[tag].push_back(physical);
         }
         if (dimension > 0)
           in_.skip_integers(in_.count(1)); // boundary
@@ -236,7 +238,7 @@ namespace retroforge
 
       unsigned int nodes_of(const int type) const
       {
-        const unsigned int n = element_shape(type).n_nodes;
+        const unsigned int n = msh_element(type).n_nodes;
         if (n == 0)
           in_.fail("found an element of type " + std::to_string(type), "types are those of Gmsh's manual");
         return n;
@@ -244,12 +246,19 @@ namespace retroforge
 
       void add_element(const int type, const int entity, const int surface, const Tags &nodes)
       {
-        if (type == linear_tetrahedron)
-          tetrahedra_[entity].insert(tetrahedra_[entity].end(), nodes.begin(), nodes.end());
-        else if (type == linear_triangle)
-          triangles_[surface].insert(triangles_[surface].end(), nodes.begin(), nodes.end());
-        else if (element_shape(type).dimension == 3)
-          ++other_volume_elements_[type];
+        const MshElement element = msh_element(type);
+        const auto       add     = [&](Tags &to, const unsigned int n_corners) {
+          to.insert(to.end(), nodes.begin(), nodes.begin() + n_corners);
+        };
+        if (element.shape == MshElement::Shape::tetrahedron)
+        {
+          add(tetrahedra_[entity], 4);
+          n_curved_ += !element.is_linear;
+        }
+        else if (element.shape == MshElement::Shape::triangle)
+          add(triangles_[surface], 3);
+        else if (element.shape != MshElement::Shape::other)
+          ++other_volume_elements_[element.shape];
       }
 
       /// Its number, the physical group and the entity it belongs to, perhaps more, and the nodes.
@@ -268,8 +277,11 @@ namespace retroforge
         for (std::size_t &node : nodes)
           node = node_2();
         add_element(type, entity, physical, nodes);
-        if (type == linear_triangle && physical != 0)
+        const MshElement::Shape shape = msh_element(type).shape;
+        if (shape == MshElement::Shape::triangle && physical != 0)
           physical_[physical] = {physical};
+        if (shape == MshElement::Shape::tetrahedron && physical != 0)
+          volumes_.insert(physical);
       }
 
       void read_elements_2()
@@ -337,19 +349,46 @@ namespace retroforge
 
       void check_elements() const
       {
-        for (const auto &[type, n] : other_volume_elements_)
+        for (const auto &[shape, n] : other_volume_elements_)
           throw Error(file_name_,
-                      "there are " + std::to_string(n) +
-                        " volume elements that are not linear tetrahedra (Gmsh's type " +
-                        std::to_string(type) + ")",
-                      "all volume elements must be tetrahedra with four nodes",
-                      "mesh again with `Mesh.ElementOrder = 1' and without recombination");
+                      "there are " + std::to_string(n) + " " + name_of(shape) + " among its volume elements",
+                      "all volume elements must be tetrahedra",
+                      "mesh the part again without recombination, extruded layers and transfinite volumes");
       }
 
       void gather_tetrahedra()
       {
+        std::set<std::array<std::size_t, 4>> known;
+        std::size_t                          n_twice = 0;
         for (const auto &[entity, nodes] : tetrahedra_)
-          file_.tetrahedra.insert(file_.tetrahedra.end(), nodes.begin(), nodes.end());
+        {
+          for (const int physical : physical_volumes_[entity])
+            volumes_.insert(physical);
+          for (std::size_t i = 0; i + 3 < nodes.size(); i += 4)
+          {
+            std::array<std::size_t, 4> key = {{nodes[i], nodes[i + 1], nodes[i + 2], nodes[i + 3]}};
+            std::sort(key.begin(), key.end());
+            if (known.insert(key).second)
+              file_.tetrahedra.insert(file_.tetrahedra.end(), nodes.begin() + i, nodes.begin() + i + 4);
+            else
+              ++n_twice;
+          }
+        }
+        remark(n_twice);
+      }
+
+      void remark(const std::size_t n_twice)
+      {
+        if (n_curved_ > 0)
+          file_.remarks.push_back(std::to_string(n_curved_) +
+                                  " tetrahedra are of higher order, and only their corners are read: curved "
+                                  "edges are straight now");
+        if (volumes_.size() > 1)
+          file_.remarks.push_back("its " + std::to_string(volumes_.size()) +
+                                  " physical volumes are taken together as one body of one material");
+        if (n_twice > 0)
+          file_.remarks.push_back(std::to_string(n_twice) +
+                                  " tetrahedra that are there more than once are taken once");
       }
 
       /// The sign of a physical surface's number only tells its orientation.

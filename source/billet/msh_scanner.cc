@@ -2,15 +2,14 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/billet/msh_scanner.h>
 #include <retroforge/core/error.h>
+#include <retroforge/core/input_file.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 namespace retroforge
 {
@@ -24,16 +23,11 @@ namespace retroforge
     const std::string whole_number_rule = "a whole number must follow here";
   } // namespace
 
-  MshScanner::MshScanner(const std::string &file_name) : file_name_(file_name)
+  MshScanner::MshScanner(const std::string &file_name)
+      : file_name_(file_name), bytes_(as_plain_lines(read_input_file(file_name, "the mesh of the billet")))
   {
-    std::ifstream      in(file_name, std::ios::binary);
-    std::ostringstream contents;
-    if (!in || !(contents << in.rdbuf()))
-      throw Error(file_name,
-                  "cannot be read",
-                  "the mesh of the billet is a Gmsh file",
-                  "check the path; it is taken from the folder in which the program runs");
-    bytes_ = contents.str();
+    if (bytes_.compare(0, 11, "$MeshFormat") != 0)
+      refuse_other_format(file_name, bytes_, Wanted::volume_mesh);
   }
 
   void MshScanner::fail(const std::string &what, const std::string &rule) const
@@ -45,7 +39,7 @@ namespace retroforge
     throw Error(file_name_ + ", " + where,
                 what,
                 rule,
-                "check that the file is complete, or save it anew from Gmsh with `-format msh4'");
+                "check that the file is complete, or save it anew from Gmsh with `-format msh41'");
   }
 
   void MshScanner::skip_space()

@@ -147,7 +147,9 @@ namespace retroforge
     const dealii::Tensor<2, 3> R        = scale * rotation(axis, angle);
     for (Vec3 &x : vertices)
       x = place.point + R * x;
-    return TriangleSurface(place.section + "/file (" + file + ")", vertices, read.triangles());
+    TriangleSurface placed(place.section + "/file (" + file + ")", vertices, read.triangles());
+    placed.remarks = read.remarks;
+    return placed;
   }
 
   namespace

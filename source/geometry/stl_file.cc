@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/input_file.h>
 #include <retroforge/geometry/stl_file.h>
+#include <retroforge/geometry/surface_repair.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +11,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
-#include <map>
+#include <limits>
 #include <sstream>
 
 namespace retroforge
@@ -20,6 +21,8 @@ namespace retroforge
   {
     constexpr std::size_t header_bytes = 80, facet_bytes = 50;
     constexpr double      merge_distance = 1e-6; ///< of the diagonal
+    /// What is farther apart at the rim was not one vertex: as a rule, and at most, of the diagonal.
+    constexpr double seam = 1e-5, widest_seam = 1e-4;
     /// Within these bounds no product of lengths overflows, and corners are told apart.
     constexpr double largest_coordinate = 1e30, smallest_size = 1e-30, farthest_off = 1e6;
 
@@ -60,6 +63,13 @@ namespace retroforge
       pack(bits, bytes);
     }
 
+    /// "nan", "-nan(ind)", "inf" and "1.#IND", as programs write what is no number.
+    bool is_no_number(const std::string &word)
+    {
+      return word.find("nan") != std::string::npos || word.find("inf") != std::string::npos ||
+             word.find('#') != std::string::npos;
+    }
+
     /// Words of an ASCII file with the lines they stand on.
     class Words
     {
@@ -82,28 +92,49 @@ namespace retroforge
           ++position_;
       }
 
-      void expect(const char *wanted)
+      /// The same, but "endsolid" for "end solid".
+      std::string keyword()
       {
         const std::string word = next();
+        return word == "end" ? word + next() : word;
+      }
+
+      void expect(const char *wanted)
+      {
+        const std::string word = keyword();
         if (word != wanted)
           fail(word, "'" + std::string(wanted) + "' must follow here");
       }
 
-      double number()
+      double number() { return as_number(next()); }
+
+      double as_number(const std::string &word) const
       {
-        const std::string word = next();
-        char             *end  = nullptr;
-        const double      x    = std::strtod(word.c_str(), &end);
+        char        *end = nullptr;
+        const double x   = std::strtod(word.c_str(), &end);
         if (word.empty() || *end != '\0' || !std::isfinite(x))
           fail(word, "a finite number must follow here");
         return x;
       }
 
+      /// Three of them.
       Vec3 vector()
       {
         Vec3 x;
         for (unsigned int i = 0; i < 3; ++i)
           x[i] = number();
+        return x;
+      }
+
+      /// The same, or what programs write that found none.
+      Vec3 normal()
+      {
+        Vec3 x;
+        for (unsigned int i = 0; i < 3; ++i)
+        {
+          const std::string word = next();
+          x[i]                   = is_no_number(word) ? std::nan("") : as_number(word);
+        }
         return x;
       }
 
@@ -134,15 +165,15 @@ namespace retroforge
     {
       std::vector<StlFacet> facets;
       Words                 words(file_name, text);
-      std::string           word = words.next();
+      std::string           word = words.keyword();
       while (word == "solid")
       {
         words.skip_line(); // the solid's name
-        for (word = words.next(); word == "facet"; word = words.next())
+        for (word = words.keyword(); word == "facet"; word = words.keyword())
         {
           StlFacet facet;
           words.expect("normal");
-          facet.normal = words.vector();
+          facet.normal = words.normal();
           words.expect("outer");
           words.expect("loop");
           for (Vec3 &corner : facet.corners)
@@ -157,7 +188,7 @@ namespace retroforge
         if (word != "endsolid")
           words.fail(word, "'facet' or 'endsolid' must follow here");
         words.skip_line();
-        word = words.next();
+        word = words.keyword();
       }
       if (!word.empty())
         words.fail(word, "'solid' must follow here");
@@ -195,80 +226,25 @@ namespace retroforge
 
     /// Binary files may begin with "solid" too: the length that a binary file's count of facets announces
     /// decides, and otherwise whether there are characters that no text has.
-    bool is_ascii(const std::string &bytes)
+    bool begins_as_text(const std::string &text)
     {
-      if (bytes.size() >= header_bytes + 4 &&
-          bytes.size() ==
-            header_bytes + 4 + facet_bytes * static_cast<std::size_t>(unpack(bytes.data() + header_bytes)))
-        return false;
-      const std::size_t first = bytes.find_first_not_of(" \t\r\n");
-      if (first == std::string::npos || bytes.size() < header_bytes + 4)
-        return true;
-      std::string word = bytes.substr(first, 5);
+      std::string word = text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()), 5);
       std::transform(
         word.begin(), word.end(), word.begin(), [](const unsigned char c) { return std::tolower(c); });
-      return word == "solid" && bytes.find('\0') == std::string::npos;
+      return word == "solid" && text.find('\0') == std::string::npos;
     }
 
-    /// Gives equal corners one number, by a grid of cells as wide as the distance that counts as equal.
-    class Merger
+    std::vector<StlFacet> parse(const std::string &file_name)
     {
-    public:
-      explicit Merger(const double distance) : distance_(distance) {}
-
-      unsigned int operator()(const Vec3 &x)
-      {
-        const Key    home = key(x);
-        unsigned int best = invalid_index;
-        for (int i = 0; i < 27; ++i)
-        {
-          const auto found =
-            cells_.find({{home[0] + i % 3 - 1, home[1] + i / 3 % 3 - 1, home[2] + i / 9 - 1}});
-          if (found != cells_.end())
-            for (const unsigned int v : found->second)
-              if ((vertices[v] - x).norm() <= distance_)
-                best = std::min(best, v);
-        }
-        if (best != invalid_index)
-          return best;
-        vertices.push_back(x);
-        cells_[home].push_back(vertices.size() - 1);
-        return vertices.size() - 1;
-      }
-
-      NodalVectors<double> vertices;
-
-    private:
-      using Key = std::array<long long, 3>;
-
-      Key key(const Vec3 &x) const
-      {
-        Key k;
-        for (unsigned int i = 0; i < 3; ++i)
-          k[i] = std::llround(std::floor(x[i] / distance_));
-        return k;
-      }
-
-      const double                             distance_;
-      std::map<Key, std::vector<unsigned int>> cells_;
-    };
-
-    std::string read_bytes(const std::string &file_name)
-    {
-      std::ifstream      in(file_name, std::ios::binary);
-      std::ostringstream bytes;
-      std::error_code    ignored;
-      const bool         is_folder = std::filesystem::is_directory(file_name, ignored);
-      const bool         is_device = std::filesystem::is_character_file(file_name, ignored);
-      if (!in || is_folder || is_device || (in.peek() != EOF && !(bytes << in.rdbuf())))
-        throw Error(file_name,
-                    is_folder   ? "is a folder"
-                    : is_device ? "is a device"
-                                : "cannot be read",
-                    "the file of a die must exist",
-                    "correct its name, which counts from the parameter file's folder, or from where the "
-                    "program is started");
-      return bytes.str();
+      const std::string bytes = read_input_file(file_name, "the file of a die");
+      if (has_length_of_binary_stl(bytes))
+        return parse_binary(file_name, bytes);
+      const std::string text = as_plain_lines(bytes);
+      if (begins_as_text(text))
+        return parse_ascii(file_name, text);
+      refuse_other_format(file_name, bytes, Wanted::surface);
+      const bool is_short = bytes.size() < header_bytes + 4;
+      return is_short ? parse_ascii(file_name, text) : parse_binary(file_name, bytes);
     }
 
     /// The diagonal of the corners' bounding box, with which distances can be computed; 1 if all corners are
@@ -297,35 +273,97 @@ namespace retroforge
       return size > 0. ? size : 1.;
     }
 
-    void check_normal(const std::string &file_name, const StlFacet &facet, const std::size_t f)
+    /// @return what there is to say of those that are few
+    std::vector<std::string> check_normals(const std::string &file_name, const Facets &facets)
     {
-      const Vec3 v = facet_vector(facet.corners[0], facet.corners[1], facet.corners[2]);
-      // Near a right angle rounding decides, and a zero or NaN normal says nothing.
-      if (facet.normal * v < -0.1 * facet.normal.norm() * v.norm())
+      const NormalsAgainst against = normals_against_corners(facets);
+      if (against.are_few && against.n > 0)
+        return {(against.n == 1 ? "one normal points" : std::to_string(against.n) + " normals point") +
+                " against the order of the corners, which fits the other facets and counts"};
+      if (against.n > 0)
         throw Error(file_name,
-                    "the normal of facet " + std::to_string(f + 1) +
-                      " points against the order of its corners",
+                    "the normal of facet " + std::to_string(against.first + 1) +
+                      " points against the order of its corners" +
+                      (against.n == 1 ? "" : ", and those of " + std::to_string(against.n - 1) + " more"),
                     "corners run counter-clockwise as seen from the normal's side",
                     "find out which is right, and export the file anew or with normals of 0 0 0");
+      return {};
+    }
+
+    /// A normal that is no number says nothing: the order of the corners does.
+    /// @return how many there were
+    std::size_t forget_bad_normals(std::vector<StlFacet> &facets)
+    {
+      std::size_t n = 0;
+      for (StlFacet &facet : facets)
+        if (!std::isfinite(facet.normal.norm()))
+        {
+          facet.normal = Vec3();
+          ++n;
+        }
+      return n;
+    }
+
+    /// Corners that were one are apart by what the file's digits leave: those of single precision [mm].
+    double rounding_of_corners(const NodalVectors<double> &corners)
+    {
+      double farthest = 0.;
+      for (const Vec3 &x : corners)
+        for (unsigned int i = 0; i < 3; ++i)
+          farthest = std::max(farthest, std::abs(x[i]));
+      return farthest * std::numeric_limits<float>::epsilon();
+    }
+
+    /// A facet without a neighbour at any of its edges.
+    unsigned int n_lonely_facets(const TriangleSurface &surface)
+    {
+      unsigned int n = 0;
+      for (unsigned int f = 0; f < surface.n_facets(); ++f)
+        n += surface.neighbour(f, 0).facet == invalid_index &&
+             surface.neighbour(f, 1).facet == invalid_index && surface.neighbour(f, 2).facet == invalid_index;
+      return n;
+    }
+
+    /// Facets that hang together nowhere have no inner side: what is deep and what is not, nobody knows.
+    void check_is_surface(const std::string &file_name, const TriangleSurface &surface)
+    {
+      constexpr unsigned int few = 3;
+      if (const unsigned int n = n_lonely_facets(surface); n > few && 2 * n > surface.n_facets())
+        throw Error(file_name,
+                    std::to_string(n) + " of its " + std::to_string(surface.n_facets()) +
+                      " facets share no edge with another",
+                    "facets that meet must share their vertices",
+                    "merge the vertices with a mesh repair tool, or export one surface, with all digits");
     }
   } // namespace
 
   TriangleSurface read_stl(const std::string &file_name)
   {
-    const std::string bytes = read_bytes(file_name);
-    const auto facets = is_ascii(bytes) ? parse_ascii(file_name, bytes) : parse_binary(file_name, bytes);
-    NodalVectors<double> corners;
+    auto                 facets        = parse(file_name);
+    const std::size_t    n_bad_normals = forget_bad_normals(facets);
+    NodalVectors<double> corners, normals;
     for (const StlFacet &facet : facets)
-      corners.insert(corners.end(), facet.corners.begin(), facet.corners.end());
-    Merger                merge(merge_distance * checked_size(file_name, corners));
-    std::vector<Triangle> triangles;
-    for (std::size_t f = 0; f < facets.size(); ++f)
     {
-      check_normal(file_name, facets[f], f);
-      const auto &c = facets[f].corners;
-      triangles.push_back({{merge(c[0]), merge(c[1]), merge(c[2])}});
+      corners.insert(corners.end(), facet.corners.begin(), facet.corners.end());
+      normals.push_back(facet.normal);
     }
-    return TriangleSurface(file_name, merge.vertices, triangles);
+    const double size     = checked_size(file_name, corners);
+    const double rounding = std::min(rounding_of_corners(corners), widest_seam * size);
+    Facets       merged   = merge_corners(corners, normals, merge_distance * size);
+    auto         remarks  = mend(merged, std::max(seam * size, rounding));
+    for (const std::string &remark : check_normals(file_name, merged))
+      remarks.push_back(remark);
+    if (n_bad_normals > 0)
+      remarks.push_back((n_bad_normals == 1 ? "one normal is no number"
+                                            : std::to_string(n_bad_normals) + " normals are no numbers") +
+                        ": the order of the corners counts");
+    if (rounding > seam * size)
+      remarks.push_back("it is so far from the origin that single precision rounds its corners to " +
+                        as_text(rounding));
+    TriangleSurface surface(file_name, merged.vertices, merged.triangles);
+    check_is_surface(file_name, surface);
+    surface.remarks = remarks;
+    return surface;
   }
 
   void write_stl(const std::string &file_name, const TriangleSurface &surface, const StlFormat format)

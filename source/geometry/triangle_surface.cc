@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/geometry/surface_repair.h>
 #include <retroforge/geometry/triangle_surface.h>
 
 #include <algorithm>
@@ -14,8 +15,6 @@ namespace retroforge
   {
     constexpr double crack_width    = 1e-4; ///< of the diagonal
     constexpr double rounding_width = 1e-5; ///< of the diagonal
-    /// Least height of a facet over its longest edge.
-    constexpr double flatness = 1e-9;
 
     Vec3 facet_vector_of(const TriangleSurface &surface, const unsigned int f)
     {
@@ -93,7 +92,7 @@ namespace retroforge
       }
       for (unsigned int c = 0; c < 3; ++c)
         longest = std::max(longest, (vertices_[t[(c + 1) % 3]] - vertices_[t[c]]).norm());
-      if (!(facet_vector_of(*this, f).norm() > flatness * longest * longest))
+      if (!(facet_vector_of(*this, f).norm() > least_facet_height * longest * longest))
         throw Error(where,
                     facet_name(f) + " at " + at(vertices_[t[0]]) + " has no area",
                     "a facet's corners must be distinct and not on a line",

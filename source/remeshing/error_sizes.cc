@@ -87,7 +87,7 @@ namespace retroforge
       const TetCorners x = corners(mesh.cells[c], X);
       optimal.centre.push_back((x[0] + x[1] + x[2] + x[3]) / 4.);
       // Inverted cells are there when a mesh is to be rebuilt.
-      optimal.volume.push_back(std::max(tet_volume(x), 1e-30));
+      optimal.volume.push_back(std::max(tet_volume(x), 1e-300));
       total_volume += optimal.volume[c];
       present[c] = size_of_cell(optimal.volume[c]);
       density[c] = errors[c] / optimal.volume[c] / std::pow(present[c], 2. * degree);

@@ -75,12 +75,14 @@ namespace retroforge
 
   bool IncrementLimits::is_full(const Process<double> &process, const Leg &leg, const IncrementRecord &record)
   {
-    const auto &P    = record.solves.back().P;
+    const auto  &P   = record.solves.back().P;
     const double sum = std::accumulate(
       P.begin(), P.end(), 0., [](const double so_far, const double p) { return so_far + std::abs(p); });
-    const double rate   = closing_speed(process.dies) / std::cbrt(volume(leg.scene.mesh.cells, leg.scene.mesh.X));
+    const double rate =
+      closing_speed(process.dies) / std::cbrt(volume(leg.scene.mesh.cells, leg.scene.mesh.X));
     const double stress = process.law(1.5 * rate * rate) * 1.5 * rate;
-    if (getenv("RF_FULL")) fprintf(stderr, "mean p / stress %g\n", sum / P.size() / stress);
+    if (getenv("RF_FULL"))
+      fprintf(stderr, "mean p / stress %g\n", sum / P.size() / stress);
     return sum > most_pressure * stress * P.size();
   }
 
@@ -161,7 +163,8 @@ namespace retroforge
       throw Error("Press/stroke",
                   "the cavity is full at " + as_text(stroke) + " mm",
                   "metal keeps its volume, and dies do not give way",
-                  "shorten the stroke to less than that, make the billet smaller, or leave it a way out, as a flash is");
+                  "shorten the stroke to less than that, make the billet smaller, or leave it a way out, as "
+                  "a flash is");
     }
   } // namespace
 

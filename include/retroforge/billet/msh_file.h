@@ -26,11 +26,16 @@ namespace retroforge
     NodalVectors<double>   X;          ///< and their positions
     Tags                   tetrahedra; ///< four nodes for each, by ascending number of their volume
     std::map<int, Surface> surfaces;   ///< physical surfaces by their number
+
+    std::vector<std::string> remarks; ///< what was left out or taken together, a sentence each
   };
 
   /// Reads a Gmsh file of version 2 or 4.1, ASCII or binary with this machine's order of bytes, or of version
-  /// 4.0, ASCII. Gmsh itself is not asked: on a damaged file it crashes, or asks for all memory there is.
+  /// 4.0, ASCII. Of elements of higher order the corners are read, tetrahedra that are there twice once, and
+  /// all volumes as one: the remarks say so. Gmsh itself is not asked: on a damaged file it crashes, or asks
+  /// for all memory there is.
   /// @throws Error  for what is missing, no number, or announced and not there; nodes that are twice there or
-  /// nowhere; coordinates that are not finite; volume elements that are not linear tetrahedra
+  /// nowhere; coordinates that are not finite; volume elements that are no tetrahedra; files of another
+  /// format
   MshFile read_msh_file(const std::string &file_name);
 } // namespace retroforge

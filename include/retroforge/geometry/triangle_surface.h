@@ -7,6 +7,7 @@
 #include <array>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace retroforge
 {
@@ -60,6 +61,8 @@ namespace retroforge
     /// The length over which the normal turns at edges and vertices (see project_on_feature): 1e-5 of the
     /// bounding box's diagonal as the surface was made.
     double rounding() const { return rounding_; }
+
+    std::vector<std::string> remarks; ///< what of its file was mended or left out, a sentence each
 
   private:
     void check_facets(const std::string &where) const;

@@ -7,6 +7,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace retroforge
 {
@@ -42,6 +43,8 @@ namespace retroforge
     std::vector<std::array<NodeIndex, 4>> cells;
     std::vector<BoundaryFace>             faces;
     std::vector<Patch>                    patches;
+    /// What of its file was mended or left out, a sentence each; where the mesh was made, on one rank.
+    std::vector<std::string> remarks = {};
 
     unsigned int n_nodes() const { return X.size(); }
     unsigned int n_cells() const { return cells.size(); }

@@ -11,9 +11,9 @@ namespace retroforge
   /// Why an increment must be shorter.
   struct Refusal
   {
-    std::string  reason;          ///< empty: it need not be
-    unsigned int halvings = 1;    ///< that will do
-    bool         of_mesh  = true; ///< a better mesh may be enough
+    std::string  reason;           ///< empty: it need not be
+    unsigned int halvings = 1;     ///< that will do
+    bool         of_mesh  = true;  ///< a better mesh may be enough
     bool         is_full  = false; ///< there is no room for the metal
   };
 

@@ -28,6 +28,18 @@ def msh(nodes, cells, kind=4):
 CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, -1, -1)]
 
 
+OPEN_STL = """solid open
+facet normal 0 0 1
+outer loop
+vertex 0 0 0
+vertex 9 0 0
+vertex 0 9 0
+endloop
+endfacet
+endsolid
+"""
+
+
 # Flattening or inverting a tetrahedron between two others cannot be told from a matter of orientation alone: the first
 # two overlap on the same side of their common face.
 MESHES = {
@@ -41,19 +53,12 @@ MESHES = {
     "cube": block_meshes.msh_of_cube(2, 10.0),
     "cube_in_metres": block_meshes.msh_of_cube(2, 0.01),
     "garbage": "this is not a mesh\n",
+    "step": "ISO-10303-21;\nHEADER;\n",
+    "pointer": "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n",
+    "abaqus": "*HEADING\n*NODE\n1, 0., 0., 0.\n",
+    "surface": OPEN_STL,
+    "hexahedron": msh([(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], [tuple(range(8))], kind=5),
 }
-
-OPEN_STL = """solid open
-facet normal 0 0 1
-outer loop
-vertex 0 0 0
-vertex 9 0 0
-vertex 0 9 0
-endloop
-endfacet
-endsolid
-"""
-
 
 def file_mesh(name):
     return ["--set", "Billet/symmetry planes=", "--set", "Billet/shape=file", "--set", f"Billet/file name={name}.msh"]
@@ -86,6 +91,9 @@ STLS = {
     "open.stl": OPEN_STL.encode(),
     "half_dropped.stl": binary_stl(*square(30), announced=1),
     "in_metres.stl": binary_stl(*square(0.03), announced=2),
+    "soup.stl": binary_stl(*((0, 0, i, 10, 0, i, 0, 10, i) for i in range(8)), announced=8),
+    "of_git_lfs.stl": MESHES["pointer"].encode(),
+    "iges.stl": b" " * 72 + b"S      1\n",
     "in_nanometres.stl": binary_stl(*square(3e7), announced=2),
 }
 
@@ -172,6 +180,14 @@ MISTAKES = {
                                                       r"half_dropped\.stl.*184 bytes.*1 facets.*134"),
     "die in metres": (settings("Die lower/shape=stl", "Die lower/file=in_metres.stl"), r"Die lower.*0\.0424264 mm.*scale"),
     "die in nanometres": (settings("Die lower/shape=stl", "Die lower/file=in_nanometres.stl"), r"Die lower.*4\.24264e\+07 mm.*scale"),
+    "a soup of facets": (settings("Die lower/shape=stl", "Die lower/file=soup.stl"), r"soup\.stl.*8 of its 8 facets share no edge"),
+    "pointer of Git LFS for a die": (settings("Die lower/shape=stl", "Die lower/file=of_git_lfs.stl"), r"of_git_lfs\.stl.*Git LFS.*git lfs pull"),
+    "IGES for a die": (settings("Die lower/shape=stl", "Die lower/file=iges.stl"), r"iges\.stl.*IGES.*gmsh iges\.stl -2"),
+    "STEP for a mesh": (file_mesh("step"), r"step\.msh.*STEP.*gmsh step\.msh -3"),
+    "pointer of Git LFS for a mesh": (file_mesh("pointer"), r"pointer\.msh.*Git LFS.*git lfs pull"),
+    "Abaqus for a mesh": (file_mesh("abaqus"), r"abaqus\.msh.*Abaqus.*meshio convert"),
+    "STL for a mesh": (file_mesh("surface"), r"surface\.msh.*STL.*Surface Loop"),
+    "hexahedra": (file_mesh("hexahedron"), r"hexahedron\.msh.*1 hexahedra"),
     "device for a die": (settings("Die lower/shape=stl", "Die lower/file=/dev/zero"), r"/dev/zero.*device"),
     "device for a mesh": (file_mesh("small") + settings("Billet/file name=/dev/zero"), r"/dev/zero.*device"),
     "billet in metres": (file_mesh("small") + settings("Billet/scale=0.001"), r"Die upper.*does not reach the billet.*scale"),

@@ -3,8 +3,10 @@
 
 // Meshes from Gmsh files, written here by hand: the unit cube in five tetrahedra, corners at 0 and 1. Proved:
 // versions 2 and 4 give the same mesh; physical surfaces become patches with the areas of the sides (1 mm2
-// each); planes of symmetry patches are fitted; a mesh that is inverted throughout is turned; each kind of
-// bad file is refused.
+// each); planes of symmetry patches are fitted; tetrahedra numbered the other way round are turned; line
+// ends, a byte order mark, elements without tags or of second order, several volumes and tetrahedra that are
+// there twice leave the mesh as it is, with a remark where something was left out; each kind of bad file is
+// refused.
 
 #include <deal.II/base/mpi.h>
 
@@ -12,6 +14,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 using namespace retroforge;
@@ -34,6 +37,11 @@ struct Cube
   void write_v2(const std::string &name) const
   {
     std::ofstream out(name);
+    write_v2(out);
+  }
+
+  void write_v2(std::ostream &out) const
+  {
     out
       << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"left\"\n$EndPhysicalNames\n$Nodes\n"
       << nodes.size() << "\n";
@@ -87,6 +95,47 @@ void report(const std::string &title, const TetMesh &mesh)
       std::cout << ", normal " << mesh.patches[p].symmetry->normal;
     std::cout << "\n";
   }
+  for (const std::string &remark : mesh.remarks)
+    std::cout << "  " << remark << "\n";
+}
+
+std::string replaced(std::string text, const std::string &from, const std::string &to)
+{
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+// The cube with the middles of all edges, its elements of second order.
+void write_second_order(const std::string &name)
+{
+  Cube                              cube;
+  std::map<std::array<int, 2>, int> middle;
+  const auto                        node = [&](int a, int b) {
+    if (a > b)
+      std::swap(a, b);
+    const auto [found, is_new] = middle.insert({{{a, b}}, static_cast<int>(cube.nodes.size()) + 1});
+    if (is_new)
+    {
+      const auto x = cube.nodes[a - 1], y = cube.nodes[b - 1];
+      cube.nodes.push_back({{(x[0] + y[0]) / 2, (x[1] + y[1]) / 2, (x[2] + y[2]) / 2}});
+    }
+    return found->second;
+  };
+  std::ostringstream elements;
+  int                number = 0;
+  for (const auto &t : cube.triangles)
+    elements << ++number << " 9 2 " << t[0] << " " << t[0] << " " << t[1] << " " << t[2] << " " << t[3] << " "
+             << node(t[1], t[2]) << " " << node(t[2], t[3]) << " " << node(t[3], t[1]) << "\n";
+  for (const auto &t : cube.tets)
+    elements << ++number << " 11 2 9 9 " << t[0] << " " << t[1] << " " << t[2] << " " << t[3] << " "
+             << node(t[0], t[1]) << " " << node(t[1], t[2]) << " " << node(t[2], t[0]) << " "
+             << node(t[3], t[0]) << " " << node(t[3], t[2]) << " " << node(t[3], t[1]) << "\n";
+  std::ofstream out(name);
+  out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << cube.nodes.size() << "\n";
+  for (std::size_t i = 0; i < cube.nodes.size(); ++i)
+    out << i + 1 << " " << cube.nodes[i][0] << " " << cube.nodes[i][1] << " " << cube.nodes[i][2] << "\n";
+  out << "$EndNodes\n$Elements\n" << number << "\n" << elements.str() << "$EndElements\n";
 }
 
 // Writes the cube after it was spoilt, reads it, and prints what was thrown.
@@ -113,6 +162,33 @@ void sound_files()
   cube.write_v2("inverted.msh");
   report("all inverted", read("inverted.msh"));
 
+  Cube mixed;
+  std::swap(mixed.tets[3][0], mixed.tets[3][1]);
+  mixed.write_v2("mixed.msh");
+  report("one inverted", read("mixed.msh"));
+
+  std::ostringstream whole;
+  Cube().write_v2(whole);
+  const std::string text = whole.str();
+  for (const auto &[title, bytes] : std::vector<std::pair<std::string, std::string>>{
+         {"line ends \\r", replaced(text, "\n", "\r")},
+         {"line ends \\r\\n", replaced(text, "\n", "\r\n")},
+         {"byte order mark", "\xef\xbb\xbf" + text},
+         {"version 2.0", replaced(text, "2.2 0 8", "2 0 8")},
+         {"no tags", replaced(text, " 4 2 9 9 ", " 4 0 ")},
+         {"two volumes", replaced(text, "9 4 2 9 9 ", "9 4 2 8 8 ")},
+         {"a tetrahedron in two groups",
+          replaced(replaced(text, "$Elements\n9", "$Elements\n10"),
+                   "\n9 4 2 9 9 ",
+                   "\n10 4 2 8 9 2 4 5 7\n9 4 2 9 9 ")},
+         {"data of elements", text + "$ElementData\n1\n\"E\"\n1\n0\n3\n0\n1\n1\n9 1.5\n$EndElementData\n"}})
+  {
+    std::ofstream("form.msh", std::ios::binary) << bytes;
+    report(title, read("form.msh"));
+  }
+  write_second_order("second.msh");
+  report("second order", read("second.msh"));
+
   Cube extra;
   extra.nodes.push_back({{5, 5, 5}});
   extra.triangles.clear();
@@ -134,7 +210,11 @@ void bad_files()
   std::ofstream("broken.msh") << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0\n";
   print_error("broken off", []() { read("broken.msh"); });
   refuse("no tetrahedra", "", [](Cube &cube) { cube.tets.clear(); });
-  refuse("some inverted", "", [](Cube &cube) { std::swap(cube.tets[3][0], cube.tets[3][1]); });
+  refuse("folded", "", [](Cube &cube) { cube.nodes[0] = {{1, 1, 0.5}}; });
+  std::ofstream("part.step") << "ISO-10303-21;\nHEADER;\n";
+  print_error("a STEP file", []() { read("part.step"); });
+  std::ofstream("part.stl") << "solid part\nfacet normal 0 0 0\n";
+  print_error("an STL file", []() { read("part.stl"); });
   refuse("flat", "", [](Cube &cube) { cube.nodes[0] = {{0.5, 0.5, 0}}; });
   refuse("joined at an edge", "", [](Cube &cube) {
     cube.triangles.clear();
