@@ -78,7 +78,7 @@ namespace retroforge
       for (const Die &die : scene.dies)
       {
         const TriangleSurface *surface = die.surface();
-        double                 bulge = least, angle = 0.;
+        double                 bulge   = least;
         Vec3                   place;
         for (unsigned int f = 0; surface && f < surface->n_facets(); ++f)
           if (turn(*surface, f, die.feature_angle()) > least_chamfer_angle)
