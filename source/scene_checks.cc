@@ -22,13 +22,16 @@ namespace retroforge
     /// differ from millimetres.
     constexpr double smallest_die = 1e-2, largest_die = 1e3;
 
-    /// What lies nearer than this part of the billet's size touches; what is deeper in a die than that is
-    /// refused.
+    /// What lies nearer than the first part of the billet's size touches; what is deeper in a die than the
+    /// second is refused.
     constexpr double touching = 1e-3, inside = 0.05;
 
     std::string as_components(const Vec3 &x)
     {
-      return as_text(x[0]) + ", " + as_text(x[1]) + ", " + as_text(x[2]);
+      const auto text = [&x](const unsigned int i) {
+        return as_text(std::abs(x[i]) > 1e-9 * x.norm() ? x[i] : 0.); // the rest is rounding
+      };
+      return text(0) + ", " + text(1) + ", " + text(2);
     }
 
     std::string how_to_scale(const Parameters &parameters)

@@ -15,12 +15,6 @@ namespace retroforge
     /// the surface stands by more than this part of the element size in front of the facets.
     constexpr double least_chamfer_angle = 15., chamfer_bulge = 0.02;
 
-    /// To a tenth.
-    double rounded(const double x)
-    {
-      return std::round(10. * x) / 10.;
-    }
-
     /// To two digits.
     double rounded_down(const double x)
     {
@@ -84,10 +78,10 @@ namespace retroforge
       for (const Die &die : scene.dies)
       {
         const TriangleSurface *surface = die.surface();
-        double                 bulge = least, angle = 0.;
+        double                 bulge   = least;
         Vec3                   place;
         for (unsigned int f = 0; surface && f < surface->n_facets(); ++f)
-          if (const double turned = turn(*surface, f, die.feature_angle()); turned > least_chamfer_angle)
+          if (turn(*surface, f, die.feature_angle()) > least_chamfer_angle)
           {
             const Triangle &t      = surface->triangles()[f];
             const auto     &x      = surface->vertices();
@@ -95,16 +89,15 @@ namespace retroforge
             if (const double height = -die.signed_distance(centre, Vec3()); height > bulge)
             {
               bulge = height;
-              angle = turned;
               place = centre;
             }
           }
         if (bulge > least)
-          warnings.push_back("Die " + die.name + ": its smooth surface stands " + as_text(bulge) +
-                             " mm in front of facets that turn by " + as_text(rounded(angle)) +
-                             " degrees, at " + in_brackets(place) +
-                             "; if they are a chamfer and no coarse rounding, lower `feature angle', or set "
-                             "surface = facets");
+          warnings.push_back(
+            "Die " + die.name + ": its smooth surface stands " + as_text(bulge) +
+            " mm in front of its facets at " + in_brackets(place) +
+            "; if they are a chamfer or a tip and no coarse rounding, lower `feature angle', or "
+            "set surface = facets");
       }
     }
 

@@ -570,8 +570,9 @@ namespace retroforge
       std::tie(approach.gap, approach.gap_place) = shortest_distance(die, displacement, metal);
     if (moves)
     {
-      approach.meeting    = first_meeting(die, displacement, velocity, metal, touching);
-      approach.moves_away = !approach.meeting && first_meeting(die, displacement, -velocity, metal, touching);
+      const double near   = std::max(touching, 1.01 * approach.overlap.depth); // what overlaps has met
+      approach.meeting    = first_meeting(die, displacement, velocity, metal, near);
+      approach.moves_away = !approach.meeting && first_meeting(die, displacement, -velocity, metal, near);
     }
     return approach;
   }
