@@ -30,7 +30,7 @@ def unit(v):
 
 def ramp_01(t):
     """(27)"""
-    return 1. if t <= 0 else 0. if t >= 1 else 1 - 10 * t**3 + 15 * t**4 - 6 * t**5
+    return 1. if t.real <= 0 else 0. if t.real >= 1 else 1 - 10 * t**3 + 15 * t**4 - 6 * t**5
 
 
 def gradients(X):
