@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
 """The residual of one element, pressing and rubbing on a die, from the equations of doc/theory/equations.md; numbers of equations are those of
-the page. Compared with what the program finds of the same input, to 1e-12 of the largest entry.
+the page. Compared with what the program finds of the same input, to 1e-12 of the largest entry; and the functional of the page is differentiated
+by complex steps, which must give the residual, too.
 Usage: equations.py PRINT_RESIDUALS"""
 import itertools
 import json
@@ -29,7 +30,7 @@ def unit(v):
 
 def ramp_01(t):
     """(27)"""
-    return 1. if t <= 0 else 0. if t >= 1 else 1 - 10 * t**3 + 15 * t**4 - 6 * t**5
+    return 1. if t.real <= 0 else 0. if t.real >= 1 else 1 - 10 * t**3 + 15 * t**4 - 6 * t**5
 
 
 def gradients(X):
@@ -41,38 +42,81 @@ class Law:
     def __init__(self, case):
         self.K, self.m, self.e_0 = case["K"], case["m"], case["e_0"]
 
+    def chi(self, eps):
+        return 2 * np.sum(eps * eps) + 3 * self.e_0**2
+
     def stress(self, eps):
         """(2)"""
-        chi = 2 * np.sum(eps * eps) + 3 * self.e_0**2
-        return 2 * self.K * chi**((self.m - 1) / 2) * eps
+        return 2 * self.K * self.chi(eps)**((self.m - 1) / 2) * eps
+
+    def potential(self, eps):
+        return self.K / (self.m + 1) * self.chi(eps)**((self.m + 1) / 2)
 
 
-def mini_residual(X, W, law):
-    """(14), (15)"""
-    g, volume = gradients(X)
-    V, beta, P = np.array(W["V"]), np.array(W["beta"][0]), np.array(W["P"])
-    L = sum(np.outer(V[c], g[c]) for c in range(4))
-    s = [law.stress(sym(L + 4 * np.outer(beta, g[a]))) for a in range(4)]
-    return {"V": [volume / 4 * sum(s) @ g[c] - volume * P.mean() * g[c] for c in range(4)],
-            "beta": [volume * sum(s[a] @ g[a] for a in range(4)) + volume / 4 * P @ g],
-            "P": [volume / 4 * (beta @ g[c] - np.trace(L)) for c in range(4)]}
+class Unknowns:
+    def __init__(self, W):
+        self.V, self.beta, self.P = (np.array(W[part]) for part in ("V", "beta", "P"))
+
+    def __iter__(self):
+        return iter((("V", self.V), ("beta", self.beta), ("P", self.P)))
 
 
-def quadratic_residual(X, W, law, middles):
-    """(16), (17)"""
-    g, volume = gradients(X)
-    node = {(c, c): c for c in range(4)}
-    for k, (c, d) in enumerate(middles):
-        node[c, d] = node[d, c] = 4 + k
-    V, P = np.array(W["V"]), np.array(W["P"])
-    L = [sum(np.outer(4 * sum(POINTS[a, d] * V[node[c, d]] for d in range(4)) - V[c], g[c]) for c in range(4)) for a in range(4)]
-    S = [volume / 4 * (law.stress(sym(L[a])) - POINTS[a] @ P * np.eye(3)) for a in range(4)]
-    R = np.zeros((10, 3))
-    for c in range(4):
-        R[c] = sum((4 * POINTS[a, c] - 1) * S[a] @ g[c] for a in range(4))
-    for c, d in EDGES:
-        R[node[c, d]] = 4 * sum(POINTS[a, d] * S[a] @ g[c] + POINTS[a, c] * S[a] @ g[d] for a in range(4))
-    return {"V": R, "beta": [], "P": [-volume / 4 * sum(POINTS[a, c] * np.trace(L[a]) for a in range(4)) for c in range(4)]}
+class Mini:
+    """P1+/P1"""
+
+    def __init__(self, case, law):
+        self.law = law
+        self.g, self.volume = gradients(np.array(case["X"]))
+
+    def rates(self, W):
+        L = sum(np.outer(W.V[c], self.g[c]) for c in range(4))
+        return L, [sym(L + 4 * np.outer(W.beta[0], self.g[a])) for a in range(4)]
+
+    def functional(self, W):
+        """(14)"""
+        L, eps = self.rates(W)
+        return self.volume * (sum(map(self.law.potential, eps)) / 4 - W.P.mean() * np.trace(L) + W.beta[0] @ (W.P @ self.g) / 4)
+
+    def residual(self, W):
+        """(15)"""
+        g, volume = self.g, self.volume
+        L, eps = self.rates(W)
+        s = [self.law.stress(e) for e in eps]
+        return {"V": [volume / 4 * sum(s) @ g[c] - volume * W.P.mean() * g[c] for c in range(4)],
+                "beta": [volume * sum(s[a] @ g[a] for a in range(4)) + volume / 4 * W.P @ g],
+                "P": [volume / 4 * (W.beta[0] @ g[c] - np.trace(L)) for c in range(4)]}
+
+
+class Quadratic:
+    """P2/P1"""
+
+    def __init__(self, case, law):
+        self.law = law
+        self.g, self.volume = gradients(np.array(case["X"]))
+        self.node = {(c, c): c for c in range(4)}
+        for k, (c, d) in enumerate(case["middles"]):
+            self.node[c, d] = self.node[d, c] = 4 + k
+
+    def gradient(self, W, a):
+        U = [4 * sum(POINTS[a, d] * W.V[self.node[c, d]] for d in range(4)) - W.V[c] for c in range(4)]
+        return sum(np.outer(U[c], self.g[c]) for c in range(4))
+
+    def functional(self, W):
+        """(16)"""
+        L = [self.gradient(W, a) for a in range(4)]
+        return self.volume / 4 * sum(self.law.potential(sym(L[a])) - POINTS[a] @ W.P * np.trace(L[a]) for a in range(4))
+
+    def residual(self, W):
+        """(17)"""
+        g, volume = self.g, self.volume
+        L = [self.gradient(W, a) for a in range(4)]
+        S = [volume / 4 * (self.law.stress(sym(L[a])) - POINTS[a] @ W.P * np.eye(3)) for a in range(4)]
+        V = np.zeros((10, 3))
+        for c in range(4):
+            V[c] = sum((4 * POINTS[a, c] - 1) * S[a] @ g[c] for a in range(4))
+        for c, d in EDGES:
+            V[self.node[c, d]] = 4 * sum(POINTS[a, d] * S[a] @ g[c] + POINTS[a, c] * S[a] @ g[d] for a in range(4))
+        return {"V": V, "beta": [], "P": [-volume / 4 * sum(POINTS[a, c] * np.trace(L[a]) for a in range(4)) for c in range(4)]}
 
 
 class Plane:
@@ -220,50 +264,84 @@ class Contact:
                     pressed[v,] = True
         return pressed
 
+    def kinematics(self, V):
+        """u_k and h_k of (25)"""
+        u = {point: sum(part * V[k] for k, part in self.nodes(point)) - self.case["die"]["velocity"] for point in self.delta}
+        return u, {point: u[point] @ self.n[point] - self.approach(delta) for point, delta in self.delta.items()}
+
+    def decide(self, V):
+        """What is pressed, and areas."""
+        _, h = self.kinematics(V)
+        self.is_pressed, self.S, self.Sf = self.pressed(h), *self.areas()
+        return {"pressed": any(self.is_pressed.values()), "free": not all(self.is_pressed.values()), "inside": min(self.delta.values()) < 0,
+                "rubbing": any(self.Sf.values()), "edges": any(len(point) == 2 for point in self.delta),
+                "pulled": any(self.is_pressed[point] and h[point] < 0 for point in h), "partly sharp": not all(self.smooth.values())}
+
+    def terms(self, V):
+        """(point, its normal, h if it is pressed, slip, |slip|^2 + v_0^2)"""
+        u, h = self.kinematics(V)
+        for point in self.delta:
+            n = self.n[point]
+            slip = u[point] - u[point] @ n * n
+            yield point, n, h[point] * self.is_pressed[point], slip, slip @ slip + self.case["v_0"]**2
+
+    def potential(self, V):
+        """The sum over k of (30)"""
+        rho, alpha, K, m = (self.case[name] for name in ("rho", "alpha", "K", "m"))
+        return sum(rho * self.S[point] / 2 * h**2 + alpha * K * self.Sf[point] / (m + 1) * r**((m + 1) / 2)
+                   for point, _, h, _, r in self.terms(V))
+
     def forces(self, V):
         """f_k of (25)"""
-        case, (S, Sf) = self.case, self.areas()
-        u = {point: sum(part * V[k] for k, part in self.nodes(point)) - case["die"]["velocity"] for point in self.delta}
-        h = {point: u[point] @ self.n[point] - self.approach(delta) for point, delta in self.delta.items()}
-        pressed, forces = self.pressed(h), {}
-        for point, n in ((point, self.n[point]) for point in self.delta):
-            slip = u[point] - u[point] @ n * n
-            forces[point] = (case["rho"] * S[point] * h[point] * pressed[point] * n + case["alpha"] * case["K"] * Sf[point] *
-                             (slip @ slip + case["v_0"]**2)**((case["m"] - 1) / 2) * slip)
-        self.seen = {"pressed": any(pressed.values()), "free": not all(pressed.values()), "inside": min(self.delta.values()) < 0,
-                     "rubbing": any(Sf.values()), "edges": any(len(point) == 2 for point in self.delta),
-                     "pulled": any(pressed[point] and h[point] < 0 for point in h),
-                     "partly sharp": not all(self.smooth.values())}
-        return forces
+        rho, alpha, K, m = (self.case[name] for name in ("rho", "alpha", "K", "m"))
+        return {point: rho * self.S[point] * h * n + alpha * K * self.Sf[point] * r**((m - 1) / 2) * slip
+                for point, n, h, slip, r in self.terms(V)}
 
 
-def residual(case):
-    """(31), and what of contact it has seen"""
-    X, W, law = np.array(case["X"]), case["W"], Law(case)
-    contact = Contact(case)
-    R = quadratic_residual(X, W, law, contact.middles) if contact.quadratic else mini_residual(X, W, law)
-    V = np.array(W["V"])
-    for point, force in contact.forces(V).items():
-        for k, part in contact.nodes(point):
-            R["V"][k] = R["V"][k] + part * force
-    return R, contact.seen
+class Equations:
+    def __init__(self, case):
+        self.W, self.contact = Unknowns(case["W"]), Contact(case)
+        self.element = (Quadratic if self.contact.quadratic else Mini)(case, Law(case))
+        self.seen = self.contact.decide(self.W.V)
+
+    def residual(self):
+        """(31)"""
+        R = self.element.residual(self.W)
+        for point, force in self.contact.forces(self.W.V).items():
+            for k, part in self.contact.nodes(point):
+                R["V"][k] = R["V"][k] + part * force
+        return R
+
+    def gradient_of_functional(self):
+        """Of (30), at fixed contacts"""
+        tiny, W = 1e-30, Unknowns({name: part.astype(complex) for name, part in self.W})
+        R = {name: np.zeros(part.shape) for name, part in self.W}
+        for name, part in W:
+            for i in np.ndindex(part.shape):
+                part[i] += tiny * 1j
+                R[name][i] = (self.element.functional(W) + self.contact.potential(W.V)).imag / tiny
+                part[i] -= tiny * 1j
+        return R
 
 
 def main():
     printed = subprocess.run([os.path.abspath(sys.argv[1])], env=ENVIRONMENT, capture_output=True, text=True, timeout=600, check=True)
     errors, seen = {}, {}
-    for case in map(json.loads, printed.stdout.splitlines()):
-        R, of_contact = residual(case)
+    for i, case in enumerate(map(json.loads, printed.stdout.splitlines())):
+        equations = Equations(case)
+        found = {"R": equations.residual()}
+        if i % 5 == 0:
+            found["grad Pi"] = equations.gradient_of_functional()
         name = f"{case['pair']}, {'cap' if 'vertices' in case['die'] else 'plane'}, layer {case['l']}, m = {case['m']}"
-        for part, values in case["R"].items():
-            if values:
-                error = np.abs(np.array(values) - np.array(R[part])).max() / np.abs(np.array(values)).max()
-                errors[name, part] = max(errors.get((name, part), 0.), error)
-        for what, has in of_contact.items():
+        for what, of in found.items():
+            for part, values in ((part, np.array(values)) for part, values in case["R"].items() if values):
+                error = np.abs(values - np.array(of[part])).max() / np.abs(values).max()
+                errors[name, what, part] = max(errors.get((name, what, part), 0.), error)
+        for what, has in equations.seen.items():
             seen.setdefault((case["pair"], "vertices" in case["die"]), set()).update([what] if has else [])
-    for (name, part), error in errors.items():
-        judge(f"{name}: R^{part}, {error:.1e}", error < BAR)
-    judge("all kinds of cases", len(errors) == 2 * 2 * 2 * 3 + 2 * 2 * 2 * 2, len(errors))
+    for (name, what, part), error in errors.items():
+        judge(f"{name}: {what}, {part}, {error:.1e}", error < BAR)
+    judge("all kinds of cases", len(errors) == 2 * (2 * 2 * 2 * 3 + 2 * 2 * 2 * 2), len(errors))
     for (pair, curved), found in seen.items():
         wanted = {"pressed", "free", "inside", "rubbing"} | ({"edges"} if curved or pair == "P2/P1" else set())
         wanted |= {"pulled"} if pair == "P2/P1" else set()
