@@ -7,6 +7,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace retroforge
 {
@@ -32,6 +33,14 @@ namespace retroforge
     unsigned int             patch;
   };
 
+  /// The nodes of the file that a mesh was read from, in the file's order, those of no tetrahedron too.
+  struct FileNodes
+  {
+    std::vector<std::size_t> tags;  ///< their numbers in the file
+    std::vector<NodeIndex>   nodes; ///< and in the mesh; invalid_index: of no tetrahedron
+    NodalVectors<double>     X;     ///< where the mesh was made [mm]
+  };
+
   /// The tetrahedral mesh of a workpiece: connectivity, patches, and the positions of the nodes
   /// when it was made. The same on every rank. Positions during a run live outside the mesh.
   ///
@@ -42,6 +51,7 @@ namespace retroforge
     std::vector<std::array<NodeIndex, 4>> cells;
     std::vector<BoundaryFace>             faces;
     std::vector<Patch>                    patches;
+    FileNodes of_file; ///< empty, unless it is the mesh of a file as it stands there
 
     unsigned int n_nodes() const { return X.size(); }
     unsigned int n_cells() const { return cells.size(); }
