@@ -388,7 +388,7 @@ namespace retroforge
       return;
     const std::string &folder = case_.command.output_directory;
     if (!resume_)
-      make_results_folder(folder, case_.command.overwrite);
+      make_results_folder(folder, case_.command.overwrite, case_.echo);
     make_directory(folder + "/designs");
     for (const char *file : {"optimisation.csv", "optimisation.json"})
       check_writable(path_of(file));

@@ -186,7 +186,7 @@ namespace retroforge
   {
     const std::string &folder = command_.output_directory;
     if (!command_.resume)
-      make_results_folder(folder, command_.overwrite);
+      make_results_folder(folder, command_.overwrite, echo_);
     else if (std::filesystem::exists(folder + "/history.csv"))
       throw Error(folder,
                   "holds the results of a run",
@@ -233,7 +233,7 @@ namespace retroforge
     std::vector<ChildProcess> runs;
     for (const ScanPoint *point : points)
     {
-      make_results_folder(point->directory, true); // what is there of an earlier run is not this one's
+      make_results_folder(point->directory, true, echo_); // what is there of an earlier run is not this one's
       runs.push_back({words_of(command_of(*point)), point->directory + "/log.txt"});
       std::string line;
       for (const std::string &word : runs.back().command)

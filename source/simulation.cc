@@ -9,6 +9,8 @@
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/output/check_file.h>
 #include <retroforge/output/console.h>
+#include <retroforge/output/mesh_files.h>
+#include <retroforge/output/nodal_gradients.h>
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/output/sensitivity.h>
@@ -117,15 +119,22 @@ namespace retroforge
     if (root_ && command.resume)
       remove_all_but_record(command.output_directory, command.command == "check");
     else if (root_)
-      make_results_folder(command.output_directory, command.overwrite);
+      make_results_folder(command.output_directory, command.overwrite, case_.echo);
   }
 
   void Simulation::check_outputs() const
   {
-    std::vector<std::string> files = {
-      "parameters.prm", "history.csv", "objectives.csv", "fields.pvd", "summary.json"};
-    if (case_.command.command != "simulate")
-      files.push_back("sensitivity.vtu");
+    std::vector<std::string> files          = {"parameters.prm",
+                                               "history.csv",
+                                               "objectives.csv",
+                                               "fields.pvd",
+                                               "summary.json",
+                                               "billet.msh",
+                                               "forged.msh",
+                                               "forged.stl"};
+    const bool               differentiates = case_.command.command != "simulate";
+    if (differentiates)
+      files.insert(files.end(), {"sensitivity.vtu", "sensitivity_nodes.csv"});
     if (case_.command.command == "check")
       files.push_back("check.json");
     if (case_.parameters.output.record)
@@ -134,7 +143,9 @@ namespace retroforge
       if (die.surface())
       {
         files.push_back("die_" + die.name + ".stl");
-        files.push_back("sensitivity_die_" + die.name + ".vtu");
+        if (differentiates)
+          for (const char *kind : {".vtu", "_nodes.csv"})
+            files.push_back("sensitivity_die_" + die.name + kind);
       }
     for (const std::string &file : files)
       check_writable(path_of(file));
@@ -143,6 +154,7 @@ namespace retroforge
   void Simulation::write_inputs() const
   {
     write_file(path_of("parameters.prm"), case_.echo);
+    write_msh(path_of("billet.msh"), case_.billet, case_.X_0);
     for (const Die &die : case_.model.dies)
       if (die.surface())
         write_stl(path_of("die_" + die.name + ".stl"), *die.surface(), StlFormat::binary);
@@ -169,11 +181,20 @@ namespace retroforge
       passed = check();
     write_summary();
     if (root_)
+      write_forged();
+    if (root_)
       print_results(summary_,
                     case_.parameters.contact.largest_depth,
                     output_->untouched_dies(),
                     case_.command.output_directory);
     return passed;
+  }
+
+  void Simulation::write_forged() const
+  {
+    const TetMesh &mesh = forged_.leg->scene.mesh;
+    write_msh(path_of("forged.msh"), mesh, forged_.X);
+    write_boundary_stl(path_of("forged.stl"), mesh, forged_.X);
   }
 
   void Simulation::keep_failure()
@@ -338,7 +359,11 @@ namespace retroforge
     }
     const auto timing = timings_.scope("sensitivity");
     if (root_)
-      write_sensitivity(case_.command.output_directory, case_.billet, case_.X_0, case_.model.dies, judged_);
+    {
+      const std::string &folder = case_.command.output_directory;
+      write_sensitivity(folder, case_.billet, case_.X_0, case_.model.dies, judged_);
+      write_nodal_gradients(folder, case_.billet, case_.X_0, case_.model.dies, case_.process, judged_);
+    }
   }
 
   void Simulation::differentiate_directly()

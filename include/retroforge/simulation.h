@@ -27,6 +27,8 @@ namespace retroforge
     void write_inputs() const;
     /// @return whether a check passed, or there was none
     bool forge_and_judge();
+    /// The shape at the end of the stroke, for other programs, and as the billet of another case.
+    void write_forged() const;
     /// Leaves the reason why the run failed, which is being thrown, and the workpiece there.
     void keep_failure();
 

@@ -297,8 +297,9 @@ namespace retroforge
       const auto   moved = [&](const Vec3 &x) {
         return (p.rotation_angle == 0 ? x : rotate(x, axis, angle)) + p.translation;
       };
-      for (Vec3 &x : mesh.X)
-        x = moved(x);
+      for (NodalVectors<double> *X : {&mesh.X, &mesh.of_file.X})
+        for (Vec3 &x : *X)
+          x = moved(x);
       for (auto &patch : mesh.patches)
         if (patch.symmetry && p.rotation_angle != 0)
           patch.symmetry = Plane{moved(patch.symmetry->point), rotate(patch.symmetry->normal, axis, angle)};
@@ -322,8 +323,9 @@ namespace retroforge
     TetMesh read_file(const BilletParameters &p)
     {
       TetMesh mesh = read_msh(p.file_name, p.symmetry_patches);
-      for (Vec3 &x : mesh.X)
-        x *= p.scale;
+      for (NodalVectors<double> *X : {&mesh.X, &mesh.of_file.X})
+        for (Vec3 &x : *X)
+          x *= p.scale;
       for (Patch &patch : mesh.patches)
         if (patch.symmetry)
           patch.symmetry->point *= p.scale;

@@ -263,6 +263,17 @@ namespace retroforge
       return mesh;
     }
 
+    FileNodes nodes_of(const MshFile &file, const TagToNode &number)
+    {
+      FileNodes all{file.tags, {}, file.X};
+      for (const std::size_t tag : file.tags)
+      {
+        const auto node = number.find(tag);
+        all.nodes.push_back(node == number.end() ? invalid_index : node->second);
+      }
+      return all;
+    }
+
     // Of Gmsh's present model.
     TetMesh cells_and_nodes(const std::string &where)
     {
@@ -477,6 +488,7 @@ namespace retroforge
     mesh.remarks.insert(mesh.remarks.begin(), file.remarks.begin(), file.remarks.end());
     if (mesh.cells.empty())
       return mesh;
+    mesh.of_file           = nodes_of(file, number);
     const auto surfaces    = add_faces(mesh, file, number, file_name);
     const auto is_symmetry = find_symmetry(surfaces, symmetry_patches, file_name);
     fit_symmetry_planes(mesh, is_symmetry, file_name);

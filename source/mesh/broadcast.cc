@@ -58,6 +58,9 @@ namespace retroforge
       mesh.patches.resize(n_patches);
       for (auto &patch : mesh.patches)
         broadcast_patch(patch, communicator);
+      broadcast_array(mesh.of_file.tags, communicator);
+      broadcast_array(mesh.of_file.nodes, communicator);
+      broadcast_array(mesh.of_file.X, communicator);
     }
   } // namespace
 

@@ -99,6 +99,9 @@ namespace retroforge
     for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
       X[number[node]] = mesh.X[node];
     mesh.X = std::move(X);
+    for (NodeIndex &node : mesh.of_file.nodes)
+      if (node != invalid_index)
+        node = number[node];
 
     for (auto &cell : mesh.cells)
     {

@@ -9,6 +9,28 @@
 
 namespace retroforge
 {
+  namespace
+  {
+    struct NumberedNode
+    {
+      NodeIndex   node;
+      std::size_t number;
+    };
+
+    /// In the order of the file that the mesh was read from, with the numbers there; else counted from 1.
+    std::vector<NumberedNode> numbered_nodes(const TetMesh &mesh)
+    {
+      std::vector<NumberedNode> nodes;
+      const FileNodes          &file = mesh.of_file;
+      for (std::size_t i = 0; i < file.tags.size(); ++i)
+        if (file.nodes[i] != invalid_index)
+          nodes.push_back({file.nodes[i], file.tags[i]});
+      for (NodeIndex k = 0; file.tags.empty() && k < mesh.n_nodes(); ++k)
+        nodes.push_back({k, std::size_t(k) + 1});
+      return nodes;
+    }
+  } // namespace
+
   void write_msh(const std::string &file, const TetMesh &mesh, const NodalVectors<double> &X)
   {
     constexpr int      triangle = 2, tetrahedron = 4; // Gmsh's numbers
@@ -19,14 +41,19 @@ namespace retroforge
       out << "2 " << p + 1 << " \"" << mesh.patches[p].name << "\"\n";
     const std::size_t volume = mesh.patches.size() + 1;
     out << "3 " << volume << " \"billet\"\n$EndPhysicalNames\n$Nodes\n" << X.size() << '\n';
-    for (std::size_t k = 0; k < X.size(); ++k)
-      out << k + 1 << ' ' << X[k][0] << ' ' << X[k][1] << ' ' << X[k][2] << '\n';
+    std::vector<std::size_t> number(X.size());
+    for (const NumberedNode &node : numbered_nodes(mesh))
+    {
+      const Vec3 &x     = X[node.node];
+      number[node.node] = node.number;
+      out << node.number << ' ' << x[0] << ' ' << x[1] << ' ' << x[2] << '\n';
+    }
     out << "$EndNodes\n$Elements\n" << mesh.faces.size() + mesh.cells.size() << '\n';
     std::size_t n   = 0;
     const auto  add = [&](const int type, const std::size_t physical, const auto &nodes) {
       out << ++n << ' ' << type << " 2 " << physical << ' ' << physical;
       for (const NodeIndex k : nodes)
-        out << ' ' << k + 1;
+        out << ' ' << number[k];
       out << '\n';
     };
     for (const BoundaryFace &face : mesh.faces)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/parameter_input.h>
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 
@@ -20,7 +21,8 @@ namespace retroforge
       "fields\\.pvd|fields_[0-9]{6,}\\.vtu|failed\\.vtu|failure\\.txt|"
       "(journal|confirmation)\\.jsonl|optimisation\\.(csv|json)|"
       "scene\\.(json|pvd)|scene_(billet|die_.*)\\.vtu|"
-      "sensitivity(_die_.*)?\\.vtu|die_.*\\.(stl|vtu)|record\\.h5|report\\.html");
+      "sensitivity(_die_.*)?(\\.vtu|_nodes\\.csv)|billet\\.msh|forged\\.(msh|stl)|"
+      "die_.*\\.(stl|vtu)|record\\.h5|report\\.html");
 
     bool is_result(const fs::path &path)
     {
@@ -75,7 +77,24 @@ namespace retroforge
     return names;
   }
 
-  void make_results_folder(const std::string &directory, const bool overwrite)
+  namespace
+  {
+    /// Whatever parameter names one of the results: the billet, a die, a target.
+    void check_not_read(const std::string              &directory,
+                        const std::vector<std::string> &names,
+                        const std::string              &parameters)
+    {
+      for (const auto &[parameter, value] : parameter_values(parameter_lines_of(parameters, "parameters")))
+        for (const std::string &name : names)
+          if (std::error_code ignored; fs::equivalent(value, fs::path(directory) / name, ignored))
+            throw Error(parameter,
+                        "is " + value + ", a result that --overwrite would remove",
+                        "a run does not remove what it reads",
+                        "write to another folder with --output DIR");
+    }
+  } // namespace
+
+  void make_results_folder(const std::string &directory, const bool overwrite, const std::string &parameters)
   {
     make_directory(directory);
     const std::vector<std::string> names = results_in(directory);
@@ -86,6 +105,7 @@ namespace retroforge
                   "no run writes over another unless told to",
                   "go on with that run with --resume, replace it with --overwrite, or choose another folder "
                   "with --output DIR");
+    check_not_read(directory, names, parameters);
     remove(directory, names);
   }
 

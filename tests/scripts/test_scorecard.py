@@ -35,6 +35,13 @@ class Scorecard(ScratchTest):
         self.assertIn("2 of 2 reached", result.stdout)
         self.assertEqual((self.root / "results/scorecard/verification/cube/runs").read_text(), "x")
 
+    def test_results_elsewhere(self):
+        self.case([{"name": "error", "what": "the error", "at most": 1e-9}])
+        result = self.run_it("--output", self.root / "elsewhere")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertTrue((self.root / "elsewhere/verification/cube/runs").is_file())
+        self.assertFalse((self.root / "results").exists())
+
     def test_rows_missed(self):
         for name, bar, said in (("error", {"at most": 1e-10}, "NOT REACHED"), ("order", {"at least": 2}, "NOT REACHED"),
                                 ("broken", {"at most": 1}, "NOT REACHED"), ("broken", {"at least": 1}, "NOT REACHED"),

@@ -33,6 +33,14 @@ namespace retroforge
     unsigned int             patch;
   };
 
+  /// The nodes of the file that a mesh was read from, in the file's order, those of no tetrahedron too.
+  struct FileNodes
+  {
+    std::vector<std::size_t> tags;  ///< their numbers in the file
+    std::vector<NodeIndex>   nodes; ///< and in the mesh; invalid_index: of no tetrahedron
+    NodalVectors<double>     X;     ///< where the mesh was made [mm]
+  };
+
   /// The tetrahedral mesh of a workpiece: connectivity, patches, and the positions of the nodes
   /// when it was made. The same on every rank. Positions during a run live outside the mesh.
   ///
@@ -45,6 +53,7 @@ namespace retroforge
     std::vector<Patch>                    patches;
     /// What of its file was mended or left out, a sentence each; where the mesh was made, on one rank.
     std::vector<std::string> remarks = {};
+    FileNodes                of_file; ///< empty, unless it is the mesh of a file as it stands there
 
     unsigned int n_nodes() const { return X.size(); }
     unsigned int n_cells() const { return cells.size(); }

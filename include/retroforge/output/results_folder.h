@@ -13,8 +13,10 @@ namespace retroforge
 
   /// Makes the folder of a new run, without results of an earlier one: they are removed where the user said
   /// --overwrite.
-  /// @throws Error  where there are some and the user did not, or the folder cannot be made
-  void make_results_folder(const std::string &directory, bool overwrite);
+  /// @param parameters  of the new run, as understood
+  /// @throws Error  where there are some and the user did not, where the new run reads one of them, or where
+  /// the folder cannot be made
+  void make_results_folder(const std::string &directory, bool overwrite, const std::string &parameters);
 
   /// Removes what a run that goes on writes anew: all but its record, and what of a check is done.
   /// @param keep_check  whether the run goes on with that, too

@@ -16,8 +16,8 @@ import numpy as np
 import dies
 import runs
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "contrib"))
-from retroforge_report import vtu  # noqa: E402
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "contrib", "python"))
+import retroforge  # noqa: E402
 
 RADIUS, GAP = 30.0, 0.35  # of the sphere; between it and the billet at the start, more than it ever grows or shifts [mm]
 CASE = {
@@ -62,11 +62,10 @@ def offset(options):
 
 def by_growth(output, centre):
     """d(energy)/d(growth): the sensitivity by the punch's vertices times their normals, outwards from its centre."""
-    mesh = vtu.read(os.path.join(output, "sensitivity_die_upper.vtu"))
-    gradient = mesh.point_data["denergy_dXdie"].astype(float)
-    normals = mesh.points - centre
+    _, points, gradients = retroforge.read_nodal(os.path.join(output, "sensitivity_die_upper_nodes.csv"))
+    normals = points - centre
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    return float(np.einsum("ki,ki->", gradient, normals))
+    return float(np.einsum("ki,ki->", gradients["energy"], normals))
 
 
 def growth(options):

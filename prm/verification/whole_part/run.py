@@ -14,8 +14,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", ".."))
 import case_tools  # noqa: E402
 
-sys.path.insert(0, os.path.join(HERE, "..", "..", "..", "contrib"))
-from retroforge_report import vtu  # noqa: E402
+sys.path.insert(0, os.path.join(HERE, "..", "..", "..", "contrib", "python"))
+import retroforge  # noqa: E402
 
 HEIGHT, WIDTH, DEPTH = 20.0, 16.0, 6.0
 
@@ -169,8 +169,8 @@ def run(build, name, angle, die, whole):
 
 def by_nodes(folder):
     """{objective: gradient by the first mesh's nodes}, and the nodes"""
-    mesh = vtu.read(os.path.join(folder, "sensitivity.vtu"))
-    return {name[1:-4]: f for name, f in mesh.point_data.items() if name.startswith("d") and name.endswith("_dX0")}, mesh.points
+    _, points, gradients = retroforge.read_nodal(os.path.join(folder, "sensitivity_nodes.csv"))
+    return gradients, points
 
 
 def write_scene(angle):
@@ -226,9 +226,8 @@ def compare_nodes(angle, die, copies, factors):
     same = [at[tuple(np.round(x[k], 4) + 0.0)] for k in inside]
     worst = 0.0
     for objective, factor in factors.items():
-        field = objective.replace(" ", "_")
-        expected = factor / copies * gradients[field][inside]
-        off = np.abs(expected - of_whole[field][same]).max() / np.abs(expected).max()
+        expected = factor / copies * gradients[objective][inside]
+        off = np.abs(expected - of_whole[objective][same]).max() / np.abs(expected).max()
         worst = max(worst, off)
         print(f"d {objective}/d node, {len(inside)} nodes: {off:.1e}")
     case_tools.figure(f"{die}_nodes_{angle}", worst)

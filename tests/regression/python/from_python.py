@@ -17,6 +17,7 @@ import straight_side  # noqa: E402
 
 CASE, RADII = straight_side.CASE, straight_side.RADII
 QUICK = {"Press/increments": 4, "Newton/tolerance": 1e-12}
+BLUNT = {"Die upper/shape": "punch", "Die upper/Punch/radius": 14}
 
 
 class FromPython(unittest.TestCase):
@@ -43,6 +44,57 @@ class FromPython(unittest.TestCase):
                 difference = (plus.objectives[objective] - minus.objectives[objective]) / 0.002
                 self.assertAlmostEqual(difference / values[name], 1.0, delta=1e-4)
             self.assertEqual(plus.gradients, {"barrel": {}, "energy": {}})
+
+    def test_nodes(self):
+        """Derivatives by the nodes, along what a parameter moves them, add up to that by the parameter."""
+        nominal = retroforge.run(CASE, QUICK)
+        self.assertEqual(nominal.nodes.shape, (nominal.summary["mesh"]["nodes"], 3))
+        np.testing.assert_array_equal(nominal.nodes, nominal.billet.points)
+        np.testing.assert_array_equal(nominal.node_numbers, nominal.billet.numbers)
+        for name in RADII:
+            ends = [retroforge.run(CASE, QUICK, {name: radius}, "simulate").billet.points for radius in (10.001, 9.999)]
+            for objective, gradient in nominal.gradients_nodes.items():
+                change = (gradient * (ends[0] - ends[1])).sum() / 0.002
+                self.assertAlmostEqual(change / nominal.gradients[objective][name], 1.0, delta=1e-6)
+        self.assertEqual(nominal.vertices, {})
+
+    def test_vertices(self):
+        """A die that moves up as a whole: the derivatives by its vertices add up to that by its offset."""
+        forging = retroforge.run(CASE, {**QUICK, **BLUNT, "Design/parameters": "die upper/offset"})
+        self.assertEqual(list(forging.vertices), ["upper"])
+        for objective, gradient in forging.gradients_vertices["upper"].items():
+            self.assertEqual(gradient.shape, forging.vertices["upper"].shape)
+            down = -gradient[:, 2].sum()
+            self.assertAlmostEqual(down / forging.gradients[objective]["die upper/offset"], 1.0, delta=1e-8)
+
+    def test_fields(self):
+        """In the order of the forged part's nodes and cells: the displacement is where they went, the mean of the strain is the objective."""
+        told = {"Output/fields every": 1, "Objectives/names": "barrel, energy, mean strain"}
+        forging = retroforge.run(CASE, {**QUICK, **told}, command="simulate")
+        went = forging.forged.points - forging.billet.points
+        np.testing.assert_allclose(forging.fields["displacement [mm]"], went, atol=1e-5)
+        self.assertGreater(np.abs(went).max(), 1.0)
+        a, b, c, d = (forging.forged.points[forging.forged.cells[:, i]] for i in range(4))
+        volumes = np.einsum("ij,ij->i", b - a, np.cross(c - a, d - a)) / 6
+        self.assertAlmostEqual(volumes.sum() / forging.summary["volume_final"], 1.0, delta=1e-12)
+        mean = (volumes * forging.fields["equivalent_strain"]).sum() / volumes.sum()
+        self.assertAlmostEqual(mean / forging.objectives["mean strain"], 1.0, delta=1e-6)
+        self.assertEqual(forging.gradients_nodes, {})
+        self.assertEqual(retroforge.run(CASE, QUICK, command="simulate").fields, {})
+
+    def test_progress(self):
+        rows = []
+        with tempfile.TemporaryDirectory() as folder:
+            forging = retroforge.run(CASE, QUICK, folder=folder, progress=rows.append)
+            with self.assertRaisesRegex(retroforge.Error, "--overwrite"):
+                retroforge.run(CASE, QUICK, folder=folder, progress=rows.append)
+        self.assertEqual(rows, [{name: values[i] for name, values in forging.history.items()} for i in range(4)])
+
+        def enough(row):
+            if row["stroke"] > 0.2:
+                raise StopIteration(row["increment"])
+        with self.assertRaises(StopIteration):
+            retroforge.run(CASE, {"Press/increments": 200}, progress=enough)
 
     def test_mistakes(self):
         for settings, at, message in (({"Press/strok": 1}, {}, "unknown parameter 'Press/strok'"),
