@@ -12,6 +12,7 @@
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/output/sensitivity.h>
+#include <retroforge/output/warnings.h>
 #include <retroforge/run_messages.h>
 #include <retroforge/run_summary.h>
 #include <retroforge/scene_checks.h>
@@ -91,6 +92,8 @@ namespace retroforge
       check_outputs();
       write_inputs();
       print_begin(case_);
+      summary_.volume_of_shape = shape_volume(case_);
+      print_chords(case_, summary_.volume_of_shape);
     }
     try
     {
@@ -162,14 +165,13 @@ namespace retroforge
     summary_.deepest      = output_->deepest();
     summary_.spanned      = output_->spanned();
     summary_.record_bytes = recording_.bytes();
+    summary_.warnings =
+      warnings_of(summary_, case_.parameters.contact.largest_depth, output_->untouched_dies());
     if (command == "check")
       passed = check();
     write_summary();
     if (root_)
-      print_results(summary_,
-                    case_.parameters.contact.largest_depth,
-                    output_->untouched_dies(),
-                    case_.command.output_directory);
+      print_results(summary_, case_.command.output_directory);
     return passed;
   }
 
@@ -222,7 +224,7 @@ namespace retroforge
   void Simulation::forge_on()
   {
     bool writes = false;
-    output_->begin(forged_);
+    output_->begin();
     try
     {
       forging_.run(case_.process, forged_, [&](const IncrementEvent &event) {
