@@ -150,6 +150,27 @@ namespace retroforge
     std::cout << std::flush;
   }
 
+  void print_chords(const Case &at, const double shape)
+  {
+    constexpr double much      = 1e-3;
+    const double     mesh      = volume(at.billet.cells, at.X_0);
+    const auto      &at_design = at.parameters.design.at;
+    const bool       is_chosen = std::any_of(at_design.begin(), at_design.end(), [](const auto &value) {
+      return value.first.rfind("billet/", 0) == 0;
+    });
+    if (!(std::abs(mesh / shape - 1.) > much) || is_chosen)
+      return;
+    std::cout << "  note: the mesh has chords for round sides, and " << as_text(mesh)
+              << " mm^3 for the shape's " << as_text(shape) << " ("
+              << as_text(std::round(1e4 * (mesh / shape - 1.)) / 100.)
+              << " %); energies and forces lack about as much. A smaller Billet/element size comes nearer";
+    if (at.parameters.billet.shape == "cylinder" && at.parameters.billet.volume_held_by.empty())
+      std::cout << ", and --at billet/radius="
+                << as_text(at.parameters.billet.radius * std::sqrt(shape / mesh))
+                << " gives this mesh the shape's volume";
+    std::cout << '\n' << std::flush;
+  }
+
   void print_resumed(const unsigned int                 n_increments,
                      const bool                         is_left,
                      const std::vector<ChangedSetting> &changes)

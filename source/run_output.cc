@@ -6,7 +6,9 @@
 #include <retroforge/output/console.h>
 #include <retroforge/run_output.h>
 
+#include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace retroforge
 {
@@ -15,8 +17,14 @@ namespace retroforge
       , whole_(whole)
       , trace_(trace)
       , timings_(timings)
+      , time_left_(at.parameters.press.stroke)
       , fields_(at.comm, at.command.output_directory, at.model, at.process, at.billet, at.X_0)
   {
+    if (at.parameters.output.every != 0u)
+    {
+      const auto timing = timings_.scope("output");
+      fields_.add_billet();
+    }
     const std::string &folder = at.command.output_directory;
     if (dealii::Utilities::MPI::this_mpi_process(at.comm) != 0)
       return;
@@ -25,16 +33,26 @@ namespace retroforge
     print_head(whole);
   }
 
-  void RunOutput::begin(const ForgingState &state)
+  void RunOutput::begin()
   {
-    begin_stroke_  = state.stroke;
-    begin_seconds_ = timings_.seconds("total");
+    seconds_ = timings_.seconds("total");
   }
 
   bool RunOutput::is_due(const ForgingState &state, const unsigned int every) const
   {
     const bool at_end = state.stroke >= case_.parameters.press.stroke * (1. - 1e-9);
     return every > 0 && (state.increments % every == 0 || at_end);
+  }
+
+  bool RunOutput::shows(const IncrementEvent &event) const
+  {
+    if (case_.parameters.output.every)
+      return is_due(event.state, *case_.parameters.output.every);
+    constexpr double n_pictures = 20.;
+    const auto       interval   = [&](const double stroke) {
+      return std::floor(n_pictures * stroke / case_.parameters.press.stroke + 1e-6);
+    };
+    return interval(event.state.stroke) > interval(event.record.stroke);
   }
 
   void RunOutput::add(const IncrementEvent &event)
@@ -53,7 +71,7 @@ namespace retroforge
       print(event, row);
     }
     fields_.follow(event);
-    if (is_due(event.state, case_.parameters.output.every))
+    if (shows(event))
       fields_.add(event);
   }
 
@@ -122,14 +140,17 @@ namespace retroforge
             whole_.copies * size};
   }
 
-  void RunOutput::print(const IncrementEvent &event, const HistoryRow &row) const
+  void RunOutput::print(const IncrementEvent &event, const HistoryRow &row)
   {
     const TetMesh &mesh = event.state.leg->scene.mesh;
     if (event.record.remesh)
       std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());
-    print_increment(row,
-                    (timings_.seconds("total") - begin_seconds_) *
-                      (case_.parameters.press.stroke - row.stroke) / (row.stroke - begin_stroke_));
+    if (!std::isnan(seconds_)) // solved, not restored
+    {
+      const double now = timings_.seconds("total");
+      time_left_.add(event.record.step, now - std::exchange(seconds_, now));
+    }
+    print_increment(row, time_left_.seconds(row.stroke));
   }
 
   void RunOutput::add_failed(const ForgingState &state)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/version.h>
+#include <retroforge/design/mesh_anew.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/output/blas.h>
 #include <retroforge/run_summary.h>
@@ -42,6 +43,15 @@ namespace retroforge
       }
     }
   } // namespace
+
+  double shape_volume(const Case &at)
+  {
+    if (!has_measures(at.parameters.billet))
+      return Summary::unknown;
+    const TetMesh &made = at.first.mesh;
+    return shape_volume(at.first.shapes.measured(at.first.at)) / volume(made.cells, made.X) *
+           volume(made.cells, at.X_0);
+  }
 
   void summarise_run(const Case &at, const ForgingState &forged, Summary &summary)
   {

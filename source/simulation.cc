@@ -14,6 +14,7 @@
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/output/sensitivity.h>
+#include <retroforge/output/warnings.h>
 #include <retroforge/run_messages.h>
 #include <retroforge/run_summary.h>
 #include <retroforge/scene_checks.h>
@@ -96,6 +97,8 @@ namespace retroforge
       print_begin(case_);
       print_warnings(warnings_);
       print_warnings(estimate_scene(case_.parameters, first_leg_->scene, case_.process, case_.X_0).warnings);
+      summary_.volume_of_shape = shape_volume(case_);
+      print_chords(case_, summary_.volume_of_shape);
     }
     try
     {
@@ -177,16 +180,15 @@ namespace retroforge
     summary_.deepest      = output_->deepest();
     summary_.spanned      = output_->spanned();
     summary_.record_bytes = recording_.bytes();
+    summary_.warnings =
+      warnings_of(summary_, case_.parameters.contact.largest_depth, output_->untouched_dies());
     if (command == "check")
       passed = check();
     write_summary();
     if (root_)
       write_forged();
     if (root_)
-      print_results(summary_,
-                    case_.parameters.contact.largest_depth,
-                    output_->untouched_dies(),
-                    case_.command.output_directory);
+      print_results(summary_, case_.command.output_directory);
     return passed;
   }
 
@@ -246,7 +248,7 @@ namespace retroforge
   void Simulation::forge_on()
   {
     bool writes = false;
-    output_->begin(forged_);
+    output_->begin();
     try
     {
       forging_.run(case_.process, forged_, [&](const IncrementEvent &event) {

@@ -14,6 +14,7 @@
 #include <retroforge/time/forging.h>
 
 #include <iosfwd>
+#include <optional>
 
 namespace retroforge
 {
@@ -48,8 +49,9 @@ namespace retroforge
 
   struct OutputParameters
   {
-    unsigned int every  = 1;
-    bool         record = true;
+    std::optional<unsigned int>
+         every; ///< increments between pictures; unset: pictures evenly over the stroke
+    bool record = true;
 
     void add_parameters(dealii::ParameterHandler &prm);
   };

@@ -18,6 +18,10 @@ namespace retroforge
   /// What is doubtful about a scene, or out of all proportion, a sentence each.
   void print_warnings(const std::vector<std::string> &warnings);
 
+  /// How much metal the chords of round sides lack, where that is much.
+  /// @param shape  volume of the billet that the mesh stands for; NaN when unknown [mm^3]
+  void print_chords(const Case &at, double shape);
+
   /// Where a run goes on from, and with what.
   /// @param is_left  whether some of the stroke is
   void print_resumed(unsigned int n_increments, bool is_left, const std::vector<ChangedSetting> &changes);

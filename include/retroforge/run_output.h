@@ -7,6 +7,7 @@
 #include <retroforge/output/history.h>
 #include <retroforge/output/objective_history.h>
 #include <retroforge/output/summary.h>
+#include <retroforge/output/time_left.h>
 
 #include <memory>
 #include <set>
@@ -24,7 +25,7 @@ namespace retroforge
     RunOutput(const Case &at, const WholePart &whole, const ObjectiveTrace &trace, Timings &timings);
 
     /// From here on increments are solved, as far as the time left is concerned.
-    void begin(const ForgingState &state);
+    void begin();
 
     /// The end of an increment, solved or restored. Collective.  @throws Error  if a file cannot be written
     void add(const IncrementEvent &event);
@@ -44,10 +45,12 @@ namespace retroforge
   private:
     void       add_objectives(const ForgingState &state);
     HistoryRow row_of(const IncrementEvent &event);
-    void       print(const IncrementEvent &event, const HistoryRow &row) const;
+    void       print(const IncrementEvent &event, const HistoryRow &row);
     void       watch_edges(const IncrementEvent &event);
     /// Every so many increments, and at the end.
     bool is_due(const ForgingState &state, unsigned int every) const;
+    /// Whether fields are written at the end of an increment.
+    bool shows(const IncrementEvent &event) const;
 
     const Case           &case_;
     const WholePart       whole_;
@@ -57,8 +60,8 @@ namespace retroforge
     std::set<unsigned int> touched_; ///< dies that some node was pressed by
     Summary::Depth         deepest_;
     Summary::Spanned       spanned_;
-    /// Where increments began to be solved: stroke [mm], and seconds of the run by then.
-    double begin_stroke_ = 0., begin_seconds_ = Summary::unknown;
+    TimeLeft               time_left_;
+    double                 seconds_ = Summary::unknown; ///< of the run by the end of the increment before
 
     std::unique_ptr<History>          history_;
     std::unique_ptr<ObjectiveHistory> objectives_;

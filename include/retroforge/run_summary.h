@@ -7,6 +7,11 @@
 
 namespace retroforge
 {
+  /// Volume of the billet that the mesh stands for, whose round sides are no chords: that of the mesh, X_0,
+  /// times the shape's over the mesh's where it was made. NaN for a billet that has no measures. To be called
+  /// on one rank only.  Units: mm^3.
+  double shape_volume(const Case &at);
+
   /// What a summary says of the forging: counts, volumes, restarts.
   void summarise_run(const Case &at, const ForgingState &forged, Summary &summary);
 

@@ -512,6 +512,11 @@ namespace retroforge
                   "write for example `0, 0, 1'");
   }
 
+  double shape_volume(const BilletParameters &parameters)
+  {
+    return volume_with_gmsh(solid_of(parameters), "Billet");
+  }
+
   TetMesh make_billet(const BilletParameters &parameters, MPI_Comm communicator)
   {
     parameters.check();

@@ -450,6 +450,24 @@ namespace retroforge
       });
   }
 
+  double volume_with_gmsh(const CutSolid &solid, const std::string &where)
+  {
+    return within_gmsh(where, "check the sizes and planes of the billet", [&]() {
+      gmsh::model::add("billet");
+      build_geometry(solid, where);
+      gmsh::vectorpair bodies;
+      gmsh::model::getEntities(bodies, 3);
+      double volume = 0.;
+      for (const auto &[dimension, tag] : bodies)
+      {
+        double part = 0.;
+        gmsh::model::occ::getMass(dimension, tag, part);
+        volume += part;
+      }
+      return volume;
+    });
+  }
+
   TetMesh fill_with_gmsh(const NodalVectors<double>                  &X,
                          const std::vector<std::array<NodeIndex, 3>> &triangles,
                          const std::function<double(const Vec3 &)>   &size,

@@ -144,64 +144,23 @@ namespace retroforge
         std::printf("; of the whole part %.12g %s", objective.whole, unit);
       std::printf("\n");
     }
-
-    void print_depth(const Summary::Depth &deepest)
-    {
-      std::printf(
-        "  warning: the surface was up to %.3g mm (%.1f %% of the element size) inside die %s, at (%.4g, "
-        "%.4g, "
-        "%.4g) and stroke %.5g: what is inside does no work. More increments, a smaller Contact/edge sinking "
-        "or Remeshing/chord error hold it out.\n",
-        deepest.depth,
-        100. * deepest.relative,
-        deepest.die.c_str(),
-        deepest.place[0],
-        deepest.place[1],
-        deepest.place[2],
-        deepest.stroke);
-    }
-    void print_spanned(const Summary::Spanned &spanned)
-    {
-      std::printf(
-        "  warning: up to %u of the %u surface edges that touched curved dies spanned their corners, worst "
-        "at "
-        "(%.4g, %.4g, %.4g) of die %s and stroke %.5g, where it bulges by %.0f %% of the edge's length: "
-        "quadratic velocities ripple there. A smaller Remeshing/chord error or Remeshing/element size, or "
-        "Discretization/element=mini, keeps to the die.\n",
-        spanned.spanning,
-        spanned.touching,
-        spanned.place[0],
-        spanned.place[1],
-        spanned.place[2],
-        spanned.die.c_str(),
-        spanned.stroke,
-        100. * spanned.bulge);
-    }
   } // namespace
 
-  void print_results(const Summary                  &summary,
-                     const double                    largest_depth,
-                     const std::vector<std::string> &untouched,
-                     const std::string              &directory)
+  void print_results(const Summary &summary, const std::string &directory)
   {
     std::printf("\n");
     for (const Summary::Objective &objective : summary.objectives)
       print_objective(objective, summary.whole.is_model());
-    if (summary.deepest.relative > largest_depth)
-      print_depth(summary.deepest);
-    constexpr double many = 0.05;
-    if (summary.spanned.share() > many)
-      print_spanned(summary.spanned);
     if (summary.volume_repaired > 0.)
       std::printf(
         "  the surface crossed itself, or cells at it stayed flat, in places thinner than an element: "
         "%.3g mm^3 were taken away there, and put back elsewhere\n",
         summary.volume_repaired);
-    for (const std::string &die : untouched)
-      std::printf("  warning: no node touched die %s\n", die.c_str());
+    for (const std::string &warning : summary.warnings)
+      std::printf("  warning: %s\n", warning.c_str());
     const auto total = summary.wall_seconds.find("total");
     std::printf("  volume change %.3g, %.1f s\n  results in %s\n",
-                summary.volume_final / summary.volume_initial - 1.,
+                summary.volume_change(),
                 total == summary.wall_seconds.end() ? 0. : total->second,
                 directory.c_str());
   }

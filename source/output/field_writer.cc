@@ -154,10 +154,13 @@ namespace retroforge
     write_file(directory_ + "/fields.pvd", out.str());
   }
 
+  void FieldWriter::add_billet()
+  {
+    add_billet(comm_);
+  }
+
   void FieldWriter::add_billet(const MPI_Comm comm)
   {
-    if (!series_.empty())
-      return;
     const std::string          file = "fields_" + six_digits(0) + ".vtu";
     const Spaces               spaces(billet_, Topology(billet_), model_.element);
     const Field<double>        at_rest(spaces);
@@ -184,7 +187,6 @@ namespace retroforge
     const SolvedStage  &last    = event.solved.last();
     const ContactFields contact = contact_fields(last.stage, run.next.W, last.active);
     const std::string   number = six_digits(run.increments), file = "fields_" + number + ".vtu";
-    add_billet(comm_);
     write(comm_,
           file,
           {scene.mesh, scene.spaces, run.X, last.X, run.next.W, run.strain, &displacement_, &contact});
@@ -195,7 +197,8 @@ namespace retroforge
   {
     // The increment that failed may have begun with a remeshing, which nobody was told of.
     const auto *displacement = state.remeshed.size() == n_remeshings_ ? &displacement_ : nullptr;
-    add_billet(MPI_COMM_SELF);
+    if (series_.empty())
+      add_billet(MPI_COMM_SELF);
     write(MPI_COMM_SELF,
           "failed.vtu",
           {state.leg->scene.mesh,

@@ -128,6 +128,7 @@ namespace retroforge
     json["volume_initial"]        = number(volume_initial);
     json["volume_final"]          = number(volume_final);
     json["volume_repaired"]       = number(volume_repaired);
+    json["volume_of_shape"]       = number(volume_of_shape);
     if (!deepest.die.empty())
       json["deepest"] = {
         {"depth", number(deepest.depth)},
@@ -144,6 +145,7 @@ namespace retroforge
         {"stroke", number(spanned.stroke)},
         {"place", {number(spanned.place[0]), number(spanned.place[1]), number(spanned.place[2])}}};
     add_unless_empty(json, "restarts", list(restarts));
+    add_unless_empty(json, "warnings", Json(warnings));
     add_unless_empty(json, "wall_seconds", number_map(wall_seconds));
     json["record_bytes"] = number(record_bytes);
     add_unless_empty(json, "check", list(check));

@@ -16,8 +16,6 @@
 
 namespace retroforge
 {
-  /// The workpiece before forging: its shape, what symmetry leaves of it, where it stands, and how fine its
-  /// mesh is.
   /// Smooth moves of patches along their normals: design/free_form.h.
   struct FreeFormParameters
   {
@@ -26,6 +24,8 @@ namespace retroforge
     double                   length = 0.; ///< l [mm]; 0: a quarter of the root of the patches' area
   };
 
+  /// The workpiece before forging: its shape, what symmetry leaves of it, where it stands, and how fine its
+  /// mesh is.
   struct BilletParameters
   {
     std::string shape = "box";
@@ -79,4 +79,8 @@ namespace retroforge
   /// onto all patches it belongs to. Of the mesh faces and patches count, which are those of make_billet().
   /// Of a billet from a file nothing moves.
   void snap_to_shape(const BilletParameters &parameters, TetMesh &mesh);
+
+  /// What the measures and cuts of a billet that is not from a file bound: more than its mesh where that has
+  /// chords for round sides. To be called on one rank only.  Units: mm^3.  @throws Error
+  double shape_volume(const BilletParameters &parameters);
 } // namespace retroforge

@@ -38,6 +38,9 @@ namespace retroforge
                          const std::function<void(TetMesh &, double)> &improve,
                          const std::string                            &where);
 
+  /// Of the solid itself, by Gmsh.  Throws and is called as mesh_with_gmsh().  Units: mm^3.
+  double volume_with_gmsh(const CutSolid &solid, const std::string &where);
+
   /// Cells and nodes of an unstructured tetrahedral mesh of what the triangles enclose. The triangles, turned
   /// outwards, are kept as they are; the nodes of the result are first `X`, then those made inside. The same
   /// input gives the same mesh, bit for bit. Throws Error at `where` when Gmsh fails, which it does when

@@ -42,10 +42,6 @@ namespace retroforge
                             unsigned int                 all,
                             double                       seconds);
 
-  /// The objectives, and what a user must know to trust them.
-  /// @param untouched  dies that pressed no node
-  void print_results(const Summary                  &summary,
-                     double                          largest_depth,
-                     const std::vector<std::string> &untouched,
-                     const std::string              &directory);
+  /// The objectives, and the warnings.
+  void print_results(const Summary &summary, const std::string &directory);
 } // namespace retroforge

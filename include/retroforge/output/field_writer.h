@@ -22,6 +22,10 @@ namespace retroforge
                 const TetMesh              &billet,
                 const NodalVectors<double> &X_0);
 
+    /// The workpiece before it is forged, the first picture. Collective.
+    /// @throws Error  if a file cannot be written
+    void add_billet();
+
     /// To be told of every increment, written or not: displacements add up, and are carried through
     /// remeshings as other nodal values are.
     void follow(const IncrementEvent &event);

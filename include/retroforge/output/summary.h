@@ -77,8 +77,11 @@ namespace retroforge
     Count increments, cuts, remeshings, newton_iterations, krylov_iterations, linear_solves_forward,
       linear_solves_adjoint;
 
-    double volume_initial  = unknown;
-    double volume_final    = unknown;
+    double volume_initial = unknown; ///< of the mesh, mm^3
+    double volume_final   = unknown;
+    double volume_of_shape =
+      unknown; ///< of the billet that the mesh stands for, whose round sides are no chords
+    double volume_change() const { return volume_final / volume_initial - 1.; }
     double volume_repaired = 0.; ///< taken away where metal was thinner than an element, mm^3
 
     /// The deepest the surface has been in a die, over the run.
@@ -113,6 +116,9 @@ namespace retroforge
       std::map<std::string, std::pair<std::string, std::string>> changed;   ///< before and after
     };
     std::vector<Restart> restarts;
+
+    /// What a user must know to trust the numbers: a sentence or two each.
+    std::vector<std::string> warnings;
 
     std::map<std::string, double> wall_seconds;
     Count                         record_bytes;

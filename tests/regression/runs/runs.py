@@ -2,12 +2,13 @@
 # Copyright (C) 2026 The Retroforge authors
 """What runs leave behind: numbers of the whole part beside those of the model; of a run that fails, the reason and the
 workpiece there; of one that is stopped, what it had, and how to go on; of a check, what is done; nothing of a record beside
-the finished one; no number that is not finite; fields and dies as time goes on. Usage: runs.py RETROFORGE
+the finished one; no number that is not finite; fields and dies as time goes on; what a user must know of the volume. Usage: runs.py RETROFORGE
 
 By hand: without friction a block is upset evenly, and its energy does not depend on how symmetry cut it. Pressed from
 above at v against a die, or from both sides at v/2 over half the stroke, is the same flow."""
 import math
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -19,7 +20,7 @@ import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 from whole_runs import (ENVIRONMENT, ROOT, changed, command, cube, history_of, judge, main, prm, run, start, summary_of,  # noqa: E402
-                        text_of)
+                        text_of, upsetting)
 
 sys.path.insert(0, str(ROOT / "contrib"))
 from retroforge_report import vtu  # noqa: E402
@@ -28,6 +29,7 @@ REPORT = str(ROOT / "contrib/report")
 SMOOTH = {"friction": 0}
 CASE = changed(cube(20, 7, 2, 4), {"Die lower": SMOOTH, "Die upper": SMOOTH,
                                    "Objectives": {"names": "energy, maximum effort, volume, mean strain"}})
+CYLINDER = upsetting("cylinder", {"radius": 20, "height": 40}, 8, 40, 2, 2)
 UPPER = changed({name: section for name, section in CASE.items() if name != "Die lower"}, {"Dies": {"names": "upper"}})
 
 
@@ -89,6 +91,7 @@ def fields():
     judge("fields: three parts at five times", [file[:-len("_000000.vtu")] for _, file in parts] == ["fields", "die_lower", "die_upper"] * 5, parts)
     judge("fields: the dies move", all(np.abs(vtu.read(f"fields/{file}").points[:, 2] - (0, 20 - 100 * t)["upper" in file]).max() < 1e-9
                                        for t, file in parts if file.startswith("die")))
+    judge("fields: at the ends of the increments", np.allclose([t for t, _ in parts[::3]], [0, 0.005, 0.01, 0.015, 0.02]), parts)
     billet, last = (vtu.read(f"fields/{parts[i][1]}") for i in (0, -3))
     judge("fields: all of the billet's are zero", {**last.point_data, **last.cell_data}.keys() == {
         **billet.point_data, **billet.cell_data}.keys() and not any(x.any() for x in billet.point_data.values()))
@@ -103,6 +106,54 @@ def fields():
         error = np.abs(found - expected).max() / np.abs(expected).max()
         judge(f"fields: {name}", error < 2e-3, f"{error:.1e}")
     reported("fields", "shapes.png")
+
+
+def strokes_of(folder):
+    """Of the pictures, at 100 mm/s."""
+    return [100 * float(p.get("timestep")) for p in xml.parse(f"{folder}/fields.pvd").iter("DataSet") if p.get("file").startswith("f")]
+
+
+def pictures():
+    """Of 50 increments of 0.04 mm: the billet, and of each twentieth of the stroke, 0.1 mm, the end of the increment that reaches it."""
+    done = run("simulate", "pictures", "Press/increments=50")
+    expected = [0.04 * math.ceil(round(2.5 * k, 9)) for k in range(21)]
+    judge("pictures: evenly over the stroke", done.returncode == 0 and np.allclose(strokes_of("pictures"), expected), strokes_of("pictures"))
+    files = [name for name in os.listdir("pictures") if name.endswith(".vtu")]
+    judge("pictures: no others", len(files) == 3 * 21, files)
+    done = run("simulate", "none", "Output/fields every=0")
+    judge("pictures: none", done.returncode == 0 and not any(name.endswith((".vtu", ".pvd")) for name in os.listdir("none")), os.listdir("none"))
+    done = run("simulate", "ends", "Output/fields every=1000")
+    judge("pictures: ends", done.returncode == 0 and np.allclose(strokes_of("ends"), [0, 2]), strokes_of("ends"))
+
+
+def chords():
+    """The quarter of a round billet, pi 20^2 40 / 4 mm^3, whose mesh lacks some; at the radius that is told its mesh has it."""
+    done = run("simulate", "round", case="round.prm")
+    summary, volume = summary_of("round"), math.pi * 20**2 * 40 / 4
+    lack = summary["volume_initial"] / volume - 1
+    judge("chords: the shape's volume", near(summary["volume_of_shape"], volume, 1e-9), summary["volume_of_shape"])
+    judge("chords: the mesh has less", -0.04 < lack < -0.01, lack)
+    told = re.search(r"note: the mesh has chords .* \((\S+) %\).*--at billet/radius=(\S+) ", done.stdout)
+    judge("chords: told", told and near(float(told[1]), 100 * lack, 1e-2), done.stdout)
+    done = run("simulate", "rounder", ("billet/radius", float(told[2])), case="round.prm")
+    summary = summary_of("rounder")
+    judge("chords: none lacks", near(summary["volume_initial"], volume, 2e-6) and "chords" not in done.stdout, summary["volume_initial"])
+    judge("chords: of that radius", near(summary["volume_of_shape"], volume * (float(told[2]) / 20)**2, 1e-9), summary["volume_of_shape"])
+    judge("chords: a block has none", near(summary_of("quarter")["volume_of_shape"], 20**3 / 4, 1e-9) and
+          near(summary_of("quarter")["volume_initial"], 20**3 / 4, 1e-9))
+
+
+def lost_volume():
+    """Euler's long increments lose metal: told from 0.2 % on, with what helps, and the run is as good as another."""
+    for name, increments, is_much in (("much", 4, True), ("little", 100, False)):
+        done = run("simulate", name, "Press/scheme=euler", f"Press/increments={increments}", "Output/fields every=0")
+        summary = summary_of(name)
+        change = summary["volume_final"] / summary["volume_initial"] - 1
+        warnings = [text for text in summary.get("warnings", []) if "of its volume" in text]
+        judge(f"{name} volume lost", (abs(change) > 2e-3) == is_much, change)
+        judge(f"{name} volume lost: told", done.returncode == 0 and len(warnings) == is_much and
+              all(f"{100 * abs(change):.2g} %" in text and f"warning: {text}" in done.stdout for text in warnings), done.stdout)
+    reported("much", "Warning: the workpiece has")
 
 
 def failed():
@@ -138,6 +189,8 @@ def stop(words, ready):
 def stopped():
     """And resumed; and the increments put back as if it had been killed as it finished."""
     fine = ("Press/increments=200", "Output/fields every=20")
+    stop(command("simulate", "early", "Press/increments=2000", "Output/fields every=1000"), lambda: os.path.exists("early/fields.pvd"))
+    judge("stopped early: has the billet", strokes_of("early") == [0] and os.path.exists("early/fields_000000.vtu"), os.listdir("early"))
     said = stop(command("gradient", "stopped", *fine), lambda: os.path.exists("stopped/record/increment_000030.h5"))
     judge("stopped: says how to go on", "--resume" in said and "contrib/report stopped" in said, said)
     reported("stopped", "The run was stopped", "--resume", "force.png", "Results until stroke")
@@ -174,4 +227,5 @@ def check():
     reported("part", f"{left} directions are not checked", "energy")
 
 
-main({"case.prm": prm(CASE), "upper.prm": prm(UPPER)}, (whole_part, beside, not_finite, fields, failed, stopped, check))
+main({"case.prm": prm(CASE), "upper.prm": prm(UPPER), "round.prm": prm(CYLINDER)},
+     (whole_part, beside, not_finite, fields, pictures, chords, lost_volume, failed, stopped, check))

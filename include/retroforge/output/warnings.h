@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/output/summary.h>
+
+namespace retroforge
+{
+  /// What a user must know of a run that is done, to trust its numbers: each a sentence or two, with a
+  /// remedy.
+  /// @param largest_depth  of the surface in a die, over the element size, that needs no word
+  /// @param untouched      dies that pressed no node
+  std::vector<std::string>
+  warnings_of(const Summary &summary, double largest_depth, const std::vector<std::string> &untouched);
+} // namespace retroforge
