@@ -83,6 +83,17 @@ def _around(flat):
     return np.argsort(np.arctan2(middle[:, 1], middle[:, 0]))
 
 
+def trace(plane, cut):
+    """Two points, flat, of the line in which a plane of symmetry meets a cut; None where they are parallel."""
+    point, normal = plane[:3], plane[3:]
+    across = cut.flat(normal)
+    if across @ across < 1e-12:
+        return None
+    shifted = point + ((cut.point - point) @ cut.normal) * cut.normal
+    foot = cut.flat(shifted) - (shifted - point) @ normal * across / (across @ across)
+    return foot, foot + np.array([-across[1], across[0]])
+
+
 class Picture:
     """Panels side by side of a scene: `billet` a mesh or None, `dies` (what the legend says, surface, velocity), `planes` of symmetry,
     `marks` (place, text)."""
@@ -124,21 +135,19 @@ class Picture:
             x, y = cut.flat(place)
             if (low <= (x, y)).all() and ((x, y) <= high).all():
                 axes.plot(x, y, "x", color=BAD, markersize=11, markeredgewidth=2.5, zorder=6)
-                axes.annotate(text, (x, y), (8, 8), textcoords="offset points", color=BAD, fontsize=10, zorder=6,
-                              bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1})
+                is_left = x < (low[0] + high[0]) / 2  # the text stays inside of the frame
+                axes.annotate(text, (x, y), (8 if is_left else -8, 10), textcoords="offset points", ha="left" if is_left else "right",
+                              color=BAD, fontsize=10, zorder=6, bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1})
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel=_axis(cut.axes[0]), ylabel=_axis(cut.axes[1]))
         axes.set_aspect("equal")
 
     def _planes(self, axes, cut, low, high):
+        label = "symmetry plane"
         for plane in self.planes:
-            across = cut.flat(plane[3:])
-            if np.linalg.norm(across) < 1e-6:
-                continue
-            across /= np.linalg.norm(across)
-            foot = cut.flat(plane[:3] + ((cut.point - plane[:3]) @ cut.normal) * cut.normal)
-            along = np.array([-across[1], across[0]]) * 10 * np.linalg.norm(high - low)
-            axes.plot(*np.transpose([foot - along, foot + along]), "-.", color=INK, linewidth=1, zorder=3,
-                      label=None if any(line.get_linestyle() == "-." for line in axes.get_lines()) else "symmetry plane")
+            ends = trace(plane, cut)
+            if ends is not None:
+                axes.axline(*ends, linestyle="-.", color=INK, linewidth=1, zorder=3, label=label)
+                label = None
 
     def _frame(self, cut, metal, pieces):
         """Around the metal, and the point of each die that is next to it."""

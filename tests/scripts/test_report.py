@@ -362,6 +362,10 @@ class Report(ScratchTest):
             area = sum(abs(np.sum(flat[:, 0] * np.roll(flat[:, 1], -1) - np.roll(flat[:, 0], -1) * flat[:, 1])) / 2
                        for flat in (across.flat(polygon) for polygon in sections.cells(mesh, across)))
             self.assertAlmostEqual(area, width * SIDE, 6)
+        # the plane x = y meets the cut x = 10 in y = 10; x = 0 is parallel to it
+        for point in sections.trace(np.array([0, 0, 5, 0.5**0.5, -(0.5**0.5), 0]), across):
+            self.assertAlmostEqual(point[0], 10, 9)
+        self.assertIsNone(sections.trace(np.array([0, 0, 0, 1.0, 0, 0]), across))
         oblique, _ = sections.cuts([0, -3, -4], [0, 0, 0])
         self.assertAlmostEqual(oblique.normal @ [0, -3, -4], 0, 12)
         np.testing.assert_allclose(oblique.axes @ oblique.axes.T, np.eye(2), atol=1e-12)
