@@ -285,7 +285,7 @@ def replaced():
     done = run(["case.prm", "--output", "twice", "--overwrite"] + one, "simulate")
     gone = before - set(os.listdir(output))
     of_increments = {f"{of}_00000{i}.vtu" for of in ("fields", "die_lower", "die_upper") for i in (2, 3)}
-    judge("--overwrite replaces all", done.returncode == 0 and gone == {"report.html", "sensitivity.vtu", *of_increments},
+    judge("--overwrite replaces all", done.returncode == 0 and gone == {"report.html", "sensitivity.vtu", "sensitivity_nodes.csv", *of_increments},
           f"{done.stderr} removed {sorted(gone)}")
 
 
@@ -402,7 +402,8 @@ def per_cent_of_zero():
 
 
 def forbidden_output():
-    for file, command in (("summary.json", "gradient"), ("sensitivity.vtu", "gradient"), ("record.h5", "gradient"), ("check.json", "check")):
+    for file, command in (("summary.json", "gradient"), ("sensitivity.vtu", "gradient"), ("sensitivity_nodes.csv", "gradient"),
+                          ("forged.msh", "gradient"), ("record.h5", "gradient"), ("check.json", "check")):
         os.makedirs(os.path.join("taken", file))
         done = run(["case.prm", "--output", "taken"], command)
         judge_message(f"{file} is a folder", done, re.escape(file))

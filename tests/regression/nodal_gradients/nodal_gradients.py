@@ -4,6 +4,7 @@
 - of a billet from a Gmsh file and of a die from an STL file, whole and as a sector, with both pairs of elements: what the tables predict of a
   smooth motion is the central difference of runs of the moved files, to 1e-6;
 - the lines of the manual's pages, run as they stand on the tutorial's scenes, predict it too;
+- two ranks find the same;
 - rows stand in the order of the file's nodes, with their numbers there, and nodes of no tetrahedron have zeros.
 Usage: nodal_gradients.py RETROFORGE"""
 import os
@@ -15,7 +16,7 @@ import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 from block_meshes import block, msh  # noqa: E402
-from whole_runs import ROOT, changed, judge, main, prm, run, summary_of, text_of, write  # noqa: E402
+from whole_runs import ROOT, changed, command, judge, main, prm, run, start, summary_of, text_of, write  # noqa: E402
 
 SIDE, N = 20.0, 4
 STEP = 1e-4  # of motions of some mm; no contact is decided otherwise within it
@@ -148,6 +149,17 @@ def parts():
         part(case, case.startswith("sector"))
 
 
+def on_two_ranks():
+    """Of the last part."""
+    case = list(CASES)[-1]
+    done = start(["mpirun", "-np", "2", *command("gradient", "ranks", case=f"{case}.prm")])
+    judge("two ranks end", done.returncode == 0, done.stderr)
+    for file in ("sensitivity_nodes.csv", "sensitivity_die_upper_nodes.csv"):
+        one, two = (np.loadtxt(f"{folder}/{file}", delimiter=",", skiprows=1) for folder in (case, "ranks"))
+        off = np.abs(two - one)[:, 4:].max(axis=0) / np.abs(one)[:, 4:].max(axis=0)
+        judge(f"two ranks, {file}: {off.max():.1e}", np.array_equal(one[:, :4], two[:, :4]) and off.max() < 1e-6)
+
+
 # ---- the lines of the manual ----
 
 QUICK = [f"{section}/{name}={value}" for section, entries in TIGHT.items() for name, value in entries.items()]
@@ -196,4 +208,4 @@ def own_die():
 
 
 if __name__ == "__main__":
-    main({f"{case}.prm": prm(sections) for case, sections in CASES.items()}, (own_mesh, own_die, parts))
+    main({f"{case}.prm": prm(sections) for case, sections in CASES.items()}, (own_mesh, own_die, parts, on_two_ranks))
