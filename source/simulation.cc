@@ -261,6 +261,10 @@ namespace retroforge
         writes = false;
       });
     }
+    catch (const NoRoom &)
+    {
+      throw;
+    }
     catch (const Error &error)
     {
       // Other numerics do not cure a full disk.

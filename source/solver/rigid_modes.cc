@@ -150,9 +150,15 @@ namespace retroforge
       return vector_text(direction, 1e-3);
     }
 
-    std::string turn_text(const RigidMotion &motion, const Resistance &resistance)
+    /// @param slides  that are free, too: across the axis they would make its place any
+    std::string
+    turn_text(const RigidMotion &motion, const std::vector<RigidMotion> &slides, const Resistance &resistance)
     {
       const Vec3 turn = motion.turn;
+      if (std::any_of(slides.begin(), slides.end(), [&](const RigidMotion &slide) {
+            return cross(turn, slide.slide).norm() > 0.1 * turn.norm();
+          }))
+        return "turn about " + axis_text(turn / turn.norm());
       // The axis is where the slide undoes the turning.
       const Vec3 place = resistance.centre() + resistance.size() / (turn * turn) * cross(turn, motion.slide);
       return "turn about " + axis_text(turn / turn.norm()) + " at " +
@@ -177,7 +183,7 @@ namespace retroforge
       candidates.insert(candidates.end(), motions.begin(), motions.end());
       const std::vector<RigidMotion> all = orthonormal(candidates, 0.05);
       for (std::size_t m = slides.size(); m < all.size(); ++m)
-        words.push_back(turn_text(all[m], resistance));
+        words.push_back(turn_text(all[m], slides, resistance));
       return words;
     }
   } // namespace

@@ -212,12 +212,14 @@ namespace retroforge
       record.step       = std::min(whole() / (1 << state.depth), press_.stroke - state.stroke);
       record.parameters = std::exchange(state.parameters, "");
       SolvedIncrement solved;
-      Guess           guess = state.next;
+      Guess           guess   = state.next;
+      bool            is_full = false;
       for (;;)
       {
-        const Refusal refusal = attempt(process, state, guess, record, solved);
+        Refusal refusal = attempt(process, state, guess, record, solved);
         if (refusal.reason.empty())
           break;
+        is_full = refusal.is_full |= is_full;
         if (refusal.of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0)
         {
           renew();

@@ -5,22 +5,21 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/discretization/element_pairs.h>
+#include <retroforge/geometry/triangle_surface.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/parts_quality.h>
 #include <retroforge/mesh/self_crossing.h>
 #include <retroforge/solver/rigid_modes.h>
-#include <retroforge/time/closing_speed.h>
 #include <retroforge/time/increment_limits.h>
 
 #include <algorithm>
-#include <numeric>
 #include <sstream>
 
 namespace retroforge
 {
-  /// Mean pressure over the flow stress at which a cavity counts as full. A thin flash of a hundred times its
-  /// thickness has a twentieth of that, and what has no room a hundred times as much.
-  constexpr double most_pressure = 1e3;
+  /// A cavity is full where this part of the workpiece's surface touches dies, and this part of its volume is
+  /// in them: metal that has no room goes into the corners of dies, where a node feels one of their faces.
+  constexpr double touching_when_full = 0.95, inside_when_full = 2e-3;
 
   /// Times Press/increments that cuts may make of them.
   constexpr unsigned int most_increments = 10;
@@ -49,6 +48,11 @@ namespace retroforge
       return X[mesh.cells[flattest][0]];
     }
 
+    double face_area(const BoundaryFace &face, const NodalVectors<double> &X)
+    {
+      return 0.5 * facet_vector(X[face.nodes[0]], X[face.nodes[1]], X[face.nodes[2]]).norm();
+    }
+
     /// Of an increment, that bring it down to what is allowed when it is `excess` times as long.
     unsigned int halvings(const double excess)
     {
@@ -62,7 +66,7 @@ namespace retroforge
                                    const NodalVectors<double> &X,
                                    const NodalVectors<double> &X_next) const
   {
-    if (is_full(process, leg, record))
+    if (is_full(process, leg.scene, record, X_next))
       return {"the cavity is full", 1, false, true};
     if (const std::string reason = too_much(leg.scene, X, X_next); !reason.empty())
       return {reason};
@@ -73,17 +77,42 @@ namespace retroforge
     return {"a node would slip along " + slip.where, halvings(slip.of_edge / press_.largest_slip), false};
   }
 
-  bool IncrementLimits::is_full(const Process<double> &process, const Leg &leg, const IncrementRecord &record)
+  bool IncrementLimits::is_full(const Process<double>      &process,
+                                const Scene                &scene,
+                                const IncrementRecord      &record,
+                                const NodalVectors<double> &X)
   {
-    const auto  &P   = record.solves.back().P;
-    const double sum = std::accumulate(
-      P.begin(), P.end(), 0., [](const double so_far, const double p) { return so_far + std::abs(p); });
-    const double rate =
-      closing_speed(process.dies) / std::cbrt(volume(leg.scene.mesh.cells, leg.scene.mesh.X));
-    const double stress = process.law(1.5 * rate * rate) * 1.5 * rate;
-    if (getenv("RF_FULL"))
-      fprintf(stderr, "mean p / stress %g\n", sum / P.size() / stress);
-    return sum > most_pressure * stress * P.size();
+    std::vector<bool> touches(X.size(), false);
+    for (const ContactPair &pair : record.pairs)
+      if (pair.touching && pair.point.is_node())
+        touches[pair.point.nodes[0]] = true;
+    const auto dies    = process.at_stroke(record.stroke + record.step).dies;
+    double     surface = 0., touching = 0., inside = 0.;
+    const auto is_touched = [&](const BoundaryFace &face) {
+      return touches[face.nodes[0]] && touches[face.nodes[1]] && touches[face.nodes[2]];
+    };
+    for (const BoundaryFace &face : scene.mesh.faces)
+      if (scene.mesh.is_surface(face))
+      {
+        const double area = face_area(face, X);
+        surface += area;
+        touching += is_touched(face) ? area : 0.;
+      }
+    if (touching < touching_when_full * surface)
+      return false;
+    for (const BoundaryFace &face : scene.mesh.faces)
+      if (scene.mesh.is_surface(face))
+      {
+        const double area = face_area(face, X), within = 2. * std::sqrt(area);
+        for (const NodeIndex k : face.nodes)
+        {
+          double depth = 0.;
+          for (unsigned int d = 0; d < scene.dies.size(); ++d)
+            depth = std::max(depth, scene.dies[d].depth_of(X[k], dies[d].displacement, within));
+          inside += area / 3. * depth;
+        }
+      }
+    return inside > inside_when_full * volume(scene.mesh.cells, X);
   }
 
   Refusal IncrementLimits::singular(const ForgingState &state)
@@ -160,11 +189,11 @@ namespace retroforge
   {
     [[noreturn]] void throw_full(const double stroke)
     {
-      throw Error("Press/stroke",
-                  "the cavity is full at " + as_text(stroke) + " mm",
-                  "metal keeps its volume, and dies do not give way",
-                  "shorten the stroke to less than that, make the billet smaller, or leave it a way out, as "
-                  "a flash is");
+      throw NoRoom("Press/stroke",
+                   "the cavity is full at " + as_text(stroke) + " mm",
+                   "metal keeps its volume, and dies do not give way",
+                   "shorten the stroke to less than that, make the billet smaller, or leave it a way out, as "
+                   "a flash is");
     }
   } // namespace
 

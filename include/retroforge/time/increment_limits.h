@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/core/error.h>
 #include <retroforge/time/forging_state.h>
 #include <retroforge/time/press_parameters.h>
 #include <retroforge/time/remesher.h>
@@ -15,6 +16,12 @@ namespace retroforge
     unsigned int halvings = 1;     ///< that will do
     bool         of_mesh  = true;  ///< a better mesh may be enough
     bool         is_full  = false; ///< there is no room for the metal
+  };
+
+  /// The end of a forging in which there is no room left for the metal: no other numerics help.
+  struct NoRoom : Error
+  {
+    using Error::Error;
   };
 
   /// What increments and runs may do. An increment that does more is refused, a run that does more is
@@ -50,8 +57,12 @@ namespace retroforge
     /// Whether nodes may slip that far, over the edge length wanted there.
     bool allow(const double slip) const { return slip <= press_.largest_slip; }
 
-    /// Whether metal is pressed as only the dies' penalty can press it, which it has no room to escape.
-    static bool is_full(const Process<double> &process, const Leg &leg, const IncrementRecord &record);
+    /// Whether an increment presses metal into dies that has no room between them.
+    /// @param X  positions after it
+    static bool is_full(const Process<double>      &process,
+                        const Scene                &scene,
+                        const IncrementRecord      &record,
+                        const NodalVectors<double> &X);
 
     /// Whether an increment may not be halved any more.
     bool too_short(double step) const;

@@ -10,9 +10,9 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import whole_runs  # noqa: E402
 from whole_runs import history_of, judge, prm, run, summary_of  # noqa: E402
 
-CLOSING, INCREMENTS, SENSITIVITY = 6.0, 6, 0.139
+CLOSING, INCREMENTS, SENSITIVITY = 18.0, 16, 0.139
 SHARED = {"Output": {"fields every": 0, "record": "false"}, "Newton": {"tolerance": "1e-10"}}
-CASE = prm(whole_runs.changed(whole_runs.cube(40, 12, CLOSING, INCREMENTS), SHARED))
+CASE = prm(whole_runs.changed(whole_runs.cube(40, 8, CLOSING, INCREMENTS), SHARED))
 SLOW = prm(whole_runs.changed(whole_runs.cube(40, 20, 4, 4), {**SHARED, "Die lower": {"friction": 0}, "Die upper": {"friction": 0}}))
 
 
@@ -27,18 +27,18 @@ def work_of(name, *settings, case="case.prm"):
     done = run("simulate", name, *settings, case=case)
     if done.returncode:
         raise ValueError(done.stderr)
-    return summary_of(name)["objectives"][0]["value"], abs(float(history_of(name)[-1]["force [N]"]))
+    return summary_of(name)["objectives"][0]["value"], abs(float(history_of(name)[-1]["force"]))
 
 
 def parts_of_one_motion():
-    energy, force = work_of("one", )
+    energy, force = work_of("one")
     for lower in (10, 30, 40, 50, 70):
         for leading in ("lower", "upper"):
             e, f = work_of(f"{lower}_{leading}", *shared(lower, leading))
             judge(f"{lower} % of the motion by the lower die, {leading} die leads: energy {e / energy - 1:.1e}, force {f / force - 1:.1e} off",
                   abs(e / energy - 1) < 1e-6 and abs(f / force - 1) < 1e-4)
     sharp, _ = work_of("no_layer", *shared(40, "lower"), "Contact/layer=0")
-    judge(f"without a layer: energy {sharp / energy - 1:.1e} off", abs(sharp / energy - 1) < 0.01)
+    judge(f"without a layer: energy {sharp / energy - 1:.1e} off", 1e-6 < abs(sharp / energy - 1) < 0.01)
 
 
 def derivatives():
