@@ -383,7 +383,10 @@ namespace retroforge
         {
           out << std::fixed << std::setprecision(2) << "  ";
           for (const double order : row.taylor_orders)
-            out << ' ' << order;
+            if (out << ' '; std::isfinite(order)) // remainders of nothing have none
+              out << order;
+            else
+              out << '-';
           out << (row.is_zero ? "  passed (zero)" : row.passed ? "  passed" : "  FAILED") << std::scientific;
         }
         out << '\n';

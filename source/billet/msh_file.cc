@@ -387,8 +387,8 @@ namespace retroforge
           file_.remarks.push_back("its " + std::to_string(volumes_.size()) +
                                   " physical volumes are taken together as one body of one material");
         if (n_twice > 0)
-          file_.remarks.push_back(std::to_string(n_twice) +
-                                  " tetrahedra that are there more than once are taken once");
+          file_.remarks.push_back("so many tetrahedra are there more than once, and taken once: " +
+                                  std::to_string(n_twice));
       }
 
       /// The sign of a physical surface's number only tells its orientation.

@@ -66,7 +66,7 @@ void check(const std::string &title, const Entries &lengths, const Entries &othe
     double difference   = 0;
     for (NodeIndex k = 0; k < std::min(mesh.n_nodes(), other.n_nodes()); ++k)
       difference = std::max(difference, (other.X[k] * std::pow(10., -exponent) - mesh.X[k]).norm() / size);
-    close = close && difference < 1e-15;
+    close = close && difference < 1e-14;
   }
   std::cout << title << ", " << mesh.n_cells() << " cells: same " << yes(same) << ", nodes to rounding "
             << yes(close) << '\n';
