@@ -59,25 +59,27 @@ def run(case, settings={}, at={}, command="gradient", folder=None):  # pylint: d
 
 def optimize(case, settings={}, at={}, folder=None):  # pylint: disable=dangerous-default-value
     """The best design of a case by its section Optimisation; arguments as of run(). Returns what optimisation.json has,
-    which doc/summary_schema.md describes, with `best`, {"design parameter": value}, beside.
+    which doc/summary_schema.md describes, with `best`, {"design parameter": value}, beside;
+    `limits_kept` says whether the best design keeps the limits.
     @throws Error  with the program's message
     """
     if folder is None:
         with tempfile.TemporaryDirectory() as scratch:
             return optimize(case, settings, at, scratch)
-    start("optimize", case, settings, at, folder)
+    start("optimize", case, settings, at, folder, accepted=(0, 2))
     found = json.loads((pathlib.Path(folder) / "optimisation.json").read_text(encoding="utf-8"))
     return {**found, "best": {parameter["name"]: parameter["best"] for parameter in found["parameters"]}}
 
 
-def start(command, case, settings, at, folder):
+def start(command, case, settings, at, folder, accepted=(0,)):
+    """@param accepted  exit statuses with which results are there"""
     words = [str(PROGRAM), command, str(case), "--output", str(folder)]
     for option, values in (("--set", settings), ("--at", at)):
         for name, value in values.items():
             words += [option, f"{name}={as_text(value)}"]
     done = subprocess.run(words, capture_output=True, text=True, check=False,
                           env={"OMP_NUM_THREADS": "1", **os.environ})
-    if done.returncode != 0:
+    if done.returncode not in accepted:
         raise Error(done.stderr.strip().removeprefix("retroforge: ") or f"{command} did not pass:\n{done.stdout}")
 
 
