@@ -75,6 +75,12 @@ namespace retroforge
       return first;
     }
 
+    bool takes_derivatives(const CommandLine &command)
+    {
+      const std::string &word = command.command;
+      return word == "gradient" || word == "check" || word == "scan" || word == "optimize";
+    }
+
     /// "check" solves all systems as well as they can be, or differences would measure the solvers.
     Parameters as_solved(Parameters parameters, const CommandLine &command)
     {
@@ -88,7 +94,10 @@ namespace retroforge
 
     Parameters read(const CommandLine &command, std::string &echo)
     {
-      return as_solved(Parameters::read(command, echo), command);
+      Parameters parameters = Parameters::read(command, echo);
+      if (!takes_derivatives(command))
+        parameters.leave_out_idle_parameters();
+      return as_solved(std::move(parameters), command);
     }
 
     std::optional<Resumption>

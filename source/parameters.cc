@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <limits>
 #include <sstream>
+#include <tuple>
 
 namespace retroforge
 {
@@ -326,6 +327,43 @@ namespace retroforge
     /// program is started; others are left as they are.
     std::string beside(const std::string &case_file, const std::filesystem::path &name)
     {
+    /// Sections `Die NAME' or `Objective NAME' of files whose name is not in the list: left there for a
+    /// time. One that may be meant by a name of the list that has no section is none of them, but misspelt.
+    std::vector<std::string> unlisted_sections(const std::vector<ParameterLine> &lines,
+                                               const std::string                &kind,
+                                               const std::vector<std::string>   &names)
+    {
+      std::vector<std::string> sections, without_section;
+      for (const ParameterLine &line : lines)
+        if (!line.value && line.path.rfind(kind + " ", 0) == 0 && line.path.find('/') == std::string::npos)
+          sections.push_back(line.path);
+      const auto has_section = [&](const std::string &path) {
+        return std::find(sections.begin(), sections.end(), path) != sections.end();
+      };
+      for (const std::string &name : names)
+        if (!has_section(kind + " " + name))
+          without_section.push_back(name);
+      std::vector<std::string> unlisted;
+      for (const std::string &section : sections)
+        if (const std::string name = section.substr(kind.size() + 1);
+            std::find(names.begin(), names.end(), name) == names.end() &&
+            std::find(unlisted.begin(), unlisted.end(), section) == unlisted.end() &&
+            nearest_name(name, without_section, tolerated_edits(name)).empty())
+          unlisted.push_back(section);
+      return unlisted;
+    }
+
+    std::vector<ParameterLine> without_section(std::vector<ParameterLine> lines, const std::string &section)
+    {
+      lines.erase(std::remove_if(lines.begin(),
+                                 lines.end(),
+                                 [&](const ParameterLine &line) {
+                                   return line.path == section || line.path.rfind(section + "/", 0) == 0;
+                                 }),
+                  lines.end());
+      return lines;
+    }
+
       const std::filesystem::path there = std::filesystem::path(case_file).parent_path() / name;
       std::error_code             ignored;
       return !name.empty() && name.is_relative() && std::filesystem::is_regular_file(there, ignored)
@@ -406,12 +444,22 @@ end
   }
 
   Parameters
-  Parameters::of_lines(const std::string &file, const std::vector<ParameterLine> &lines, std::string &echo)
+  Parameters::of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo)
   {
-    const auto               values = parameter_values(lines);
+    const auto               values     = parameter_values(lines);
+    const auto               dies       = names_in(values, "Dies/names", "");
+    const auto               objectives = objective_names(values);
     Parameters               parameters;
     dealii::ParameterHandler prm;
-    parameters.add_parameters(prm, names_in(values, "Dies/names", ""), objective_names(values));
+    parameters.add_parameters(prm, dies, objectives);
+    for (const auto &[kind, list, names] : {std::make_tuple("Die", "Dies/names", dies),
+                                            std::make_tuple("Objective", "Objectives/names", objectives)})
+      for (const std::string &section : unlisted_sections(lines, kind, names))
+      {
+        lines = without_section(std::move(lines), section);
+        parameters.without_effect.push_back("section `" + section + "' is not read, as " + list +
+                                            " does not name it");
+      }
     set_parameters(prm, lines);
     for (const auto &[section, entry] : parameters.entries_of_files())
     {
@@ -588,6 +636,17 @@ end
   {
     const double smooth_step = 2.5e-3 * size.height;
     if (press.increments == 0)
+  void Parameters::leave_out_idle_parameters()
+  {
+    for (const auto &[name, reason] : idle_parameters(dies, material.law))
+      if (const auto found = std::find(design.names.begin(), design.names.end(), name);
+          found != design.names.end())
+      {
+        design.names.erase(found);
+        without_effect.push_back("Design/parameters: '" + name + "' changes nothing, as " + reason);
+      }
+  }
+
     {
       constexpr double most   = 1e9;
       const double     number = std::max(1., std::ceil(press.stroke / smooth_step - 1e-9));

@@ -123,6 +123,9 @@ namespace retroforge
     /// A case to start from: all parameters with their meaning, a box between two planes.
     static void print_template(std::ostream &out);
 
+    /// Of a run that takes no derivatives: leaves out design parameters that would change nothing.
+    void leave_out_idle_parameters();
+
     /// Chooses the number of increments where it is left open, and checks what follows from the parameters.
     /// @throws Error  where steps, contact or penalty come out zero or infinite
     Parameters &settle(const BilletSize &size);
@@ -149,8 +152,7 @@ namespace retroforge
     /// Where names of files stand, a list of them in some: as (section, entry).
     std::vector<std::pair<std::string, std::string>> entries_of_files() const;
     /// @param file  of the case, beside which other files are looked for
-    static Parameters
-    of_lines(const std::string &file, const std::vector<ParameterLine> &lines, std::string &echo);
+    static Parameters of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo);
 
     double edge_stiffness_ = 1.; ///< of edges' penalty over the nodes', once settled
 

@@ -112,6 +112,30 @@ namespace retroforge
 
   bool DesignParameter::overlaps(const DesignParameter &other) const
   {
+  std::map<std::string, std::string> idle_parameters(const std::vector<DieParameters> &dies,
+                                                     const MaterialLaw<double>        &law)
+  {
+    std::map<std::string, std::string> idle;
+    bool                               friction = false;
+    for (const DieParameters &die : dies)
+    {
+      friction |= die.friction > 0.;
+      if (die.friction == 0.)
+        idle["die " + die.name + "/friction"] = "the friction of die " + die.name + " is 0";
+      if (die.velocity.norm() == 0.)
+        idle["die " + die.name + "/speed"] = "the velocity of die " + die.name + " is 0";
+    }
+    if (!friction)
+      idle["dies/friction"] = "the friction of all dies is 0";
+    for (const NumberInfo &number : ContactLaw<double>::info())
+      if (!ContactLaw<double>::depends_on(number.name, friction))
+        idle["contact/" + number.name] = "the friction of all dies is 0";
+    for (const NumberInfo &number : MaterialLaw<double>::info())
+      if (!law.depends_on(number.name))
+        idle["material/" + number.name] = "the strain rate sensitivity is 1";
+    return idle;
+  }
+
     const bool same_die = die == other.die || die == invalid_index || other.die == invalid_index;
     return kind == other.kind && same_die && number == other.number && measure == other.measure;
   }
@@ -214,6 +238,12 @@ namespace retroforge
       return;
     const std::string near = nearest_name(name, known, 6);
     throw Error(where,
+    const auto idle = idle_parameters(dies_, process_.law);
+    if (const auto found = idle.find(name); found != idle.end())
+      throw Error(where,
+                  "'" + name + "' changes nothing, as " + found->second,
+                  "a derivative is taken by what acts",
+                  "leave it out, or give that number another value: a friction of 1e-6 is next to none");
                 "'" + name + "' is not a parameter of this scene",
                 "it offers " + join(known),
                 near.empty() ? "name some of these" : "did you mean '" + near + "'?");

@@ -44,6 +44,11 @@ namespace retroforge
   };
 
   /// The map from parameter values to the initial positions and the process, and its derivative: both are
+  /// Names of parameters that would change nothing in a scene, because another number is 0 or 1, and which
+  /// that is.
+  std::map<std::string, std::string> idle_parameters(const std::vector<DieParameters> &dies,
+                                                     const MaterialLaw<double>        &law);
+
   /// code templated on the number type.
   class Design
   {
