@@ -146,6 +146,7 @@ namespace retroforge
                parameters.billet,
                parameters.dies,
                nominal,
+               parameters.open_contact(size()),
                first,
                parameters.press.stroke)
       , mu(design.at(parameters.design.at))

@@ -76,7 +76,12 @@ namespace retroforge
       "Part of the leading die's speed at which a node sinks into a die under the mean pressure: sets the "
       "penalty. Units: none.",
       Double(1e-14, 1.));
-    prm.add_parameter("penalty", penalty, "rho; 0 takes it from `penetration`. Units: MPa s/mm.", Double(0.));
+    prm.add_parameter(
+      "penalty",
+      penalty,
+      "rho, which is then the same in every design; 0 takes it from `penetration`, the material, the leading "
+      "die's speed and the billet's height, and gradients by the first three know it. Units: MPa s/mm.",
+      Double(0.));
     prm.add_parameter(
       "slip regularisation",
       slip_fraction,
@@ -182,10 +187,9 @@ namespace retroforge
       at,
       "Design parameters and values they have instead of the nominal ones, `NAME: VALUE, NAME: VALUE'; any "
       "that "
-      "the scene offers. The mesh stays that of the nominal design, its nodes moved, and so do increments, "
-      "penalty and sizes that follow from the nominal design. Their gradients come along. Units: those of "
-      "the "
-      "parameters.");
+      "the scene offers. The mesh stays that of the nominal design, its nodes moved, and so do increments "
+      "and sizes that follow from the nominal billet; the penalty and the regularisation of slip follow the "
+      "material and the leading die's speed. Their gradients come along. Units: those of the parameters.");
     prm.declare_entry(
       "meshed at",
       "",
@@ -323,10 +327,6 @@ namespace retroforge
       return names;
     }
 
-    /// A relative name of a file that stands beside the case's parameter file is that file, wherever the
-    /// program is started; others are left as they are.
-    std::string beside(const std::string &case_file, const std::filesystem::path &name)
-    {
     /// Sections `Die NAME' or `Objective NAME' of files whose name is not in the list: left there for a
     /// time. One that may be meant by a name of the list that has no section is none of them, but misspelt.
     std::vector<std::string> unlisted_sections(const std::vector<ParameterLine> &lines,
@@ -364,6 +364,10 @@ namespace retroforge
       return lines;
     }
 
+    /// A relative name of a file that stands beside the case's parameter file is that file, wherever the
+    /// program is started; others are left as they are.
+    std::string beside(const std::string &case_file, const std::filesystem::path &name)
+    {
       const std::filesystem::path there = std::filesystem::path(case_file).parent_path() / name;
       std::error_code             ignored;
       return !name.empty() && name.is_relative() && std::filesystem::is_regular_file(there, ignored)
@@ -612,10 +616,10 @@ end
             "the reach of contact (approach, layer, ramp width)");
     const Process<double> made = process(size);
     require(is_sound(made.speed()), "Dies", "the speed of the leading die");
-    require(is_sound(mean_pressure(size.height)), "Material", "the flow stress");
+    require(is_sound(mean_pressure(size)), "Material", "the flow stress");
     require(is_sound(made.contact.rho), "Contact", "the penalty (with the speed and the material)");
     // In words of Contact/penetration, and within its bounds.
-    const double penetration = mean_pressure(size.height) / (made.contact.rho * made.speed());
+    const double penetration = mean_pressure(size) / (made.contact.rho * made.speed());
     if (contact.penalty > 0. && !(penetration >= 1e-14 && penetration <= 1.))
       throw Error("Contact/penalty",
                   "is " + as_text(contact.penalty) + " MPa s/mm, with which nodes sink in at " +
@@ -632,10 +636,6 @@ end
                   "choose a larger element size, or 0 for that of the billet");
   }
 
-  Parameters &Parameters::settle(const BilletSize &size)
-  {
-    const double smooth_step = 2.5e-3 * size.height;
-    if (press.increments == 0)
   void Parameters::leave_out_idle_parameters()
   {
     for (const auto &[name, reason] : idle_parameters(dies, material.law))
@@ -647,6 +647,10 @@ end
       }
   }
 
+  Parameters &Parameters::settle(const BilletSize &size)
+  {
+    const double smooth_step = 2.5e-3 * size.height;
+    if (press.increments == 0)
     {
       constexpr double most   = 1e9;
       const double     number = std::max(1., std::ceil(press.stroke / smooth_step - 1e-9));
@@ -660,14 +664,18 @@ end
     check_derived(size);
     const Process<double> made = process(size);
     edge_stiffness_ =
-      std::min(1., mean_pressure(size.height) / (contact.edge_sinking * made.speed()) / made.contact.rho);
+      std::min(1., mean_pressure(size) / (contact.edge_sinking * made.speed()) / made.contact.rho);
     return *this;
   }
 
-  double Parameters::mean_pressure(const double height) const
+  double Parameters::mean_pressure(const BilletSize &size) const
   {
-    const double rate = dies[leading_die()].velocity.norm() / height;
-    return material.law(1.5 * rate * rate) * 1.5 * rate;
+    return open_contact(size).mean_pressure(material.law, dies[leading_die()].velocity.norm());
+  }
+
+  OpenContact Parameters::open_contact(const BilletSize &size) const
+  {
+    return {size.height, contact.penetration, contact.penalty, contact.slip_fraction};
   }
 
   Process<double> Parameters::process(const BilletSize &size) const
@@ -677,10 +685,7 @@ end
     process.leading_die = leading_die();
     for (const DieParameters &die : dies)
       process.dies.push_back(die.initial_state());
-    const double speed = process.speed();
-    process.contact.rho =
-      contact.penalty > 0. ? contact.penalty : mean_pressure(size.height) / (contact.penetration * speed);
-    process.contact.v0 = contact.slip_fraction * speed;
+    process.contact = open_contact(size).law(process.law, process.speed());
     return process;
   }
 

@@ -130,8 +130,10 @@ namespace retroforge
     /// @throws Error  where steps, contact or penalty come out zero or infinite
     Parameters &settle(const BilletSize &size);
 
-    /// The process as the file has it; automatic values are resolved here and fixed from then on.
+    /// The process as the file has it.
     Process<double> process(const BilletSize &size) const;
+    /// What its contact law follows from.
+    OpenContact open_contact(const BilletSize &size) const;
     /// The same for a sector as for the whole it is part of, but for `side`.
     BilletSize size_of(const TetMesh &billet) const;
     /// Of settled parameters.
@@ -157,7 +159,7 @@ namespace retroforge
     double edge_stiffness_ = 1.; ///< of edges' penalty over the nodes', once settled
 
     /// Of a frictionless upsetting [MPa].
-    double       mean_pressure(double height) const;
+    double       mean_pressure(const BilletSize &size) const;
     void         check_all();
     void         find_without_effect(const std::vector<ParameterEntry> &entries);
     void         check_derived(const BilletSize &size) const;

@@ -54,10 +54,12 @@ namespace retroforge
                  const BilletParameters           &billet,
                  const std::vector<DieParameters> &dies,
                  const Process<double>            &nominal_process,
+                 const OpenContact                &contact,
                  const FirstMesh                  &first,
                  const double                      stroke)
       : dies_(dies)
       , process_(nominal_process)
+      , contact_(contact)
       , stroke_(stroke)
       , billet_map_(billet, first)
       , nominal_X_(billet_map_.nominal_positions())
@@ -110,8 +112,6 @@ namespace retroforge
     return single;
   }
 
-  bool DesignParameter::overlaps(const DesignParameter &other) const
-  {
   std::map<std::string, std::string> idle_parameters(const std::vector<DieParameters> &dies,
                                                      const MaterialLaw<double>        &law)
   {
@@ -136,6 +136,8 @@ namespace retroforge
     return idle;
   }
 
+  bool DesignParameter::overlaps(const DesignParameter &other) const
+  {
     const bool same_die = die == other.die || die == invalid_index || other.die == invalid_index;
     return kind == other.kind && same_die && number == other.number && measure == other.measure;
   }
@@ -236,14 +238,14 @@ namespace retroforge
       known.push_back(parameter.name);
     if (std::find(known.begin(), known.end(), name) != known.end())
       return;
-    const std::string near = nearest_name(name, known, 6);
-    throw Error(where,
     const auto idle = idle_parameters(dies_, process_.law);
     if (const auto found = idle.find(name); found != idle.end())
       throw Error(where,
                   "'" + name + "' changes nothing, as " + found->second,
                   "a derivative is taken by what acts",
                   "leave it out, or give that number another value: a friction of 1e-6 is next to none");
+    const std::string near = nearest_name(name, known, 6);
+    throw Error(where,
                 "'" + name + "' is not a parameter of this scene",
                 "it offers " + join(known),
                 near.empty() ? "name some of these" : "did you mean '" + near + "'?");
@@ -379,9 +381,6 @@ namespace retroforge
         case Kind::material:
           number_of(process.law, parameter.number) = mu[j];
           break;
-        case Kind::contact:
-          number_of(process.contact, parameter.number) = mu[j];
-          break;
         case Kind::friction:
           for (unsigned int d = 0; d < dies_.size(); ++d)
             if (d == parameter.die || (parameter.die == invalid_index && dies_[d].friction > 0.))
@@ -396,15 +395,26 @@ namespace retroforge
           for (unsigned int i = 0; i < 3; ++i)
             process.dies[parameter.die].displacement[i] += dies_[parameter.die].facing[i] * mu[j];
           break;
+        case Kind::contact:
         case Kind::die_shape:
         case Kind::die_free_form:
         case Kind::billet:
           break;
       }
     }
+    set_contact(mu, process);
     shape_dies(mu, process);
     follow_billet(mu, process);
     return process;
+  }
+
+  template <typename Number>
+  void Design::set_contact(const std::vector<Number> &mu, Process<Number> &process) const
+  {
+    process.contact = contact_.law(process.law, process.speed());
+    for (unsigned int j = 0; j < parameters_.size(); ++j)
+      if (parameters_[j].kind == Kind::contact)
+        number_of(process.contact, parameters_[j].number) = mu[j];
   }
 
   template <typename Number>
