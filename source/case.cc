@@ -77,6 +77,12 @@ namespace retroforge
       return first;
     }
 
+    bool takes_derivatives(const CommandLine &command)
+    {
+      const std::string &word = command.command;
+      return word == "gradient" || word == "check" || word == "scan" || word == "optimize";
+    }
+
     /// "check" solves all systems as well as they can be, or differences would measure the solvers.
     Parameters as_solved(Parameters parameters, const CommandLine &command)
     {
@@ -90,7 +96,10 @@ namespace retroforge
 
     Parameters read(const CommandLine &command, std::string &echo)
     {
-      return as_solved(Parameters::read(command, echo), command);
+      Parameters parameters = Parameters::read(command, echo);
+      if (!takes_derivatives(command))
+        parameters.leave_out_idle_parameters();
+      return as_solved(std::move(parameters), command);
     }
 
     std::optional<Resumption>
@@ -139,6 +148,7 @@ namespace retroforge
                parameters.billet,
                parameters.dies,
                nominal,
+               parameters.open_contact(size()),
                first,
                parameters.press.stroke)
       , mu(design.at(parameters.design.at))

@@ -434,7 +434,7 @@ namespace retroforge
       results_.print(std::cout);
       std::cout << "  results in " << case_.command.output_directory << std::endl;
     }
-    return 0;
+    return results_.exit_status();
   }
 
   void Optimize::print_search() const

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <limits>
 #include <sstream>
+#include <tuple>
 
 namespace retroforge
 {
@@ -78,7 +79,13 @@ namespace retroforge
       "Part of the dies' closing speed at which a node sinks into a die under the mean pressure: sets the "
       "penalty. Units: none.",
       Double(1e-14, 1.));
-    prm.add_parameter("penalty", penalty, "rho; 0 takes it from `penetration`. Units: MPa s/mm.", Double(0.));
+    prm.add_parameter(
+      "penalty",
+      penalty,
+      "rho, which is then the same in every design; 0 takes it from `penetration`, the material, the speed "
+      "at which the dies close and the billet's height, and gradients by the first three know it. Units: MPa "
+      "s/mm.",
+      Double(0.));
     prm.add_parameter(
       "slip regularisation",
       slip_fraction,
@@ -211,9 +218,9 @@ namespace retroforge
       at,
       "Design parameters and values they have instead of the nominal ones, `NAME: VALUE, NAME: VALUE'; any "
       "that "
-      "the scene offers. The mesh stays that of the nominal design, its nodes moved, and so do increments, "
-      "penalty and sizes that follow from the nominal design. Their gradients are computed, too. Units: "
-      "those of "
+      "the scene offers. The mesh stays that of the nominal design, its nodes moved, and so do increments "
+      "and sizes that follow from the nominal billet; the penalty and the regularisation of slip follow the "
+      "material and the speed at which the dies close. Their gradients are computed, too. Units: those of "
       "the "
       "parameters.");
     prm.declare_entry(
@@ -353,6 +360,43 @@ namespace retroforge
       return names;
     }
 
+    /// Sections `Die NAME' or `Objective NAME' of files whose name is not in the list: left there for a
+    /// time. One that may be meant by a name of the list that has no section is none of them, but misspelt.
+    std::vector<std::string> unlisted_sections(const std::vector<ParameterLine> &lines,
+                                               const std::string                &kind,
+                                               const std::vector<std::string>   &names)
+    {
+      std::vector<std::string> sections, without_section;
+      for (const ParameterLine &line : lines)
+        if (!line.value && line.path.rfind(kind + " ", 0) == 0 && line.path.find('/') == std::string::npos)
+          sections.push_back(line.path);
+      const auto has_section = [&](const std::string &path) {
+        return std::find(sections.begin(), sections.end(), path) != sections.end();
+      };
+      for (const std::string &name : names)
+        if (!has_section(kind + " " + name))
+          without_section.push_back(name);
+      std::vector<std::string> unlisted;
+      for (const std::string &section : sections)
+        if (const std::string name = section.substr(kind.size() + 1);
+            std::find(names.begin(), names.end(), name) == names.end() &&
+            std::find(unlisted.begin(), unlisted.end(), section) == unlisted.end() &&
+            nearest_name(name, without_section, tolerated_edits(name)).empty())
+          unlisted.push_back(section);
+      return unlisted;
+    }
+
+    std::vector<ParameterLine> without_section(std::vector<ParameterLine> lines, const std::string &section)
+    {
+      lines.erase(std::remove_if(lines.begin(),
+                                 lines.end(),
+                                 [&](const ParameterLine &line) {
+                                   return line.path == section || line.path.rfind(section + "/", 0) == 0;
+                                 }),
+                  lines.end());
+      return lines;
+    }
+
     /// A relative name of a file that stands beside the case's parameter file is that file, wherever the
     /// program is started; others are left as they are.
     std::string beside(const std::string &case_file, const std::filesystem::path &name)
@@ -437,12 +481,22 @@ end
   }
 
   Parameters
-  Parameters::of_lines(const std::string &file, const std::vector<ParameterLine> &lines, std::string &echo)
+  Parameters::of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo)
   {
-    const auto               values = parameter_values(lines);
+    const auto               values     = parameter_values(lines);
+    const auto               dies       = names_in(values, "Dies/names", "");
+    const auto               objectives = objective_names(values);
     Parameters               parameters;
     dealii::ParameterHandler prm;
-    parameters.add_parameters(prm, names_in(values, "Dies/names", ""), objective_names(values));
+    parameters.add_parameters(prm, dies, objectives);
+    for (const auto &[kind, list, names] : {std::make_tuple("Die", "Dies/names", dies),
+                                            std::make_tuple("Objective", "Objectives/names", objectives)})
+      for (const std::string &section : unlisted_sections(lines, kind, names))
+      {
+        lines = without_section(std::move(lines), section);
+        parameters.without_effect.push_back("section `" + section + "' is not read, as " + list +
+                                            " does not name it");
+      }
     set_parameters(prm, lines);
     for (const auto &[section, entry] : parameters.entries_of_files())
     {
@@ -594,10 +648,10 @@ end
             "the reach of contact (approach, layer, ramp width)");
     const Process<double> made = process(size);
     require(is_sound(made.speed()), "Dies", "the speed of the leading die");
-    require(is_sound(mean_pressure(size.height)), "Material", "the flow stress");
+    require(is_sound(mean_pressure(size)), "Material", "the flow stress");
     require(is_sound(made.contact.rho), "Contact", "the penalty (with the speed and the material)");
     // In words of Contact/penetration, and within its bounds.
-    const double penetration = mean_pressure(size.height) / (made.contact.rho * closing_speed(made.dies));
+    const double penetration = mean_pressure(size) / (made.contact.rho * closing_speed(made.dies));
     if (contact.penalty > 0. && !(penetration >= 1e-14 && penetration <= 1.))
       throw Error("Contact/penalty",
                   "is " + as_text(contact.penalty) + " MPa s/mm, with which nodes sink in at " +
@@ -612,6 +666,17 @@ end
                     " tetrahedra",
                   "a mesh may have 1e9",
                   "choose a larger element size, or 0 for that of the billet");
+  }
+
+  void Parameters::leave_out_idle_parameters()
+  {
+    for (const auto &[name, reason] : idle_parameters(dies, material.law))
+      if (const auto found = std::find(design.names.begin(), design.names.end(), name);
+          found != design.names.end())
+      {
+        design.names.erase(found);
+        without_effect.push_back("Design/parameters: '" + name + "' changes nothing, as " + reason);
+      }
   }
 
   Parameters &Parameters::settle(const BilletSize &size)
@@ -631,7 +696,7 @@ end
     check_derived(size);
     const Process<double> made = process(size);
     edge_stiffness_            = std::min(
-      1., mean_pressure(size.height) / (contact.edge_sinking * closing_speed(made.dies)) / made.contact.rho);
+      1., mean_pressure(size) / (contact.edge_sinking * closing_speed(made.dies)) / made.contact.rho);
     return *this;
   }
 
@@ -648,10 +713,15 @@ end
     return states;
   }
 
-  double Parameters::mean_pressure(const double height) const
+  double Parameters::mean_pressure(const BilletSize &size) const
   {
-    const double rate = closing_speed(initial_states()) / height;
-    return material.law_at(rate)(1.5 * rate * rate) * 1.5 * rate;
+    const double speed = closing_speed(initial_states());
+    return open_contact(size).mean_pressure(material.law_at(speed / size.height), speed);
+  }
+
+  OpenContact Parameters::open_contact(const BilletSize &size) const
+  {
+    return {size.height, contact.penetration, contact.penalty, contact.slip_fraction};
   }
 
   Process<double> Parameters::process(const BilletSize &size) const
@@ -661,9 +731,7 @@ end
     process.leading_die = leading_die();
     const double speed  = closing_speed(process.dies);
     process.law         = material.law_at(speed / size.height);
-    process.contact.rho =
-      contact.penalty > 0. ? contact.penalty : mean_pressure(size.height) / (contact.penetration * speed);
-    process.contact.v0 = contact.slip_fraction * speed;
+    process.contact     = open_contact(size).law(process.law, speed);
     return process;
   }
 

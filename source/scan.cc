@@ -97,8 +97,13 @@ namespace retroforge
     std::vector<std::string> names  = parameters_.design.all_names();
     if (!chosen.empty() && std::find(names.begin(), names.end(), chosen) == names.end())
       names.push_back(chosen);
-    const Design design(
-      names, parameters_.billet, parameters_.dies, scene.nominal, scene.first, parameters_.press.stroke);
+    const Design                   design(names,
+                        parameters_.billet,
+                        parameters_.dies,
+                        scene.nominal,
+                        parameters_.open_contact(scene.size()),
+                        scene.first,
+                        parameters_.press.stroke);
     const std::vector<double>      mu     = design.at(parameters_.design.at);
     const std::vector<std::string> listed = design.expanded(parameters_.design.names);
     std::set<std::string>          folders;

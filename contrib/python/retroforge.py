@@ -87,18 +87,20 @@ def run(case, settings={}, at={}, command="gradient", folder=None, progress=None
 
 def optimize(case, settings={}, at={}, folder=None):  # pylint: disable=dangerous-default-value
     """The best design of a case by its section Optimisation; arguments as of run(). Returns what optimisation.json has,
-    which doc/summary_schema.md describes, with `best`, {"design parameter": value}, beside.
+    which doc/summary_schema.md describes, with `best`, {"design parameter": value}, beside;
+    `limits_kept` says whether the best design keeps the limits.
     @throws Error  with the program's message
     """
     if folder is None:
         with tempfile.TemporaryDirectory() as scratch:
             return optimize(case, settings, at, scratch)
-    start("optimize", case, settings, at, folder)
+    start("optimize", case, settings, at, folder, accepted=(0, 2))
     found = json.loads((pathlib.Path(folder) / "optimisation.json").read_text(encoding="utf-8"))
     return {**found, "best": {parameter["name"]: parameter["best"] for parameter in found["parameters"]}}
 
 
-def start(command, case, settings, at, folder, progress=None):
+def start(command, case, settings, at, folder, progress=None, accepted=(0,)):
+    """@param accepted  exit statuses with which results are there"""
     words = [str(PROGRAM), command, str(case), "--output", str(folder)]
     for option, values in (("--set", settings), ("--at", at)):
         for name, value in values.items():
@@ -114,7 +116,7 @@ def start(command, case, settings, at, folder, progress=None):
             except BaseException:
                 program.terminate()
                 raise
-        if program.returncode != 0:
+        if program.returncode not in accepted:
             told.seek(0)
             complaint.seek(0)
             raise Error(complaint.read().strip().removeprefix("retroforge: ") or f"{command} did not pass:\n{told.read()}")

@@ -31,6 +31,7 @@ class OptimisationPage:
 
     def write(self):
         """Returns the path of the page."""
+        self.infeasible()
         self.gain()
         self.parameters()
         self.limits()
@@ -40,6 +41,16 @@ class OptimisationPage:
         self.failures()
         self.to.note(", ".join(f"{key} {self.found[key]}" for key in ("version", "commit") if self.found.get(key)))
         return self.to.save(f"{self.directory.resolve().name}: retroforge optimize")
+
+    def infeasible(self):
+        """Before anything else: limits that no design keeps."""
+        missed = [limit for limit in self.found["limits"] if limit.get("missed_by")]
+        if self.found["finished"] and missed:
+            self.to.heading("NOT FEASIBLE")
+            self.to.note("No design that was forged keeps all limits; this one comes closest: "
+                         + "; ".join(f"{limit['objective']} {number(limit['best'])}, {limit['kind']} {number(limit['bound'])}: "
+                                     f"{number(limit['missed_by'])} too {'little' if limit['kind'] == 'at least' else 'much'}"
+                                     for limit in missed) + ".")
 
     def gain(self):
         objective, confirmed = self.found["objective"], self.found.get("confirmation")

@@ -18,7 +18,7 @@ namespace retroforge
     /// @throws Error  for what is wrong with the case, before anything is written
     Optimize(const CommandLine &command, MPI_Comm comm);
 
-    /// @return the exit status
+    /// @return the exit status: that of the results
     int run();
 
   private:

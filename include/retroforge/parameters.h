@@ -125,12 +125,17 @@ namespace retroforge
     /// A case to start from: all parameters with their meaning, a box between two planes.
     static void print_template(std::ostream &out);
 
+    /// Of a run that takes no derivatives: leaves out design parameters that would change nothing.
+    void leave_out_idle_parameters();
+
     /// Chooses the number of increments where it is left open, and checks what follows from the parameters.
     /// @throws Error  where steps, contact or penalty come out zero or infinite
     Parameters &settle(const BilletSize &size);
 
-    /// The process as the file has it; automatic values are resolved here and fixed from then on.
+    /// The process as the file has it.
     Process<double> process(const BilletSize &size) const;
+    /// What its contact law follows from.
+    OpenContact open_contact(const BilletSize &size) const;
     /// The same for a sector as for the whole it is part of, but for `side`.
     BilletSize size_of(const TetMesh &billet) const;
     /// Of settled parameters.
@@ -151,8 +156,7 @@ namespace retroforge
     /// Where names of files stand, a list of them in some: as (section, entry).
     std::vector<std::pair<std::string, std::string>> entries_of_files() const;
     /// @param file  of the case, beside which other files are looked for
-    static Parameters
-    of_lines(const std::string &file, const std::vector<ParameterLine> &lines, std::string &echo);
+    static Parameters of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo);
 
     double edge_stiffness_ = 1.; ///< of edges' penalty over the nodes', once settled
 
@@ -160,7 +164,7 @@ namespace retroforge
     double                        closing_path() const;
     std::vector<DieState<double>> initial_states() const;
     /// Of a frictionless upsetting [MPa].
-    double       mean_pressure(double height) const;
+    double       mean_pressure(const BilletSize &size) const;
     void         check_all();
     void         find_without_effect(const std::vector<ParameterEntry> &entries);
     void         check_derived(const BilletSize &size) const;

@@ -281,30 +281,20 @@ namespace retroforge
       return mesh;
     }
 
-    // Rodrigues' rotation about a unit vector.
-    Vec3 rotate(const Vec3 &x, const Vec3 &axis, const double angle)
-    {
-      return std::cos(angle) * x + std::sin(angle) * cross_product_3d(axis, x) +
-             (1 - std::cos(angle)) * (axis * x) * axis;
-    }
-
     void move(TetMesh &mesh, const BilletParameters &p)
     {
-      if (p.rotation_angle == 0 && p.translation.norm() == 0)
+      const bool turns = !p.rotations.are_none();
+      if (!turns && p.translation.norm() == 0)
         return;
-      const Vec3   axis  = p.rotation_axis / p.rotation_axis.norm();
-      const double angle = p.rotation_angle * M_PI / 180;
-      const auto   moved = [&](const Vec3 &x) {
-        return (p.rotation_angle == 0 ? x : rotate(x, axis, angle)) + p.translation;
-      };
+      const dealii::Tensor<2, 3> R     = p.rotations.matrix();
+      const auto                 moved = [&](const Vec3 &x) { return (turns ? R * x : x) + p.translation; };
       for (NodalVectors<double> *X : {&mesh.X, &mesh.of_file.X})
         for (Vec3 &x : *X)
           x = moved(x);
       for (auto &patch : mesh.patches)
-        if (patch.symmetry && p.rotation_angle != 0)
-          patch.symmetry = Plane{moved(patch.symmetry->point), rotate(patch.symmetry->normal, axis, angle)};
-        else if (patch.symmetry)
-          patch.symmetry->point = moved(patch.symmetry->point);
+        if (patch.symmetry)
+          patch.symmetry =
+            Plane{moved(patch.symmetry->point), turns ? R * patch.symmetry->normal : patch.symmetry->normal};
     }
 
     /// Far from the origin no digits are left for the shape.
@@ -423,12 +413,13 @@ namespace retroforge
       symmetry_patches,
       "Names or numbers of the physical surfaces of the file that are symmetry planes. Units: none.");
     prm.add_parameter("rotation axis",
-                      rotation_axis,
+                      rotations.axis,
                       "Axis through the origin about which the finished mesh is rotated. Units: none.");
     prm.add_parameter("rotation angle",
-                      rotation_angle,
+                      rotations.angle,
                       "Angle of this rotation, counter-clockwise seen against the axis. Units: degrees.",
                       Double(-360, 360));
+    rotations.add_list(prm, "Rotations of the finished mesh,");
     prm.add_parameter(
       "translation", translation, "Displacement of the finished mesh, after the rotation. Units: mm.");
     prm.add_parameter("free form modes",
@@ -505,11 +496,7 @@ namespace retroforge
                   "are given, and the shape is `" + shape + "'",
                   "symmetry patches are for meshes from a file",
                   "use symmetry planes");
-    if (rotation_angle != 0 && !(rotation_axis.norm() > 0 && std::isfinite(rotation_axis.norm())))
-      throw Error("Billet/rotation axis",
-                  "has length " + as_text(rotation_axis.norm()),
-                  "a rotation needs an axis",
-                  "write for example `0, 0, 1'");
+    rotations.check("Billet");
   }
 
   double shape_volume(const BilletParameters &parameters)

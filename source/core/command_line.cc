@@ -273,6 +273,12 @@ Options:
   --version                  write version and commit
   --help                     write this text
 
+Exit status:
+  0   done; of optimize: with a design that keeps all limits
+  1   an error, which is told; of check: a derivative did not pass; of scan: no point could be forged
+  2   of optimize: the search has ended without a design that keeps all limits, or with none but the start that could
+      be forged; the result says which, and results are written
+
 Examples:
   retroforge scene upsetting.prm
   retroforge simulate upsetting.prm

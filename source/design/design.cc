@@ -3,6 +3,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/design/design.h>
+#include <retroforge/time/closing_speed.h>
 
 namespace retroforge
 {
@@ -54,10 +55,12 @@ namespace retroforge
                  const BilletParameters           &billet,
                  const std::vector<DieParameters> &dies,
                  const Process<double>            &nominal_process,
+                 const OpenContact                &contact,
                  const FirstMesh                  &first,
                  const double                      stroke)
       : dies_(dies)
       , process_(nominal_process)
+      , contact_(contact)
       , stroke_(stroke)
       , billet_map_(billet, first)
       , nominal_X_(billet_map_.nominal_positions())
@@ -108,6 +111,30 @@ namespace retroforge
         single.push_back(name);
     }
     return single;
+  }
+
+  std::map<std::string, std::string> idle_parameters(const std::vector<DieParameters> &dies,
+                                                     const MaterialLaw<double>        &law)
+  {
+    std::map<std::string, std::string> idle;
+    bool                               friction = false;
+    for (const DieParameters &die : dies)
+    {
+      friction |= die.friction > 0.;
+      if (die.friction == 0.)
+        idle["die " + die.name + "/friction"] = "the friction of die " + die.name + " is 0";
+      if (die.velocity.norm() == 0.)
+        idle["die " + die.name + "/speed"] = "the velocity of die " + die.name + " is 0";
+    }
+    if (!friction)
+      idle["dies/friction"] = "the friction of all dies is 0";
+    for (const NumberInfo &number : ContactLaw<double>::info())
+      if (!ContactLaw<double>::depends_on(number.name, friction))
+        idle["contact/" + number.name] = "the friction of all dies is 0";
+    for (const NumberInfo &number : MaterialLaw<double>::info())
+      if (!law.depends_on(number.name))
+        idle["material/" + number.name] = "the strain rate sensitivity is 1";
+    return idle;
   }
 
   bool DesignParameter::overlaps(const DesignParameter &other) const
@@ -212,6 +239,12 @@ namespace retroforge
       known.push_back(parameter.name);
     if (std::find(known.begin(), known.end(), name) != known.end())
       return;
+    const auto idle = idle_parameters(dies_, process_.law);
+    if (const auto found = idle.find(name); found != idle.end())
+      throw Error(where,
+                  "'" + name + "' changes nothing, as " + found->second,
+                  "a derivative is taken by what acts",
+                  "leave it out, or give that number another value: a friction of 1e-6 is next to none");
     const std::string near = nearest_name(name, known, 6);
     throw Error(where,
                 "'" + name + "' is not a parameter of this scene",
@@ -349,9 +382,6 @@ namespace retroforge
         case Kind::material:
           number_of(process.law, parameter.number) = mu[j];
           break;
-        case Kind::contact:
-          number_of(process.contact, parameter.number) = mu[j];
-          break;
         case Kind::friction:
           for (unsigned int d = 0; d < dies_.size(); ++d)
             if (d == parameter.die || (parameter.die == invalid_index && dies_[d].friction > 0.))
@@ -366,15 +396,26 @@ namespace retroforge
           for (unsigned int i = 0; i < 3; ++i)
             process.dies[parameter.die].displacement[i] += dies_[parameter.die].facing[i] * mu[j];
           break;
+        case Kind::contact:
         case Kind::die_shape:
         case Kind::die_free_form:
         case Kind::billet:
           break;
       }
     }
+    set_contact(mu, process);
     shape_dies(mu, process);
     follow_billet(mu, process);
     return process;
+  }
+
+  template <typename Number>
+  void Design::set_contact(const std::vector<Number> &mu, Process<Number> &process) const
+  {
+    process.contact = contact_.law(process.law, closing_speed(process.dies));
+    for (unsigned int j = 0; j < parameters_.size(); ++j)
+      if (parameters_[j].kind == Kind::contact)
+        number_of(process.contact, parameters_[j].number) = mu[j];
   }
 
   template <typename Number>

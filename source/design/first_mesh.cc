@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/physics/transformations.h>
-
 #include <retroforge/design/first_mesh.h>
 #include <retroforge/design/free_form.h>
 
@@ -9,18 +7,9 @@ namespace retroforge
 {
   namespace
   {
-    dealii::Tensor<2, 3> rotation_of(const BilletParameters &billet)
-    {
-      if (billet.rotation_angle == 0.)
-        return dealii::unit_symmetric_tensor<3>();
-      return dealii::Physics::Transformations::Rotations::rotation_matrix_3d(
-        dealii::Point<3>(billet.rotation_axis / billet.rotation_axis.norm()),
-        billet.rotation_angle * dealii::numbers::PI / 180.);
-    }
-
     NodalVectors<double> in_own_axes(const BilletParameters &billet, const NodalVectors<double> &X)
     {
-      const auto           back = transpose(rotation_of(billet));
+      const auto           back = transpose(billet.rotations.matrix());
       NodalVectors<double> own;
       for (const Vec3 &x : X)
         own.push_back(back * (x - billet.translation) - billet.base_centre);
@@ -31,7 +20,7 @@ namespace retroforge
     BilletShapes shapes_of_kind(const BilletParameters &billet, const NodalVectors<double> &X)
     {
       const NodalVectors<double> own      = in_own_axes(billet, X);
-      const auto                 rotation = rotation_of(billet);
+      const auto                 rotation = billet.rotations.matrix();
       BilletShapes               shapes   = billet.shape == "box"        ? box_shapes(billet, own)
                                             : billet.shape == "cylinder" ? cylinder_shapes(billet, own)
                                             : billet.shape == "ring"     ? ring_shapes(billet, own)

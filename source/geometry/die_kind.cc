@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/physics/transformations.h>
-
 #include <retroforge/core/error.h>
 #include <retroforge/geometry/die_kind.h>
 #include <retroforge/geometry/stl_file.h>
@@ -19,12 +17,6 @@ namespace retroforge
     public:
       Die make(const DiePlace &place) const override { return Die(place.name, place.point, place.facing); }
     };
-
-    dealii::Tensor<2, 3> rotation(const Vec3 &axis, const double degrees)
-    {
-      return dealii::Physics::Transformations::Rotations::rotation_matrix_3d(
-        dealii::Point<3>(axis / axis.norm()), degrees * dealii::numbers::PI / 180.);
-    }
 
     /// The short way from the z axis to a unit vector.
     dealii::Tensor<2, 3> rotation_to(const Vec3 &facing)
@@ -93,7 +85,7 @@ namespace retroforge
   {
     prm.add_parameter(
       "rotation angle",
-      angle,
+      rotations.angle,
       "Of an STL surface about that axis, of a die by measures about its own. Units: degrees.",
       Double(-360., 360.));
   }
@@ -117,8 +109,9 @@ namespace retroforge
       "STL file, ASCII or binary; a relative name is looked for beside the parameter file, then in the "
       "folder the program is started in. Units: none.");
     prm.add_parameter("scale", scale, "Factor to mm of the file's lengths. Units: none.", Double(1e-300));
-    prm.add_parameter("rotation axis", axis, "Of an STL surface, through its origin. Units: none.");
+    prm.add_parameter("rotation axis", rotations.axis, "Of an STL surface, through its origin. Units: none.");
     add_angle(prm);
+    rotations.add_list(prm, "Rotations of an STL surface,");
   }
 
   void StlDie::check(const std::string &section, const std::string &chosen) const
@@ -135,16 +128,14 @@ namespace retroforge
                   "is '" + file + "', but the shape is " + chosen,
                   "only a die of shape stl is read from a file",
                   "set shape = stl, or leave the file out");
-    if (!(axis.norm() > 0. && std::isfinite(axis.norm())))
-      throw Error(
-        section + "/rotation axis", "is zero or infinite", "it must have a direction", "use 0, 0, 1");
+    rotations.check(section);
   }
 
   TriangleSurface StlDie::surface(const DiePlace &place) const
   {
     const TriangleSurface      read     = read_stl(file);
     NodalVectors<double>       vertices = read.vertices();
-    const dealii::Tensor<2, 3> R        = scale * rotation(axis, angle);
+    const dealii::Tensor<2, 3> R        = scale * rotations.matrix();
     for (Vec3 &x : vertices)
       x = place.point + R * x;
     TriangleSurface placed(place.section + "/file (" + file + ")", vertices, read.triangles());
@@ -217,7 +208,7 @@ namespace retroforge
     segments.again();
     auto mesh = shape_mesh(
       place.section + "/" + Shape<double>::section(), changed_shape(shape, changed), chord_error, segments);
-    const dealii::Tensor<2, 3> R = rotation_to(place.facing) * rotation(Vec3({0., 0., 1.}), angle);
+    const dealii::Tensor<2, 3> R = rotation_to(place.facing) * rotation(Vec3({0., 0., 1.}), rotations.angle);
     for (Vector3<Number> &x : mesh.vertices)
     {
       Vector3<Number> y;

@@ -164,10 +164,51 @@ namespace retroforge
 
   double OptimisationResults::by_relaxing(const std::size_t limit) const
   {
-    if (stop == SearchStop::limits)
+    if (!has_converged() || !limits_are_kept())
       return NAN;
     const double multiplier = limit < multipliers.size() ? multipliers[limit] : 0.;
     return multiplier == 0. ? 0. : -multiplier / criteria.limits[limit].size;
+  }
+
+  double OptimisationResults::missed_by(const std::size_t limit) const
+  {
+    const Limit &of    = criteria.limits[limit];
+    const double value = best.values[of.objective];
+    if (of.excess(best.values) <= limit_tolerance)
+      return 0.;
+    return of.at_least ? of.bound - value : value - of.bound;
+  }
+
+  std::size_t OptimisationResults::n_failed_at_the_end() const
+  {
+    std::size_t n = 0;
+    for (auto row = rows.rbegin(); row != rows.rend() && row->decision == TrialRow::Decision::refused; ++row)
+    {
+      if (!row->evaluation.failed())
+        return 0;
+      ++n;
+    }
+    return n;
+  }
+
+  bool OptimisationResults::ended_among_failures() const
+  {
+    return (stop == SearchStop::noise || stop == SearchStop::step) && n_failed_at_the_end() > 0;
+  }
+
+  bool OptimisationResults::has_converged() const
+  {
+    return (stop == SearchStop::gradient || stop == SearchStop::noise || stop == SearchStop::step) &&
+           !ended_among_failures();
+  }
+
+  bool OptimisationResults::found_nothing() const
+  {
+    const auto was_forged = [](const TrialRow &row) {
+      return (row.decision == TrialRow::Decision::accepted || row.decision == TrialRow::Decision::refused) &&
+             !row.evaluation.failed();
+    };
+    return n_failed_at_the_end() > 0 && std::none_of(rows.begin(), rows.end(), was_forged);
   }
 
   double OptimisationResults::by_meshes() const
@@ -248,6 +289,7 @@ namespace retroforge
                         {"bound", number(limit.bound)},
                         {"start", number(start.values[limit.objective])},
                         {"best", number(best.values[limit.objective])},
+                        {"missed_by", number(missed_by(i))},
                         {"by_relaxing", number(by_relaxing(i))}});
     }
     Json relations = Json::array();
@@ -328,9 +370,53 @@ namespace retroforge
     write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   }
 
+  void OptimisationResults::print_warning(std::ostream &out) const
+  {
+    if (!limits_are_kept())
+      out << "\n  NOT FEASIBLE: no design that was forged keeps all limits; this one comes closest\n";
+    for (std::size_t i = 0; i < criteria.limits.size(); ++i)
+      if (const double missed = missed_by(i); missed > 0.)
+      {
+        const Limit      &limit = criteria.limits[i];
+        const std::string unit  = units[limit.objective].empty() ? "" : " " + units[limit.objective];
+        out << std::setprecision(7) << "    " << objectives[limit.objective] << ": "
+            << best.values[limit.objective] << unit << ", " << (limit.at_least ? "at least " : "at most ")
+            << limit.bound << unit << ": " << std::setprecision(4) << missed << unit;
+        if (limit.bound != 0.)
+          out << std::setprecision(3) << " (" << 100. * missed / std::abs(limit.bound) << " %)";
+        out << (limit.at_least ? " too little\n" : " too much\n");
+      }
+    if (found_nothing())
+      out << "\n  NOTHING FOUND: no design around the start could be forged, " << n_failed_at_the_end()
+          << " tried; the last one failed:\n    " << rows.back().evaluation.failure << '\n';
+  }
+
+  void OptimisationResults::print_limits(std::ostream &out) const
+  {
+    if (!criteria.limits.empty())
+      out << "\n  " << std::left << std::setw(28) << "limit" << std::right << std::setw(14) << "bound"
+          << std::setw(14) << "start" << std::setw(14) << "best"
+          << "  objective by relaxing it by 1\n";
+    for (std::size_t i = 0; i < criteria.limits.size(); ++i)
+    {
+      const Limit &limit = criteria.limits[i];
+      out << "  " << std::left << std::setw(28)
+          << objectives[limit.objective] + (limit.at_least ? " at least" : " at most") << std::right
+          << std::setprecision(7) << std::setw(14) << limit.bound << std::setw(14)
+          << start.values[limit.objective] << std::setw(14) << best.values[limit.objective] << "  "
+          << (missed_by(i) > 0.      ? "not kept"
+              : !limits_are_kept()   ? "unknown, as another limit is not kept"
+              : !has_converged()     ? "unknown, as the search did not come to its end"
+              : by_relaxing(i) == 0. ? "not felt"
+                                     : as_text(by_relaxing(i)))
+          << '\n';
+    }
+  }
+
   void OptimisationResults::print(std::ostream &out) const
   {
     const std::string unit = criteria.objective.unit.empty() ? "" : " " + criteria.objective.unit;
+    print_warning(out);
     out << std::setprecision(7) << "\n  " << criteria.objective.name << ": " << value(start) << unit << " -> "
         << value(best) << unit;
     if (value(start) != 0.)
@@ -344,8 +430,11 @@ namespace retroforge
           << (meshes.size() == 1 ? "once" : std::to_string(meshes.size()) + " times")
           << ", which\n  changed the objective by " << std::showpos << by_meshes() << std::noshowpos << unit
           << (meshes.size() == 1 ? "" : " in all") << "; the rest is by the design";
-    out << "\n  stopped: " << in_words(stop) << "\n  " << n_simulations << " forgings; " << n_failed << " of "
-        << rows.size() << " designs failed; " << n_sweeps << " swept back\n";
+    out << "\n  stopped: " << in_words(stop);
+    if (ended_among_failures())
+      out << "; the last " << n_failed_at_the_end() << " failed: it is at the edge of what can be forged";
+    out << "\n  " << n_simulations << " forgings; " << n_failed << " of " << rows.size()
+        << " designs failed; " << n_sweeps << " swept back\n";
     if (noise > 0.)
       out << std::setprecision(3) << "  noise of the objective: " << noise << unit << '\n';
     out << "\n  " << std::left << std::setw(28) << "parameter" << std::right << std::setw(14) << "start"
@@ -359,21 +448,7 @@ namespace retroforge
       out << "  " << std::left << std::setw(28) << held->name << std::right << std::setprecision(7)
           << std::setw(14) << start.values.back() << std::setw(14) << best.values.back() << ' ' << std::left
           << std::setw(8) << held->unit << std::right << "follows from the volume\n";
-    if (!criteria.limits.empty())
-      out << "\n  " << std::left << std::setw(28) << "limit" << std::right << std::setw(14) << "bound"
-          << std::setw(14) << "start" << std::setw(14) << "best"
-          << "  objective by relaxing it by 1\n";
-    for (std::size_t i = 0; i < criteria.limits.size(); ++i)
-    {
-      const Limit &limit = criteria.limits[i];
-      out << "  " << std::left << std::setw(28)
-          << objectives[limit.objective] + (limit.at_least ? " at least" : " at most") << std::right
-          << std::setw(14) << limit.bound << std::setw(14) << start.values[limit.objective] << std::setw(14)
-          << best.values[limit.objective] << "  "
-          << (std::isnan(by_relaxing(i)) ? std::string("unknown: limits are not met")
-                                         : as_text(by_relaxing(i)))
-          << '\n';
-    }
+    print_limits(out);
     for (std::size_t o = 0; o < details.size(); ++o)
       for (const auto &[what, detail] : details[o])
         out << "  " << what << " of " << objectives[o] << " at the best design: " << detail << '\n';
@@ -405,7 +480,8 @@ namespace retroforge
         for (const Limit &limit : criteria.limits)
           out << "    " << objectives[limit.objective] << ' ' << confirmation->best.values[limit.objective]
               << ", " << (limit.at_least ? "at least " : "at most ") << limit.bound
-              << (limit.excess(confirmation->best.values) > 0. ? ": not kept there\n" : ": kept\n");
+              << (limit.excess(confirmation->best.values) > limit_tolerance ? ": not kept there\n"
+                                                                            : ": kept\n");
     }
   }
 } // namespace retroforge

@@ -7,6 +7,7 @@
 #include <retroforge/billet/ring_profile.h>
 #include <retroforge/billet/spline_profile.h>
 #include <retroforge/core/choice.h>
+#include <retroforge/geometry/rotations.h>
 #include <retroforge/mesh/tet_mesh.h>
 
 #include <string>
@@ -46,9 +47,8 @@ namespace retroforge
     double                   scale = 1; ///< of the file's lengths to mm
     std::vector<std::string> symmetry_patches;
 
-    Vec3   rotation_axis  = Vec3({0, 0, 1});
-    double rotation_angle = 0;
-    Vec3   translation;
+    Rotations rotations; ///< of the finished mesh
+    Vec3      translation;
 
     FreeFormParameters free_form;
 

@@ -4,6 +4,7 @@
 
 #include <retroforge/design/billet_map.h>
 #include <retroforge/design/die_free_form.h>
+#include <retroforge/design/open_contact.h>
 #include <retroforge/time/process.h>
 
 namespace retroforge
@@ -43,17 +44,24 @@ namespace retroforge
     bool overlaps(const DesignParameter &other) const;
   };
 
+  /// Names of parameters that would change nothing in a scene, because another number is 0 or 1, and which
+  /// that is.
+  std::map<std::string, std::string> idle_parameters(const std::vector<DieParameters> &dies,
+                                                     const MaterialLaw<double>        &law);
+
   /// The map from parameter values to the initial positions and the process, and its derivative: both are
   /// code templated on the number type.
   class Design
   {
   public:
     /// @param names   as in `material/K`, `die upper/friction`, `billet/stretch`; unknown ones throw Error
+    /// @param contact  what numbers of the contact law follow from that are no parameters
     /// @param stroke  of the leading die in the nominal design [mm]
     Design(const std::vector<std::string>   &names,
            const BilletParameters           &billet,
            const std::vector<DieParameters> &dies,
            const Process<double>            &nominal_process,
+           const OpenContact                &contact,
            const FirstMesh                  &first,
            double                            stroke);
 
@@ -105,6 +113,10 @@ namespace retroforge
     std::vector<Number> shape_of(const std::vector<Number> &mu) const;
     void                check_common_friction() const;
 
+    /// Numbers of the contact law: those that are parameters, and those that follow from metal and speed.
+    template <typename Number>
+    void set_contact(const std::vector<Number> &mu, Process<Number> &process) const;
+
     /// Dies that follow the billet start as far from it as in the nominal design; the leading one ends where
     /// it does there.
     template <typename Number>
@@ -117,6 +129,7 @@ namespace retroforge
     std::vector<DieParameters>   dies_;
     std::vector<DieFreeForm>     die_forms_; ///< of each die
     Process<double>              process_;
+    OpenContact                  contact_;
     double                       stroke_;
     BilletMap                    billet_map_;
     NodalVectors<double>         nominal_X_; ///< where the nodes stand in the nominal shape

@@ -6,6 +6,7 @@
 #include <retroforge/geometry/die.h>
 #include <retroforge/geometry/die_free_form_parameters.h>
 #include <retroforge/geometry/die_shapes.h>
+#include <retroforge/geometry/rotations.h>
 
 #include <deal.II/base/tensor.h>
 
@@ -66,7 +67,8 @@ namespace retroforge
     std::string surface_law     = "smooth";
     double      feature_angle   = 25.;  ///< [degrees]
     double      largest_sagitta = 3e-3; ///< of the surface's diagonal
-    double      angle           = 0.;   ///< by which it is turned [degrees]
+
+    Rotations rotations; ///< of a die by measures only the angle, about its own axis
 
     DieFreeFormParameters free_form_parameters;
 
@@ -84,14 +86,13 @@ namespace retroforge
     virtual TriangleSurface surface(const DiePlace &place) const = 0;
   };
 
-  /// The surface of an STL file as drawn, scaled, turned by `angle` about `axis` and moved by the place's
-  /// point; `facing` only says along which way `die NAME/offset` moves it.
+  /// The surface of an STL file as drawn, scaled, turned by its rotations and moved by the place's point;
+  /// `facing` only says along which way `die NAME/offset` moves it.
   class StlDie : public SurfaceDie
   {
   public:
     std::string file;
     double      scale = 1.;
-    Vec3        axis  = Vec3({0., 0., 1.});
 
     void add_parameters(dealii::ParameterHandler &prm) override;
     void check(const std::string &section, const std::string &chosen) const override;
@@ -101,8 +102,8 @@ namespace retroforge
   };
 
   /// A die made from measures, which has its origin at the place's point and its z axis along `facing`,
-  /// turned about it by `angle`: x' = point + R x, R the rotation that takes z to `facing` the short way (for
-  /// facing = -z: half a turn about the x axis) after the turn about z.
+  /// turned about it by an angle: x' = point + R x, R the rotation that takes z to `facing` the short way
+  /// (for facing = -z: half a turn about the x axis) after the turn about z.
   template <template <typename> class Shape>
   class CavityDie : public SurfaceDie
   {

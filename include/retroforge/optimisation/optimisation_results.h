@@ -82,15 +82,23 @@ namespace retroforge
     unsigned int n_simulations = 0, n_sweeps = 0, n_failed = 0; ///< forgings, sweeps, designs
 
     double value(const Evaluation &evaluation) const { return criteria.value(evaluation.values); }
-    /// What the objective would change by, per unit by which a limit is relaxed; NaN where limits are not
-    /// met.
+    /// What the objective would change by, per unit by which a limit is relaxed; NaN where the search did not
+    /// come to its end within all limits.
     double by_relaxing(std::size_t limit) const;
+    /// By how much the best design misses a limit, in its unit; 0 where it keeps it, to the tolerance.
+    double missed_by(std::size_t limit) const;
     bool   limits_are_kept() const { return criteria.largest_excess(best.values) <= limit_tolerance; }
+    /// How many designs were tried in vain since the last one that was taken, if all of them failed.
+    std::size_t n_failed_at_the_end() const;
+    /// Whether steps became too short because designs around the last one failed.
+    bool ended_among_failures() const;
     /// Whether intervals and multipliers mean something: the search came to an end by itself.
-    bool has_converged() const
-    {
-      return stop == SearchStop::gradient || stop == SearchStop::noise || stop == SearchStop::step;
-    }
+    bool has_converged() const;
+    /// Whether no design but the first could be forged.
+    bool found_nothing() const;
+
+    /// Of the program: 0, or 2 where no design keeps the limits or none but the first could be forged.
+    int exit_status() const { return limits_are_kept() && !found_nothing() ? 0 : 2; }
 
     /// What new meshes changed of the objective, in all.
     double by_meshes() const;
@@ -100,6 +108,11 @@ namespace retroforge
     void print(std::ostream &out) const;
     /// A line on a new mesh.
     void print(const NewMesh &mesh, std::ostream &out) const;
+
+  private:
+    /// What makes the result one that cannot be used, before all numbers of it.
+    void print_warning(std::ostream &out) const;
+    void print_limits(std::ostream &out) const;
   };
 
   std::string in_words(SearchStop stop);

@@ -198,6 +198,15 @@ MISTAKES = {
     "a mesh that is there twice": (file_mesh("twice"), r"twice\.msh.*bodies that no face connects"),
     "a layer felt too far": (settings("Contact/layer=1e-3"), r"Contact/layer.*0\.001.*0\.1"),
     "rotation of many turns": (settings("Billet/rotation angle=1e308"), r"Billet/rotation angle.*1e308.*360"),
+    "rotation without an angle": (settings("Billet/rotations=0, 1, 0, 90; 0, 0, 1"), r"Billet/rotations.*3 number.*entry 2.*four"),
+    "rotation about nothing": (settings("Billet/rotations=0, 0, 0, 90"), r"Billet/rotations.*length 0"),
+    "rotations of many turns": (settings("Billet/rotations=0, 0, 1, 1e6"), r"Billet/rotations.*1e\+06.*360"),
+    "rotations beside a rotation angle": (settings("Billet/rotation angle=10", "Billet/rotations=0, 0, 1, 30"), r"Billet/rotations.*beside"),
+    "rotation of a die without an angle": (settings("Die lower/rotations=0, 0, 1"), r"Die lower/rotations.*3 number"),
+    "friction of dies without any": (settings("Die lower/friction=0", "Die upper/friction=0", "Design/parameters=material/K, dies/friction"),
+                                     r"Design/parameters.*'dies/friction' changes nothing.*friction of all dies is 0"),
+    "speed of a die that stands still": (settings("Design/parameters=die lower/speed"), r"die lower/speed.*velocity of die lower is 0"),
+    "misspelt name of a die in the list": (settings("Dies/names=lower, uper"), r"Die upper.*did you mean 'Die uper'"),
     "moves that no increment makes": (settings("Press/largest move=1e-6"), r"Press/largest move.*1e-6.*0\.001"),
     "penalty beyond all digits": (settings("Contact/penalty=1e30"), r"Contact/penalty.*1e\+30.*1e-14"),
     "penalty that holds nothing": (settings("Contact/penalty=1e-9"), r"Contact/penalty.*1e-09"),
@@ -361,6 +370,10 @@ def told():
             ("weight in no sum", objective("energy", "weight=2"), r"note: Objective energy/weight = 2 has no effect: .*gradients = each"),
             ("a die with a hole", settings("Die lower/shape=stl", "Die lower/file=holed.stl"),
              r"note: the surface of die lower has another rim, 40 mm around, at \(0, 0, 0\)"),
+            ("friction of dies without any", settings("Die lower/friction=0", "Die upper/friction=0", "Design/parameters=material/K, dies/friction"),
+             r"note: Design/parameters: 'dies/friction' changes nothing, as the friction of all dies is 0"),
+            ("regularisation of a linear metal", settings("Material/strain rate sensitivity=1", "Design/parameters=material/e0"),
+             r"note: Design/parameters: 'material/e0' changes nothing, as the strain rate sensitivity is 1"),
             ("metal in a die", settings("Contact/largest depth=0"), r"the surface was up to .* inside die"),
             ("die that nothing touches", settings("Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0"),
              r"warning: no node touched die side")):
@@ -368,6 +381,40 @@ def told():
         judge(name, done.returncode == 0 and re.search(pattern, done.stdout), done.stdout + done.stderr)
     done = run(["case.prm", "--output", "told", "--overwrite"] + short, command="simulate")
     judge("nothing to tell", not re.search("note|warning", done.stdout), done.stdout)
+
+
+def unlisted():
+    """Sections of names that no list has are left unread, and that is told once; a name that is meant to be in the list is misspelt."""
+    listed = {"Objectives": {"names": "energy, lost"}, "Objective lost": {"type": "volume"}}
+    side = {"Die side": {"facing": "-1, 0, 0"}}
+    write("more.prm", CASE + prm({**listed, **side}))
+    short = settings("Press/stroke=0.1", "Press/increments=1")
+    notes = {"Die side": "Dies/names", "Objective lost": "Objectives/names"}
+    for name, more, expected in (("a die that is not listed", [], ["Die side"]),
+                                 ("a list made shorter", settings("Objectives/names=energy"), ["Die side", "Objective lost"])):
+        done = run(["more.prm", "--output", "unlisted", "--overwrite"] + short + more, command="simulate")
+        told_ones = re.findall(r"note: section `(.*)' is not read, as (.*) does not name it", done.stdout)
+        judge(name, done.returncode == 0 and told_ones == [(section, notes[section]) for section in expected], done.stdout + done.stderr)
+    judge("their settings are not in the input that is kept", "Objective lost" not in text_of("unlisted/parameters.prm"))
+    write("misspelt.prm", CASE.replace("Die upper", "Die uper"))
+    judge_message("misspelt section of a die", run(["misspelt.prm", "--output", "run"]), r"Die uper.*did you mean 'Die upper'")
+    judge_message("setting of a section that is not there", run(["more.prm", "--output", "run"] + settings("Die sid/friction=1")), r"Die sid/friction")
+
+
+def on_two_ranks():
+    """One message and status 1 for what all ranks find; what one rank alone finds is told, too, and the other does not wait for ever."""
+    two = ["mpirun", "-q", "-np", "2"]
+    for name, more, pattern in (("an input", settings("Press/stroke=-1"), r"Press/stroke.*-1"),
+                                ("a scene", settings("Die upper/point=0, 0, 12"), r"Die upper.*starts 2 mm away"),
+                                ("a forging", settings("Newton/max iterations=1"), r"Newton")):
+        done = start([*two, PROGRAM, "gradient", "case.prm", "--output", "ranks", "--overwrite", *more])
+        judge_message(f"{name} on two ranks", done, pattern)
+        judge("its status", done.returncode == 1, done.returncode)
+    done = start(["mpirun", "-np", "2", PROGRAM, "gradient", "case.prm", "--output", "ranks", "--overwrite", *settings("Press/stroke=-1")])
+    judge("nothing of an abort", "MPI_ABORT" not in done.stdout + done.stderr, done.stderr)
+    first_alone = "trap '' XFSZ; [ $OMPI_COMM_WORLD_RANK = 0 ] && ulimit -f 64; exec \"$@\""
+    done = start([*two, "sh", "-c", first_alone, "sh", PROGRAM, "gradient", "case.prm", "--output", "alone", "--overwrite"])
+    judge("a disk that is full for one rank", done.returncode != 0 and "retroforge: alone" in done.stderr, done.stderr)
 
 
 def announced():
@@ -428,5 +475,5 @@ def mistakes():
     judge_message("section not closed", run(["unclosed.prm"]), "unclosed.prm")
 
 
-whole_runs.main({"case.prm": CASE}, (mistakes, any_line_ends, template, told, announced, scaled_mesh, per_cent_of_zero, forbidden_output, interrupted,
+whole_runs.main({"case.prm": CASE}, (mistakes, any_line_ends, template, told, unlisted, on_two_ranks, announced, scaled_mesh, per_cent_of_zero, forbidden_output, interrupted,
                                      resumed, replaced, full_disk))

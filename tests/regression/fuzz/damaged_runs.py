@@ -5,9 +5,10 @@
                                                      [--seed 1] [--only KIND:NUMBER] [--jobs 2] [--keep FOLDER] [--told]
 
 A trial is a small scene of which a parameter file, a mesh, an STL file or a record was damaged; a third of the trials meet the results
-of an earlier run in their folder. A trial ends (exit status 0, results finite), or is refused or stopped with one message of the form
-`retroforge: where: what; rule; remedy`; results of the earlier run are left alone, but by `--overwrite` of a command that was accepted,
-as a look at a scene always is.
+of an earlier run in their folder. Most trials are of one run; some are a check, a scan, an optimisation, made short, or a look at the
+scene. A trial ends (exit status 0, or 2 of an optimisation without a design to use; results finite), or is refused or stopped with one
+message of the form `retroforge: where: what; rule; remedy`; results of the earlier run are left alone, but by `--overwrite` of a command
+that was accepted, as a look at a scene always is.
 A run that is still going on after a minute is stopped: input may well ask for a long one; but it must have printed something in the last
 half of that minute, unless its mesh is large, or was announced to be. Each trial depends on seed, kind and number alone. The exit
 status is zero when no trial is a defect."""
@@ -21,6 +22,7 @@ import os
 import pathlib
 import random
 import re
+import resource
 import shutil
 import signal
 import struct
@@ -54,6 +56,17 @@ SCENES = {name: prm(sections) for name, sections in {
         "mouth radius": 9, "outer radius": 40, "depth": 3, "edge radius": 1, "fillet radius": 1}}}),
     "mesh": {**CYLINDER, "Billet": {"shape": "file", "file name": "billet.msh"}},
     "remeshed": changed(WITH_STL, {"Remeshing": {"when": "increments", "every": 1}})}.items()}
+
+
+# What is made of them, and settings with which it is short.
+COMMANDS = ("gradient",) * 6 + ("simulate",) * 3 + ("check", "scan", "optimize", "scene")
+SHORT = {"check": ("Check/steps=1e-3", "Check/free differences=false", "Check/taylor halvings=2"),
+         "scan": ("Scan/points=3", "Scan/fit degree=1", "Scan/processes=1"),
+         "optimize": ("Optimisation/iterations=2", "Optimisation/simulations=6", "Optimisation/noise runs=1", "Optimisation/confirmation=0")}
+# They end with status 1 and without a message where this is said.
+CAN_FAIL = {"check": "FAILED", "scan": r"(\d+) points, \1 failed"}
+# Results of an earlier run may be gone once one of these lines is printed; a scene that is refused is listed and drawn.
+ACCEPTED = re.compile(r"^ +1 +\d|^Retroforge .*, scan of |^optimisation of |^  REFUSED: ", re.MULTILINE)
 
 
 def die_stl():
@@ -341,8 +354,29 @@ class Server:
         return status, *(file.read_text(encoding="utf-8", errors="replace") for file in files), silent[0] if silent else 0.0
 
 
+def follow_itself(program, folder, arguments, environment):
+    """The same of a program that starts others, which a fork of another program cannot."""
+    files = [folder / "../stdout", folder / "../stderr"]
+    with open(files[0], "w", encoding="utf-8") as out, open(files[1], "w", encoding="utf-8") as errors:
+        with subprocess.Popen([program, *map(str, arguments)], cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=out,
+                              stderr=errors, start_new_session=True) as running:
+            resource.prlimit(running.pid, resource.RLIMIT_AS, (MEMORY, MEMORY))
+            try:
+                status, silent = running.wait(LONGEST), 0.0
+            except subprocess.TimeoutExpired:
+                status, silent = None, time.time() - max(file.stat().st_mtime for file in files)
+                os.killpg(running.pid, signal.SIGKILL)
+    return status, *(file.read_text(encoding="utf-8", errors="replace") for file in files), silent
+
+
 def not_finite(results):
-    """The first result that is no finite number, if there is one; summary.json has null for those."""
+    """The first result that is no finite number, if there is one; files have null for those."""
+    if (results / "optimisation.json").exists():
+        found = json.loads((results / "optimisation.json").read_text(encoding="utf-8"))
+        numbers = {**{of: found["objective"][of] for of in ("start", "best")},
+                   **{parameter["name"]: parameter["best"] for parameter in found["parameters"]}}
+        if None in numbers.values():
+            return f"optimisation.json: of {numbers} one is no number"
     if (results / "summary.json").exists():
         summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
         numbers = [(objective["name"], objective["value"]) for objective in summary["objectives"]]
@@ -366,9 +400,8 @@ def trial(tools, kind, number, seed, keep):
     rng = random.Random(f"{seed}:{kind}:{number}")
     folder = pathlib.Path(tempfile.mkdtemp(dir=tools.folder)) / "run"
     arguments = KINDS[kind](rng, tools, folder)
-    word = "gradient" if kind == "records" else rng.choice(("gradient",) * 6 + ("simulate",) * 3 + ("check", "scene"))
-    if word == "check":
-        arguments += ["--set", "Check/steps=1e-3", "--set", "Check/free differences=false", "--set", "Check/taylor halvings=2"]
+    word = "gradient" if kind == "records" else rng.choice(COMMANDS)
+    arguments = [part for setting in SHORT.get(word, ()) for part in ("--set", setting)] + arguments
     output = folder / "out"
     beside = kind != "records" and rng.random() < 1 / 3
     if beside:
@@ -376,25 +409,27 @@ def trial(tools, kind, number, seed, keep):
         arguments += rng.choice(([], ["--overwrite"], ["--overwrite"]))
     before = contents(output) if output.exists() else {}
     command = [tools.program, word, "case.prm", "--output", "out"] + arguments
-    status, said, errors, silent = tools.server().follow(folder, command[1:])
-    # A scene that is refused is listed and drawn.
-    accepted = re.search(r"^ +1 +\d|^  REFUSED: ", said, re.MULTILINE) is not None or status in (0, None)
+    status, said, errors, silent = (follow_itself(tools.program, folder, command[1:], tools.environment(tools.folder)) if word == "scan"
+                                     else tools.server().follow(folder, command[1:]))
+    accepted = ACCEPTED.search(said) is not None or status in (0, None)
     defect = None
     if status is None:
         outcome = "long"
         nodes = re.findall(r"(\d+) nodes", said)
         if silent > SILENT and not (nodes and int(nodes[-1]) > LARGE) and "expect hours" not in said:
             defect = f"hangs: silent for {silent:.0f} s"
-    elif status == 0:
+    elif status == 0 or (word == "optimize" and status == 2):
         outcome = "ended"
         defect = not_finite(output) if output.exists() else None
+        if re.search(r"ended by signal|ended with status|left no results", said):
+            defect = "a run of a scan ended without a message"
         if RAW.search(errors + said):
             defect = "raw: " + RAW.search(errors + said).group()
     elif status == 1:
         outcome = "stopped" if accepted else "refused"
         if RAW.search(errors + said):
             defect = "raw: " + RAW.search(errors + said).group()
-        elif not MESSAGE.fullmatch(errors) and not (word == "check" and not errors and "FAILED" in said):
+        elif not MESSAGE.fullmatch(errors) and not (not errors and re.search(CAN_FAIL.get(word, "(?!)"), said)):
             defect = "no message of the form where: what; rule; remedy"
     else:
         outcome, defect = "crashed", f"exit status {status}"

@@ -246,6 +246,52 @@ def failing():
     judge("the first must succeed", done.returncode == 1 and "in increment 1" in done.stderr, done.stderr)
 
 
+def infeasible():
+    """A limit that no design within the bounds keeps: told first, with how far it is missed, and by the exit status, however the search ends."""
+    at_start, bound = found_in("whole")["trials"][0]["values"]["energy"], 0.5
+    one = "billet/control point 1 r"
+    half = f"Optimisation/at most=energy: {bound * at_start!r}"
+    bounds = (f"Optimisation/lower bounds={one}: 9.9", f"Optimisation/upper bounds={one}: 10.1", "Design/parameters=" + one, "Optimisation/noise runs=0")
+    for name, more, reason in (("infeasible", bounds, "limits are not met"), ("cut_off", ("Optimisation/iterations=1",), "as many steps were tried"),
+                               ("infeasible", (*bounds, "--resume"), "limits are not met")):
+        found, printed = optimize(name, half, *more, status=2)
+        limit, missed = found["limits"][0], found["limits"][0]["best"] - bound * at_start
+        headline = printed[printed.index("NOT FEASIBLE"):]
+        judge(f"{name}: the first line of the result says so", headline.index("energy: ") < headline.index("barrel: "), printed)
+        judge("and by how much", limit["missed_by"] == missed > 0.4 * at_start and f"{missed:.4g} mJ ({100 * missed / (bound * at_start):.3g} %) too much" in headline,
+              f"{limit} {headline}")
+        judge("what ended the search is told", f"stopped: {reason}" in printed, printed)
+        judge("nothing is foretold", limit["by_relaxing"] is None and "not kept" in headline and not found["limits_kept"], limit)
+    done = start([str(ROOT / "contrib/report"), "--no-vtk", "infeasible"])
+    judge("the report says so first", "NOT FEASIBLE" in text_of("infeasible", "report.html"), done.stderr)
+    found, printed = optimize("at_least", f"Optimisation/at least=energy: {2 * at_start!r}", *bounds, status=2)
+    judge("a lower limit", found["limits"][0]["missed_by"] == 2 * at_start - found["limits"][0]["best"] and "too little" in printed, found["limits"])
+
+
+def limits_that_do_not_press():
+    at_start = found_in("whole")["trials"][0]["values"]["energy"]
+    found, printed = optimize("loose_limit", f"Optimisation/at most=energy: {2 * at_start!r}", "Optimisation/noise runs=0")
+    judge("one that is not felt", found["limits"][0]["by_relaxing"] == 0 and "not felt" in printed, found["limits"])
+    found, printed = optimize("unfinished", f"Optimisation/at most=energy: {2 * at_start!r}", "Optimisation/noise runs=0", "Optimisation/iterations=1")
+    judge("before the end nothing is known", found["limits"][0]["by_relaxing"] is None and "did not come to its end" in printed, found["limits"])
+
+
+def beset():
+    """Designs that fail in every step from the start: the metal loses a little more of its volume there than is allowed."""
+    scene = changed(SCENE, {"Objectives": {"names": "barrel, volume"}, "Optimisation": {"noise runs": 0, "iterations": 30}})
+    write("beset.prm", prm(scene))
+    run("gradient", "before", case="beset.prm")
+    summary = summary_of("before")
+    down = [[-parameter["gradient"]["barrel"], parameter["gradient"]["volume"]] for parameter in summary["parameters"]]
+    loss = summary["volume_final"] - summary["volume_initial"]
+    sign = 1 if sum(g * v for g, v in down) * loss > 0 else -1
+    settings = (f"Objective barrel/weight={sign}", f"Press/largest volume change={abs(loss) / summary['volume_initial'] * (1 + 1e-9)!r}", "Press/max cuts=0")
+    found, printed = optimize("beset", *settings, case="beset.prm", status=2)
+    judge("no design but the start", {trial["decision"] for trial in found["trials"]} == {"start", "failed"} and best_of(found) == [10, 10], found["trials"])
+    judge("is told first, with why", printed.index("NOTHING FOUND") < printed.index("  barrel: ") and "of its volume" in printed[printed.index("NOTHING FOUND"):], printed)
+    judge("and is no convergence", not found["converged"] and "at the edge of what can be forged" in printed, found["stop"])
+
+
 FAR = {"billet/control point 1 r": 18.0, "billet/control point 2 r": 3.0}
 FROM_FAR = (*FAR.items(), "Design/meshed at=" + ", ".join(f"{name}: {value!r}" for name, value in FAR.items()), "Optimisation/noise runs=0")
 
@@ -490,4 +536,4 @@ def refused():
     judge("resumed with another tolerance", "taken from the journal" in printed and found["simulations"] >= len(before.splitlines()) // 3)
 
 
-main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, checked, free_form, die_free_form, bounded, related, held, recorded, failing, far_away, meshes_within_limits, resumed_through_meshes, gradient_on_a_new_mesh, free_form_far_away, from_elsewhere, identified, scattered, confirmed, on_two_ranks, reported, refused))
+main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, infeasible, limits_that_do_not_press, beset, checked, free_form, die_free_form, bounded, related, held, recorded, failing, far_away, meshes_within_limits, resumed_through_meshes, gradient_on_a_new_mesh, free_form_far_away, from_elsewhere, identified, scattered, confirmed, on_two_ranks, reported, refused))

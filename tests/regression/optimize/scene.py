@@ -20,10 +20,11 @@ SCENE = {
     "Output": {"fields every": 0}}
 
 
-def optimize(output, *more, ranks=1, **where):
+def optimize(output, *more, ranks=1, status=0, **where):
+    """@param status  the exit status there is to be"""
     words = command("optimize", output, *more, **where)
     done = start(words if ranks == 1 else ["mpirun", "-np", str(ranks), *words])
-    if done.returncode:
+    if done.returncode != status:
         sys.exit(done.stdout + done.stderr)
     return found_in(output), done.stdout
 
