@@ -200,6 +200,22 @@ namespace retroforge
       W = Field<double>(scene_.spaces);
   }
 
+  namespace
+  {
+    /// Balances bubbles with velocities and pressures that are on their way. Where the metal hardly feels its
+    /// rate, a load that a cell cannot bear makes them  |beta| ~ (load / K)^(1/m),  beyond all bounds, and
+    /// systems solved to a part of such a residual say nothing of the rest: those are left as they are.
+    void settle_bubbles_in_reach(const Stage<double> &stage, const double speed, Field<double> &W)
+    {
+      constexpr double  farthest = 1e3; // of the dies' speed
+      std::vector<Vec3> before   = W.beta;
+      settle_bubbles(stage, W);
+      for (std::size_t c = 0; c < before.size(); ++c)
+        if (!(W.beta[c].norm() <= farthest * speed))
+          W.beta[c] = before[c];
+    }
+  } // namespace
+
   /// Steps within which contacts are to be found at once.
   constexpr unsigned int contacts_settle = 20;
 
@@ -240,7 +256,8 @@ namespace retroforge
     std::vector<char> held;
     if (decides && !from_rest)
       held = hold_on_dies(stage, W, pressed);
-    settle_bubbles(stage, W);
+    const double speed = volume_and_speed(stage).second;
+    settle_bubbles_in_reach(stage, speed, W);
     if (!held.empty())
       lean_on_dies(stage, held, W);
     unsigned int  picard    = decides && start == Start::far ? picard_steps : 0;
@@ -318,7 +335,7 @@ namespace retroforge
       else
         W.add(1., step);
       if (statistics.residual > settled)
-        settle_bubbles(stage, W);
+        settle_bubbles_in_reach(stage, speed, W);
       last = statistics.residual;
     }
     std::ostringstream what;
