@@ -150,7 +150,7 @@ namespace retroforge
         return {};
       try
       {
-        return Tools::Convert<unsigned int>::to_value(text);
+        return Tools::Convert<unsigned int>::to_value(text, Integer(0));
       }
       catch (const dealii::ExceptionBase &)
       {

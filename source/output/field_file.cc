@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/dofs/dof_tools.h>
-#include <deal.II/fe/fe_simplex_p.h>
-#include <deal.II/fe/fe_system.h>
+#include <deal.II/base/mpi.h>
+#include <deal.II/grid/reference_cell.h>
 
 #include <retroforge/output/field_file.h>
 #include <retroforge/output/safe_file.h>
 
+#include <algorithm>
 #include <limits>
 #include <sstream>
+#include <tuple>
 
 namespace retroforge
 {
@@ -52,106 +53,78 @@ namespace retroforge
     }
   } // namespace
 
-  template <int dim>
-  std::string FieldFile<dim>::NamedDataOut::with_unit(const std::string &name) const
+  namespace
   {
-    const auto unit = units.find(name);
-    return unit == units.end() ? name : name + " [" + unit->second + "]";
-  }
-
-  template <int dim>
-  std::vector<std::string> FieldFile<dim>::NamedDataOut::get_dataset_names() const
-  {
-    std::vector<std::string> names = Base::get_dataset_names();
-    for (std::string &name : names)
-      name = with_unit(name);
-    return names;
-  }
-
-  template <int dim>
-  std::vector<
-    std::tuple<unsigned int, unsigned int, std::string, Interpretation::DataComponentInterpretation>>
-  FieldFile<dim>::NamedDataOut::get_nonscalar_data_ranges() const
-  {
-    auto ranges = Base::get_nonscalar_data_ranges();
-    for (auto &range : ranges)
-      std::get<2>(range) = with_unit(std::get<2>(range));
-    const std::vector<std::string> names = Base::get_dataset_names();
-    for (const std::string &tensor : cell_tensors)
+    template <int dim>
+    std::vector<std::array<NodeIndex, dim + 1>> cells_of(const dealii::Triangulation<dim, 3> &triangulation)
     {
-      const unsigned int first =
-        std::find(names.begin(), names.end(), tensor + "_0") - names.begin(); // the others follow it
-      ranges.emplace_back(first, first + 8, with_unit(tensor), Interpretation::component_is_part_of_tensor);
+      std::vector<std::array<NodeIndex, dim + 1>> cells(triangulation.n_active_cells());
+      for (const auto &cell : triangulation.active_cell_iterators())
+        for (unsigned int a = 0; a <= dim; ++a)
+          cells[cell->active_cell_index()][a] = cell->vertex_index(a);
+      return cells;
     }
-    return ranges;
-  }
+
+    /// Ends of the edges, in the order of deal.II's and VTK's quadratic simplices.
+    constexpr std::array<std::array<unsigned int, 2>, 6> edge_ends = {
+      {{{0, 1}}, {{1, 2}}, {{2, 0}}, {{0, 3}}, {{1, 3}}, {{2, 3}}}};
+  } // namespace
 
   template <int dim>
-  std::string FieldFile<dim>::NamedDataOut::piece(const dealii::DataOutBase::VtkFlags &flags) const
+  FieldFile<dim>::FieldFile(const NodalVectors<double> &X, const Cells &cells, const MPI_Comm comm)
+      : X_(X), cells_(cells), comm_(comm)
   {
-    std::ostringstream out;
-    if (!this->get_patches().empty())
-      dealii::DataOutBase::write_vtu_main(
-        this->get_patches(), get_dataset_names(), get_nonscalar_data_ranges(), flags, out);
-    return out.str();
+    const std::uint64_t rank    = dealii::Utilities::MPI::this_mpi_process(comm);
+    const std::uint64_t n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm), n = cells.size();
+    // Those with  c n_ranks / n = rank.
+    first_ = (rank * n + n_ranks - 1) / n_ranks;
+    last_  = ((rank + 1) * n + n_ranks - 1) / n_ranks;
   }
 
   template <int dim>
   FieldFile<dim>::FieldFile(const dealii::Triangulation<dim, 3> &triangulation)
-      : triangulation_(triangulation)
+      : FieldFile({triangulation.get_vertices().begin(), triangulation.get_vertices().end()},
+                  cells_of(triangulation),
+                  triangulation.get_communicator())
   {
-    data_out_.attach_triangulation(triangulation);
-  }
-
-  template <int dim>
-  const dealii::DoFHandler<dim, 3> &FieldFile<dim>::dofs(const unsigned int degree,
-                                                         const unsigned int n_components)
-  {
-    auto &handler = dofs_[{{degree, n_components}}];
-    if (!handler.has_active_dofs())
-    {
-      handler.reinit(triangulation_);
-      handler.distribute_dofs(dealii::FESystem<dim, 3>(dealii::FE_SimplexP<dim, 3>(degree), n_components));
-    }
-    return handler;
   }
 
   template <int dim>
   template <typename ValueAt>
-  void FieldFile<dim>::add_field(const std::string &name,
-                                 const std::string &unit,
-                                 const unsigned int degree,
-                                 const unsigned int n_components,
-                                 const ValueAt     &value_at)
+  void FieldFile<dim>::add(const std::string &name,
+                           const std::string &unit,
+                           const unsigned int n_points,
+                           const unsigned int n_components,
+                           const ValueAt     &value_at)
   {
-    const auto                                  &handler = dofs(degree, n_components);
-    const auto                                  &fe      = handler.get_fe();
-    Values                                      &values  = values_.emplace_back(handler.locally_owned_dofs(),
-                                          dealii::DoFTools::extract_locally_relevant_dofs(handler),
-                                          triangulation_.get_communicator());
-    std::vector<dealii::types::global_dof_index> of_cell(fe.dofs_per_cell);
-    for (const auto &cell : handler.active_cell_iterators())
-      if (!cell->is_artificial())
-      {
-        cell->get_dof_indices(of_cell);
-        for (unsigned int i = 0; i < of_cell.size(); ++i)
-          if (values.in_local_range(of_cell[i]))
-          {
-            const auto [component, point] = fe.system_to_component_index(i);
-            values(of_cell[i])            = value_at(cell, point, component);
-          }
-      }
-    values.update_ghost_values();
-    if (!unit.empty())
-      data_out_.units[name] = unit;
-    degree_ = std::max(degree_, degree);
-    data_out_.add_data_vector(handler,
-                              values,
-                              std::vector<std::string>(n_components, name),
-                              std::vector<Interpretation::DataComponentInterpretation>(
-                                n_components,
-                                n_components == 1 ? Interpretation::component_is_scalar
-                                                  : Interpretation::component_is_part_of_vector));
+    const auto kind = n_components == 1   ? Interpretation::component_is_scalar
+                      : n_components == 3 ? Interpretation::component_is_part_of_vector
+                                          : Interpretation::component_is_part_of_tensor;
+    Array      array{unit.empty() ? name : name + " [" + unit + "]", kind, n_points, n_components, {}};
+    array.values.reserve(std::size_t(last_ - first_) * n_points * n_components);
+    for (CellIndex c = first_; c < last_; ++c)
+      for (unsigned int point = 0; point < n_points; ++point)
+        for (unsigned int component = 0; component < n_components; ++component)
+          array.values.push_back(value_at(c, point, component));
+    arrays_.push_back(std::move(array));
+    n_points_ = std::max(n_points_, n_points);
+  }
+
+  template <int dim>
+  double FieldFile<dim>::value(const Array       &array,
+                               const CellIndex    c,
+                               const unsigned int point,
+                               const unsigned int component) const
+  {
+    const auto at = [&](const unsigned int p) {
+      return array.values[(std::size_t(c - first_) * array.n_points + p) * array.n_components + component];
+    };
+    if (array.n_points == 1)
+      return at(0);
+    if (point < array.n_points)
+      return at(point);
+    const auto [a, b] = edge_ends[point - (dim + 1)];
+    return 0.5 * (at(a) + at(b));
   }
 
   template <int dim>
@@ -159,8 +132,8 @@ namespace retroforge
                                   const std::string         &unit,
                                   const std::vector<double> &values)
   {
-    add_field(name, unit, 1, 1, [&](const auto &cell, const unsigned int a, unsigned int) {
-      return values.at(cell->vertex_index(a));
+    add(name, unit, dim + 1, 1, [&](const CellIndex c, const unsigned int a, unsigned int) {
+      return values.at(cells_[c][a]);
     });
   }
 
@@ -169,8 +142,8 @@ namespace retroforge
                                   const std::string          &unit,
                                   const NodalVectors<double> &values)
   {
-    add_field(name, unit, 1, 3, [&](const auto &cell, const unsigned int a, const unsigned int component) {
-      return values.at(cell->vertex_index(a))[component];
+    add(name, unit, dim + 1, 3, [&](const CellIndex c, const unsigned int a, const unsigned int component) {
+      return values.at(cells_[c][a])[component];
     });
   }
 
@@ -180,22 +153,10 @@ namespace retroforge
                                     const NodalVectors<double> &values,
                                     const Spaces               &spaces)
   {
-    add_field(name,
-              unit,
-              spaces.edges() ? 2 : 1,
-              3,
-              [&](const auto &cell, const unsigned int a, const unsigned int component) {
-                return values.at(spaces.velocity_nodes(cell->active_cell_index())[a])[component];
-              });
-  }
-
-  template <int dim>
-  void FieldFile<dim>::add_cell_field(const std::string &name, dealii::Vector<double> values)
-  {
-    AssertThrow(values.size() == triangulation_.n_active_cells(),
-                dealii::ExcDimensionMismatch(values.size(), triangulation_.n_active_cells()));
-    cell_values_.push_back(std::move(values));
-    data_out_.add_data_vector(cell_values_.back(), name, NamedDataOut::type_cell_data);
+    const unsigned int n_points = spaces.edges() ? dim + 1 + edge_ends.size() : dim + 1;
+    add(name, unit, n_points, 3, [&](const CellIndex c, const unsigned int a, const unsigned int component) {
+      return values.at(spaces.velocity_nodes(c)[a])[component];
+    });
   }
 
   template <int dim>
@@ -203,9 +164,7 @@ namespace retroforge
                                     const std::string         &unit,
                                     const std::vector<double> &values)
   {
-    if (!unit.empty())
-      data_out_.units[name] = unit;
-    add_cell_field(name, dealii::Vector<double>(values.begin(), values.end()));
+    add(name, unit, 1, 1, [&](const CellIndex c, unsigned int, unsigned int) { return values.at(c); });
   }
 
   template <int dim>
@@ -215,15 +174,9 @@ namespace retroforge
   {
     // of SymmetricTensor: xx, yy, zz, yz, xz, xy
     constexpr unsigned int entry[9] = {0, 5, 4, 5, 1, 3, 4, 3, 2};
-    data_out_.units[name]           = unit;
-    data_out_.cell_tensors.push_back(name);
-    for (unsigned int k = 0; k < 9; ++k)
-    {
-      dealii::Vector<double> component(values.size());
-      for (unsigned int c = 0; c < values.size(); ++c)
-        component(c) = values[c][entry[k]];
-      add_cell_field(name + "_" + std::to_string(k), std::move(component));
-    }
+    add(name, unit, 1, 9, [&](const CellIndex c, unsigned int, const unsigned int component) {
+      return values.at(c)[entry[component]];
+    });
   }
 
   template <int dim>
@@ -243,16 +196,67 @@ namespace retroforge
   }
 
   template <int dim>
+  dealii::DataOutBase::Patch<dim, 3> FieldFile<dim>::patch(const CellIndex c) const
+  {
+    unsigned int n_rows = 0;
+    for (const Array &array : arrays_)
+      n_rows += array.n_components;
+    dealii::DataOutBase::Patch<dim, 3> patch;
+    patch.reference_cell       = dealii::ReferenceCells::get_simplex<dim>();
+    patch.n_subdivisions       = n_points_ == dim + 1 ? 1 : 2;
+    patch.patch_index          = c - first_;
+    patch.points_are_available = true; // in the last rows
+    patch.data.reinit(n_rows + 3, n_points_);
+    for (unsigned int a = 0; a <= dim; ++a)
+      patch.vertices[a] = dealii::Point<3>(X_[cells_[c][a]]);
+    for (unsigned int point = 0; point < n_points_; ++point)
+    {
+      unsigned int row = 0;
+      for (const Array &array : arrays_)
+        for (unsigned int component = 0; component < array.n_components; ++component)
+          patch.data(row++, point) = value(array, c, point, component);
+      const dealii::Point<3> x = point <= dim ? patch.vertices[point]
+                                              : patch.vertices[edge_ends[point - (dim + 1)][0]] +
+                                                  0.5 * (patch.vertices[edge_ends[point - (dim + 1)][1]] -
+                                                         patch.vertices[edge_ends[point - (dim + 1)][0]]);
+      for (unsigned int d = 0; d < 3; ++d)
+        patch.data(row++, point) = x[d];
+    }
+    return patch;
+  }
+
+  template <int dim>
+  std::string FieldFile<dim>::piece() const
+  {
+    if (first_ == last_)
+      return "";
+    std::vector<dealii::DataOutBase::Patch<dim, 3>> patches;
+    patches.reserve(last_ - first_);
+    for (CellIndex c = first_; c < last_; ++c)
+      patches.push_back(patch(c));
+    std::vector<std::string> names;
+    std::vector<
+      std::tuple<unsigned int, unsigned int, std::string, Interpretation::DataComponentInterpretation>>
+      ranges;
+    for (const Array &array : arrays_)
+    {
+      if (array.n_components > 1)
+        ranges.emplace_back(names.size(), names.size() + array.n_components - 1, array.name, array.kind);
+      names.insert(names.end(), array.n_components, array.name);
+    }
+    std::ostringstream out;
+    dealii::DataOutBase::write_vtu_main(patches, names, ranges, vtk_flags(), out);
+    return out.str();
+  }
+
+  template <int dim>
   void FieldFile<dim>::write(const std::string &file)
   {
-    data_out_.build_patches(degree_);
-    const auto        flags  = vtk_flags();
-    const MPI_Comm    comm   = triangulation_.get_communicator();
-    const std::string pieces = joined(comm, data_out_.piece(flags));
-    if (dealii::Utilities::MPI::this_mpi_process(comm) > 0)
+    const std::string pieces = joined(comm_, piece());
+    if (dealii::Utilities::MPI::this_mpi_process(comm_) > 0)
       return;
     std::ostringstream out;
-    dealii::DataOutBase::write_vtu_header(out, flags);
+    dealii::DataOutBase::write_vtu_header(out, vtk_flags());
     out << planes_ << pieces;
     dealii::DataOutBase::write_vtu_footer(out);
     write_file(file, out.str());

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/discretization/element_pairs.h>
-#include <retroforge/discretization/triangulation.h>
 #include <retroforge/mesh/whole_part.h>
 #include <retroforge/output/contact_fields.h>
 #include <retroforge/output/die_pictures.h>
@@ -98,9 +97,7 @@ namespace retroforge
     const TetMesh   &mesh = workpiece.mesh;
     const CellFields cells =
       cell_fields(mesh, workpiece.spaces, workpiece.position, workpiece.W, process_.law);
-    SharedTriangulation triangulation(comm);
-    make_triangulation(mesh, workpiece.X, triangulation);
-    FieldFile<3> picture(triangulation);
+    FieldFile<3> picture(workpiece.X, mesh.cells, comm);
     picture.add_linear("pressure", "MPa", workpiece.W.P);
     picture.add_velocity("velocity", "mm/s", workpiece.W.V, workpiece.spaces);
     if (workpiece.displacement)
@@ -129,9 +126,8 @@ namespace retroforge
     const std::string file  = "die_" + die.name + "_" + (still ? six_digits(0) : suffix) + ".vtu";
     if (!still || stroke == 0.)
     {
-      dealii::Triangulation<2, 3> facets;
-      make_triangulation(die_picture(die, process_.at_stroke(stroke).dies[d].displacement, X), facets);
-      FieldFile<2>(facets).write(directory_ + "/" + file);
+      const TriangleSurface picture = die_picture(die, process_.at_stroke(stroke).dies[d].displacement, X);
+      FieldFile<2>(picture.vertices(), picture.triangles()).write(directory_ + "/" + file);
     }
     return file;
   }

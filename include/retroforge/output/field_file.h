@@ -2,21 +2,22 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/lac/la_parallel_vector.h>
-#include <deal.II/numerics/data_out.h>
+#include <deal.II/base/data_out_base.h>
+#include <deal.II/grid/tria.h>
 
 #include <retroforge/discretization/spaces.h>
 #include <retroforge/element/cell_stress.h>
 
-#include <deque>
-#include <map>
+#include <array>
 #include <string>
+#include <vector>
 
 namespace retroforge
 {
-  /// A picture of a triangulation and fields on it, as deal.II's DataOut writes it: one VTK unstructured grid
-  /// (.vtu, XML, compressed) with one piece for each rank that has cells.
+  /// A picture of tetrahedra (dim = 3) or triangles (2) and fields on them, as deal.II's DataOutBase writes
+  /// it: one VTK unstructured grid (.vtu, XML, compressed) with one piece for each rank that has cells. Its
+  /// patches are filled here: to make degrees of freedom for each picture takes five times as long as all
+  /// else.
   ///
   /// The picture is for the eye: places and values are in single precision; all fields are values at points,
   /// and every cell has points of its own, so that fields which are constant in cells jump between them. With
@@ -25,13 +26,17 @@ namespace retroforge
   class FieldFile
   {
   public:
-    /// @param triangulation  of tetrahedra (dim = 3) or triangles (2) that owns no fields yet; its vertices
-    /// are the nodes of linear fields. It must live as long. On a distributed one every function is
-    /// collective.
+    /// @param X      positions of the nodes [mm]
+    /// @param cells  by their nodes, which all ranks know; those that a rank writes are an equal share
+    /// @param comm   of the ranks that call every function, with all nodes' values
+    FieldFile(const NodalVectors<double>                        &X,
+              const std::vector<std::array<NodeIndex, dim + 1>> &cells,
+              MPI_Comm                                           comm = MPI_COMM_SELF);
+
+    /// The same of a triangulation, shared or serial.
     explicit FieldFile(const dealii::Triangulation<dim, 3> &triangulation);
 
-    /// Fields that are linear in each cell, by their values at the vertices: those of the cells of this rank
-    /// and their neighbours are read.
+    /// Fields that are linear in each cell, by their values at the nodes.
     /// @param name  of letters, digits and underscores     @param unit  empty: none
     void add_linear(const std::string &name, const std::string &unit, const std::vector<double> &values);
     void add_linear(const std::string &name, const std::string &unit, const NodalVectors<double> &values);
@@ -58,49 +63,39 @@ namespace retroforge
     void write(const std::string &file);
 
   private:
-    using Values = dealii::LinearAlgebra::distributed::Vector<double>;
+    using Cells = std::vector<std::array<NodeIndex, dim + 1>>;
 
-    /// DataOut, with names that hold units, which deal.II's own may not, and with tensors of cells.
-    class NamedDataOut : public dealii::DataOut<dim, 3>
+    /// What is written as one array. Values by cell of this rank, point and component; the points of a cell
+    /// are one, its corners, or these and the middles of its edges.
+    struct Array
     {
-    public:
-      std::map<std::string, std::string> units;
-      std::vector<std::string>           cell_tensors;
-
-      /// The cells of this rank in VTK's format; empty where it has none.
-      std::string piece(const dealii::DataOutBase::VtkFlags &flags) const;
-
-    private:
-      using Base = dealii::DataOut<dim, 3>;
-
-      std::string              with_unit(const std::string &name) const;
-      std::vector<std::string> get_dataset_names() const override;
-      std::vector<std::tuple<unsigned int,
-                             unsigned int,
-                             std::string,
-                             dealii::DataComponentInterpretation::DataComponentInterpretation>>
-      get_nonscalar_data_ranges() const override;
+      std::string                                                      name;
+      dealii::DataComponentInterpretation::DataComponentInterpretation kind;
+      unsigned int                                                     n_points, n_components;
+      std::vector<double>                                              values;
     };
 
-    /// The degrees of freedom of fields of a degree with one component or three.
-    const dealii::DoFHandler<dim, 3> &dofs(unsigned int degree, unsigned int n_components);
-
-    /// @param value_at  of a cell, one of its support points and a component
+    /// @param value_at  of a cell, one of its points and a component
     template <typename ValueAt>
-    void add_field(const std::string &name,
-                   const std::string &unit,
-                   unsigned int       degree,
-                   unsigned int       n_components,
-                   const ValueAt     &value_at);
+    void add(const std::string &name,
+             const std::string &unit,
+             unsigned int       n_points,
+             unsigned int       n_components,
+             const ValueAt     &value_at);
 
-    void add_cell_field(const std::string &name, dealii::Vector<double> values);
+    /// At a point of the picture, which may have more points than the array.
+    double value(const Array &array, CellIndex c, unsigned int point, unsigned int component) const;
 
-    const dealii::Triangulation<dim, 3>                              &triangulation_;
-    std::map<std::array<unsigned int, 2>, dealii::DoFHandler<dim, 3>> dofs_; ///< by degree and components
-    std::deque<Values>                                                values_;
-    std::deque<dealii::Vector<double>>                                cell_values_;
-    std::string                                                       planes_;
-    unsigned int                                                      degree_ = 1;
-    NamedDataOut                                                      data_out_;
+    dealii::DataOutBase::Patch<dim, 3> patch(CellIndex c) const;
+    /// The cells of this rank in VTK's format; empty where it has none.
+    std::string piece() const;
+
+    NodalVectors<double> X_;
+    Cells                cells_;
+    MPI_Comm             comm_;
+    CellIndex            first_ = 0, last_ = 0; ///< cells of this rank, without the last
+    std::string          planes_;
+    unsigned int         n_points_ = dim + 1; ///< of a cell
+    std::vector<Array>   arrays_;
   };
 } // namespace retroforge
