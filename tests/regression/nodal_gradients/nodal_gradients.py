@@ -4,7 +4,7 @@
 - of a billet from a Gmsh file and of a die from an STL file, whole and as a sector, with both pairs of elements: what the tables predict of a
   smooth motion is the central difference of runs of the moved files, to 1e-6;
 - the lines of the manual's pages, run as they stand on the tutorial's scenes, predict it too;
-- two ranks find the same;
+- two ranks find the same; of a billet of another height, but for the penalties that follow from it;
 - rows stand in the order of the file's nodes, with their numbers there, and nodes of no tetrahedron have zeros.
 Usage: nodal_gradients.py RETROFORGE"""
 import os
@@ -149,6 +149,20 @@ def parts():
         part(case, case.startswith("sector"))
 
 
+def higher():
+    """Another height, from which other penalties follow."""
+    x, elements = billet_of(False)
+    write_billet("billet.msh", x, elements)
+    flat = ("Die upper/shape=plane", "Die upper/file=", f"Die upper/point=0, 0, {SIDE}")
+    for name, bar, settings in (("flat", 1e-7, flat), ("curved", 1e-4, ())):
+        done = run("gradient", name, *settings, case="whole mini.prm")
+        judge(f"lower under a {name} die: ends", done.returncode == 0, done.stderr)
+        nodes = np.delete(np.loadtxt(f"{name}/sensitivity_nodes.csv", delimiter=",", skiprows=1), 5, axis=0)
+        lower = -0.02 * x * [0, 0, 1]
+        compare(f"lower under a {name} die", predicted(nodes, lower),
+                differences("whole mini.prm", STEP, lambda t: write_billet("billet.msh", x + t * lower, elements), *settings), bar)
+
+
 def on_two_ranks():
     """Of the last part."""
     case = list(CASES)[-1]
@@ -208,4 +222,4 @@ def own_die():
 
 
 if __name__ == "__main__":
-    main({f"{case}.prm": prm(sections) for case, sections in CASES.items()}, (own_mesh, own_die, parts, on_two_ranks))
+    main({f"{case}.prm": prm(sections) for case, sections in CASES.items()}, (own_mesh, own_die, parts, on_two_ranks, higher))
