@@ -35,9 +35,10 @@ namespace retroforge
 
   namespace
   {
+    /// Of places that are equally deep the first, whatever their rounding.
     void keep_deepest(const double depth, const Vec3 &place, const bool is_of_die, Overlap &overlap)
     {
-      if (depth > overlap.depth)
+      if (depth > (1. + 1e-9) * overlap.depth)
         overlap = {depth, place, is_of_die};
     }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 
-// The deepest point of a surface in a die. Proved, with a block of edges 10 and elements of 5: a plane 0.3
-// above its base is reported 0.3 deep; a roof that falls by 1 over 10, whose ridge passes midway between
-// nodes at x = 0 and x = 5, 0.3 above the base, is found at the middle of an edge, 0.3 / sqrt(1.01) = 0.2985
-// deep, and no node deeper than (0.3 - 0.25) / sqrt(1.01) = 0.0498; a die away from the block is not
-// reported.
+// The deepest point of a surface in a die, or of a die in the metal. Proved, with a block of edges 10 and
+// elements of 5: a plane 0.3 above its base is reported 0.3 deep; of a roof that falls by 1 over 10, whose
+// ridge passes midway between nodes at x = 0 and x = 5, 0.3 above the base, the ridge is found, 0.3 from the
+// base, where middles of edges are 0.3 / sqrt(1.01) = 0.2985 deep, and no node deeper than (0.3 - 0.25) /
+// sqrt(1.01) = 0.0498; a die away from the block is not reported.
 
 #include <deal.II/base/mpi.h>
 
