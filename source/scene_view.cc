@@ -21,6 +21,23 @@
 
 namespace retroforge
 {
+  namespace
+  {
+    /// The parameters as understood, as far as they are: what is wrong with them is said by look().
+    std::string echo_of(const CommandLine &command)
+    {
+      std::string echo;
+      try
+      {
+        Parameters::read(command, echo);
+      }
+      catch (const Error &)
+      {
+      }
+      return echo;
+    }
+  } // namespace
+
   SceneView::SceneView(const CommandLine &command, MPI_Comm comm) : command_(command), comm_(comm) {}
 
   int SceneView::run()
@@ -28,7 +45,7 @@ namespace retroforge
     std::string refusal;
     if (dealii::Utilities::MPI::this_mpi_process(comm_) == 0)
     {
-      make_results_folder(command_.output_directory, command_.overwrite);
+      make_results_folder(command_.output_directory, command_.overwrite, echo_of(command_));
       {
         const auto total = timings_.scope("total");
         look();

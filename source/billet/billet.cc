@@ -531,14 +531,12 @@ namespace retroforge
         if (shape.patch.name == patch.name)
           shapes.push_back(shape);
     AssertThrow(shapes.size() == mesh.patches.size(), dealii::ExcInternalError());
-    const Vec3   axis   = parameters.rotation_axis / parameters.rotation_axis.norm();
-    const double angle  = parameters.rotation_angle * M_PI / 180;
-    const auto   turned = [&](const Vec3 &x, const double by) { return by == 0 ? x : rotate(x, axis, by); };
+    const dealii::Tensor<2, 3> R = parameters.rotations.matrix();
     for (Vec3 &x : mesh.X)
-      x = turned(x - parameters.translation, -angle);
+      x = transpose(R) * (x - parameters.translation);
     snap_nodes(mesh, shapes);
     for (Vec3 &x : mesh.X)
-      x = turned(x, angle) + parameters.translation;
+      x = R * x + parameters.translation;
   }
 
   double expected_cells(const BilletParameters &p)
