@@ -49,7 +49,7 @@ namespace retroforge
       {
         const auto total = timings_.scope("total");
         look();
-        draw();
+        attempt([&]() { draw(); });
       }
       summary_.seconds = timings_.seconds("total");
       write_file(command_.output_directory + "/scene.json", summary_.to_json());
@@ -303,20 +303,26 @@ namespace retroforge
   {
     if (parts_->mesh)
       return parts_->X;
-    // Without a mesh: where billet and dies are meant to be.
+    // Without a mesh: where billet and dies are meant to be, and as much to all sides.
     NodalVectors<double>    points;
     const BilletParameters &billet = parts_->parameters.billet;
     const Vec3              base   = billet.base_centre + billet.translation;
-    const double            across = 0.5 * billet.whole_width();
-    for (const double x : {-across, across})
-      for (const double y : {-across, across})
-        for (const double z : {0., billet.whole_height()})
-          points.push_back(base + Vec3({x, y, z}));
+    for (const double z : {0., billet.whole_height()})
+      points.push_back(base + Vec3({0., 0., z}));
     for (const Die &die : parts_->dies)
-      if (die.surface())
-        points.insert(points.end(), die.surface()->vertices().begin(), die.surface()->vertices().end());
+      if (const TriangleSurface *surface = die.surface())
+        points.insert(points.end(), surface->vertices().begin(), surface->vertices().end());
     for (const DieParameters &die : parts_->parameters.dies)
       points.push_back(die.point);
+    const auto [low, high] = bounding_box(points);
+    const double beside =
+      0.5 * std::max(billet.whole_width(), (high - low).norm() > 0. ? (high - low).norm() : 1.);
+    for (unsigned int i = 0; i < 3; ++i)
+      for (const double side : {-beside, beside})
+      {
+        points.push_back(0.5 * (low + high));
+        points.back()[i] += side;
+      }
     return points;
   }
 

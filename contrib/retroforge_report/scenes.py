@@ -20,6 +20,7 @@ SCHEMA = 1
 FROM_ABOVE, FROM_BELOW = View([1.0, -1.6, 0.75]), View([1.0, -1.6, -0.75])
 INSIDE = "#d00000"  # what lies in a die
 BARE = (0.45, 0.52, 0.62, 1.0)  # dies without a billet
+BESIDE = 0.01  # of the way from the middle of the whole part to that of the model
 SHIFT = 0.02  # of the extent: sections pass so far inside of a place on the surface
 TOUCHING = 1e-3  # of the extent: what is less deep in a die touches it
 SMALL = 0.05  # of the extent: overlaps below it are magnified
@@ -106,9 +107,11 @@ class ScenePage:
         if not self.surfaces:
             return
         low, high = self.extents()
-        centre, size = (low + high) / 2, np.linalg.norm(high - low)
+        size = np.linalg.norm(high - low)
+        centre = middle(whole(self.mesh.surface(), self.planes).points if self.mesh else np.array([low, high]))
         overlaps = self.overlaps()
-        marks, through = [], centre
+        # A little beside the middle, where planes of symmetry may lie.
+        marks, through = [], centre + BESIDE * ((low + high) / 2 - centre + 0.1 * (high - low))
         if overlaps:
             die, deepest = overlaps[0]
             marks.append((deepest["place"], f"{millimetres(deepest['distance'])} inside"))

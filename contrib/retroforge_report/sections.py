@@ -107,7 +107,7 @@ class Picture:
         figure, panels = plt.subplots(1, len(shown), figsize=(5.2 * len(shown), 5.2), squeeze=False, layout="constrained")
         for axes, (cut, title, window) in zip(panels[0], shown):
             self._panel(axes, cut, window)
-            axes.set_title(title, fontsize=11)
+            axes.set_title(title, fontsize=11, pad=26)  # arrows of dies may leave the frame
         handles, labels = panels[0, 0].get_legend_handles_labels()
         room = LEGEND_HEIGHT / figure.get_figheight()
         figure.get_layout_engine().set(rect=(0, room, 1, 1 - room))

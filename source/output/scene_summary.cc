@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 namespace retroforge
@@ -82,9 +83,18 @@ namespace retroforge
       return json;
     }
 
+    /// To a few digits, where more say nothing.
+    std::string rounded_text(const double x, const int digits)
+    {
+      std::ostringstream text;
+      text << std::setprecision(digits) << x;
+      return as_text(std::isfinite(x) ? std::stod(text.str()) : x);
+    }
+
     std::string point(const Vec3 &x)
     {
-      return "(" + as_text(x[0]) + ", " + as_text(x[1]) + ", " + as_text(x[2]) + ")";
+      const Vec3 y = x + Vec3(); // no -0
+      return "(" + as_text(y[0]) + ", " + as_text(y[1]) + ", " + as_text(y[2]) + ")";
     }
 
     std::string range(const SceneSummary::Corners &box)
@@ -100,12 +110,13 @@ namespace retroforge
     {
       out << "  billet, " << billet.shape << "\n    " << range(billet.extents) << "\n    " << billet.n_nodes
           << " nodes, " << billet.n_cells << " tetrahedra; edges of the surface from "
-          << as_text(billet.shortest_edge) << " to " << as_text(billet.longest_edge) << " mm, wanted "
-          << as_text(billet.element_size) << " mm; smallest angle " << as_text(billet.smallest_angle)
-          << " degrees\n    volume of the mesh " << as_text(billet.volume) << " mm^3";
+          << rounded_text(billet.shortest_edge, 3) << " to " << rounded_text(billet.longest_edge, 3)
+          << " mm, wanted " << rounded_text(billet.element_size, 3) << " mm; smallest angle "
+          << rounded_text(billet.smallest_angle, 3) << " degrees\n    volume of the mesh "
+          << as_text(billet.volume) << " mm^3";
       if (std::isfinite(billet.volume_of_shape))
         out << ", of the shape " << as_text(billet.volume_of_shape) << " mm^3 ("
-            << as_text(100. * (billet.volume / billet.volume_of_shape - 1.)) << " %)";
+            << rounded_text(100. * (billet.volume / billet.volume_of_shape - 1.), 2) << " %)";
       if (std::isnan(billet.whole.copies))
         out << "; the symmetry planes bound no whole part";
       else if (!billet.whole.is_model())
@@ -117,7 +128,7 @@ namespace retroforge
             << " mm^2)";
       out << '\n';
       for (const SceneSummary::SymmetryPlane &plane : billet.symmetry_planes)
-        out << "    symmetry plane " << plane.name << " through " << point(plane.point) << ", outward normal "
+        out << "    symmetry plane `" << plane.name << "' through " << point(plane.point) << ", outward normal "
             << point(plane.normal) << '\n';
     }
 
@@ -179,10 +190,10 @@ namespace retroforge
     void list(std::ostream &out, const SceneSummary::Estimate &estimate)
     {
       out << "  to expect, by the " << estimate.name << "\n    dies close at " << as_text(estimate.speed)
-          << " mm/s, strain rate " << as_text(estimate.strain_rate) << " /s, flow stress "
-          << as_text(estimate.stress) << " MPa\n    force on the whole part " << as_text(estimate.first_force)
-          << " N where the dies first press, " << as_text(estimate.final_force)
-          << " N after the stroke, to a factor of two\n";
+          << " mm/s, strain rate " << rounded_text(estimate.strain_rate, 3) << " /s, flow stress "
+          << rounded_text(estimate.stress, 3) << " MPa\n    force on the whole part "
+          << rounded_text(estimate.first_force, 3) << " N where the dies first press, "
+          << rounded_text(estimate.final_force, 3) << " N after the stroke, to a factor of two\n";
     }
   } // namespace
 
