@@ -167,23 +167,25 @@ namespace retroforge
 
     std::vector<std::string> in_words(const std::vector<RigidMotion> &motions, const Resistance &resistance)
     {
-      std::vector<std::string> words;
-      std::vector<RigidMotion> candidates, slides = orthonormal(slides_among(motions), 1e-6), along_axes;
+      // Along and about the axes where that is possible.
+      const std::vector<RigidMotion> sliding = orthonormal(slides_among(motions), 1e-6);
+      std::vector<RigidMotion>       candidates, turning;
       for (unsigned int i = 0; i < 3; ++i)
       {
-        RigidMotion unit;
-        unit.slide[i] = 1.;
-        along_axes.push_back(projected(unit, slides));
+        RigidMotion slide, turn;
+        slide.slide[i] = turn.turn[i] = 1.;
+        candidates.push_back(projected(slide, sliding));
+        turning.push_back(projected(turn, motions));
       }
-      along_axes.insert(along_axes.end(), slides.begin(), slides.end());
-      slides = orthonormal(along_axes, 0.05);
-      for (const RigidMotion &slide : slides)
-        words.push_back("slide along " + axis_text(slide.slide));
-      candidates = slides;
-      candidates.insert(candidates.end(), motions.begin(), motions.end());
-      const std::vector<RigidMotion> all = orthonormal(candidates, 0.05);
-      for (std::size_t m = slides.size(); m < all.size(); ++m)
-        words.push_back(turn_text(all[m], slides, resistance));
+      candidates.insert(candidates.end(), sliding.begin(), sliding.end());
+      const std::vector<RigidMotion> slides = orthonormal(candidates, 0.05);
+      turning.insert(turning.begin(), slides.begin(), slides.end());
+      turning.insert(turning.end(), motions.begin(), motions.end());
+      const std::vector<RigidMotion> all = orthonormal(turning, 0.05);
+      std::vector<std::string>       words;
+      for (std::size_t m = 0; m < all.size(); ++m)
+        words.push_back(m < slides.size() ? "slide along " + axis_text(all[m].slide)
+                                          : turn_text(all[m], slides, resistance));
       return words;
     }
   } // namespace

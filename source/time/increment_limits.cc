@@ -9,6 +9,7 @@
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/parts_quality.h>
 #include <retroforge/mesh/self_crossing.h>
+#include <retroforge/mesh/whole_part.h>
 #include <retroforge/solver/rigid_modes.h>
 #include <retroforge/time/increment_limits.h>
 
@@ -46,6 +47,15 @@ namespace retroforge
           flattest = c;
         }
       return X[mesh.cells[flattest][0]];
+    }
+
+    bool touches(const Scene &scene, const NodalVectors<double> &X, const Die &die, const Vec3 &displacement)
+    {
+      const double near = 5e-3 * std::cbrt(volume(scene.mesh.cells, X));
+      for (NodeIndex k = 0; k < X.size(); ++k)
+        if (scene.topology.is_on_surface(k) && die.signed_distance(X[k], displacement) < near)
+          return true;
+      return false;
     }
 
     double face_area(const BoundaryFace &face, const NodalVectors<double> &X)
@@ -197,6 +207,37 @@ namespace retroforge
     }
   } // namespace
 
+  void IncrementLimits::check_held(const Process<double> &process,
+                                   const ForgingState    &state,
+                                   const double           stroke,
+                                   const std::string     &what) const
+  {
+    const Scene             &scene   = state.leg->scene;
+    const Physics<double>    physics = process.at_stroke(stroke);
+    std::vector<std::string> touching;
+    for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      if (touches(scene, state.X, scene.dies[d], physics.dies[d].displacement))
+        touching.push_back(scene.dies[d].name);
+    const Vec3 &way    = process.dies[process.leading_die].velocity;
+    const auto  planes = symmetry_planes(scene.mesh);
+    const bool  is_held =
+      touching.size() > 1 || std::any_of(planes.begin(), planes.end(), [&](const Plane &plane) {
+        return std::abs(plane.normal * way) > 1e-6 * way.norm();
+      });
+    const auto motions = free_rigid_motions(scene, physics, state.X, model_.step.contact.ramp.width);
+    if (is_held && motions.empty())
+      return;
+    throw Error(
+      "Billet",
+      what + ", and " +
+        (touching.empty() ? "no die touches the billet there"
+         : !is_held       ? "die " + touching[0] + " alone touches the billet there"
+                          : "no die holds the billet there: it is free to " + join(motions)),
+      "dies that touch it, their friction, and symmetry planes must hold it in all directions",
+      "let it touch the dies on both sides where the run begins (Billet/translation, the dies' points), "
+      "give them friction, or cut it by symmetry planes");
+  }
+
   void IncrementLimits::stop(const Process<double> &process,
                              const ForgingState    &state,
                              const IncrementRecord &record,
@@ -206,17 +247,9 @@ namespace retroforge
     what.precision(5);
     what << "stops at stroke " << record.stroke << " mm, where even an increment of " << shortest()
          << " mm is too long: " << refusal.reason;
-    // A body that nothing holds has no velocity, however fine its mesh is.
-    if (const auto motions = free_rigid_motions(
-          state.leg->scene, process.at_stroke(record.stroke), state.X, model_.step.contact.ramp.width);
-        !motions.empty())
-      throw Error(
-        "Billet",
-        what.str() + ", and no die holds the billet there, which is free to " + join(motions),
-        "dies that touch it, their friction, and symmetry planes must hold it in all directions",
-        "let the dies touch it where the run begins, give them friction, or cut it by symmetry planes");
     if (refusal.is_full)
       throw_full(record.stroke);
+    check_held(process, state, record.stroke, what.str());
     const char *remedy =
       record.stroke == 0. ? "nothing moved yet, so the stroke is not what is wrong: use values of the usual "
                             "size, penalty and friction above all, more increments, or a better mesh"

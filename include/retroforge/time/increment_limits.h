@@ -102,6 +102,12 @@ namespace retroforge
     /// The shortest increment [mm].
     double shortest() const;
 
+    /// A body that nothing holds has no velocity, however fine its mesh is.  @throws Error  where that is so
+    void check_held(const Process<double> &process,
+                    const ForgingState    &state,
+                    double                 stroke,
+                    const std::string     &what) const;
+
     const ForgingModel    &model_;
     const PressParameters &press_;
     const Remesher        &remesher_;

@@ -12,7 +12,7 @@ from whole_runs import history_of, judge, prm, run, summary_of  # noqa: E402
 
 CLOSING, INCREMENTS, SENSITIVITY = 18.0, 16, 0.139
 SHARED = {"Output": {"fields every": 0, "record": "false"}, "Newton": {"tolerance": "1e-10"}}
-CASE = prm(whole_runs.changed(whole_runs.cube(40, 8, CLOSING, INCREMENTS), SHARED))
+CASE = prm(whole_runs.changed(whole_runs.cube(40, 5, CLOSING, INCREMENTS), SHARED))
 SLOW = prm(whole_runs.changed(whole_runs.cube(40, 20, 4, 4), {**SHARED, "Die lower": {"friction": 0}, "Die upper": {"friction": 0}}))
 
 
