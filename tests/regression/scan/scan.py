@@ -83,10 +83,10 @@ def resumed():
 
 
 def failing_points():
-    """The upper offsets of seven push the die into the billet by 0.27, 0.53 and 0.8 mm; up to 5 % of the cube root of
-    its volume, 0.52 mm, contact pushes it out."""
+    """The upper offsets of seven push the die into the billet by 0.53, 1.07 and 1.6 mm; up to 5 % of the cube root of
+    the whole billet's volume, 0.84 mm, contact pushes it out."""
     found, rows, printed = scan("failing", "Scan/parameter=die upper/offset", "Scan/points=7",
-                                "Scan/range=0.04", "Scan/gradients=false")
+                                "Scan/range=0.08", "Scan/gradients=false")
     objective = found["scans"][0]["objectives"][0]
     judge("failed points are counted", len(found["failed"]) == 2 and "7 points, 2 failed" in printed)
     judge("and say why", all("inside it" in entry["reason"] for entry in found["failed"]) and "inside it" in rows[6]["failure"])
