@@ -116,7 +116,7 @@ namespace retroforge
           << as_text(billet.volume) << " mm^3";
       if (std::isfinite(billet.volume_of_shape))
         out << ", of the shape " << as_text(billet.volume_of_shape) << " mm^3 ("
-            << rounded_text(100. * (billet.volume / billet.volume_of_shape - 1.), 2) << " %)";
+            << as_text(std::round(1e4 * (billet.volume / billet.volume_of_shape - 1.)) / 100.) << " %)";
       if (std::isnan(billet.whole.copies))
         out << "; the symmetry planes bound no whole part";
       else if (!billet.whole.is_model())
@@ -128,8 +128,8 @@ namespace retroforge
             << " mm^2)";
       out << '\n';
       for (const SceneSummary::SymmetryPlane &plane : billet.symmetry_planes)
-        out << "    symmetry plane `" << plane.name << "' through " << point(plane.point) << ", outward normal "
-            << point(plane.normal) << '\n';
+        out << "    symmetry plane `" << plane.name << "' through " << point(plane.point)
+            << ", outward normal " << point(plane.normal) << '\n';
     }
 
     void list_place(std::ostream &out, const SceneSummary::Die &die)
@@ -147,7 +147,8 @@ namespace retroforge
         out << "    sees no part of the billet: all of it is beside the die, behind its rim\n";
     }
 
-    void list_path(std::ostream &out, const SceneSummary::Die &die)
+    /// @param with_billet  whether its place is known
+    void list_path(std::ostream &out, const SceneSummary::Die &die, const bool with_billet)
     {
       if (die.velocity.norm() == 0.)
       {
@@ -156,35 +157,41 @@ namespace retroforge
       }
       out << "    moves at " << point(die.velocity) << " mm/s"
           << (die.leads ? " and leads: the stroke is its path" : "");
-      if (std::isnan(die.first_touch.distance))
-        out << (die.moves_away ? "; moves away from the billet\n"
-                               : "; does not touch the billet, as that stands now, within the stroke\n");
-      else if (!die.touches)
-        out << "; touches the billet first at " << point(die.first_touch.place) << " after a way of "
-            << as_text(die.first_touch.distance) << " mm, at stroke " << as_text(die.stroke_at_touch)
-            << " mm\n";
-      else
-        out << '\n';
+      if (with_billet && !die.touches && !die.overlap)
+      {
+        if (std::isfinite(die.first_touch.distance))
+          out << "; touches the billet first at " << point(die.first_touch.place) << " after a way of "
+              << as_text(die.first_touch.distance) << " mm, at stroke " << as_text(die.stroke_at_touch)
+              << " mm";
+        else
+          out << (die.moves_away ? "; moves away from the billet"
+                                 : "; does not touch the billet, as that stands now, within the stroke");
+      }
+      out << '\n';
     }
 
-    void list(std::ostream &out, const SceneSummary::Die &die)
+    void list(std::ostream &out, const SceneSummary::Die &die, const bool with_billet)
     {
       out << "  die " << die.name << ", " << die.shape << ", friction " << as_text(die.friction) << '\n';
       if (die.extents)
         out << "    " << range(*die.extents) << ", " << die.n_facets << " facets\n";
       else
         out << "    through " << point(die.point) << ", facing " << point(die.facing) << '\n';
-      list_place(out, die);
-      list_path(out, die);
+      if (with_billet)
+        list_place(out, die);
+      list_path(out, die, with_billet);
       if (std::isfinite(die.smallest_size))
         out << "    edges near it are wanted down to " << as_text(die.smallest_size) << " mm\n";
     }
 
     void list(std::ostream &out, const SceneSummary::Press &press)
     {
-      out << "  press\n    stroke " << as_text(press.stroke) << " mm of die " << press.leading_die << " in "
-          << press.increments << " increments of " << as_text(press.stroke / press.increments) << " mm; "
-          << as_text(press.seconds) << " s, " << as_text(press.seconds / press.increments) << " s each\n";
+      out << "  press\n    stroke " << as_text(press.stroke) << " mm of die " << press.leading_die << ", "
+          << as_text(press.seconds) << " s";
+      if (press.increments > 0) // else they follow from the billet
+        out << "; " << press.increments << " increments of " << as_text(press.stroke / press.increments)
+            << " mm, " << as_text(press.seconds / press.increments) << " s each";
+      out << '\n';
     }
 
     void list(std::ostream &out, const SceneSummary::Estimate &estimate)
@@ -238,7 +245,7 @@ namespace retroforge
     if (billet)
       list(out, *billet);
     for (const Die &die : dies)
-      list(out, die);
+      list(out, die, billet.has_value());
     if (press)
       list(out, *press);
     if (estimate)

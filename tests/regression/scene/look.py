@@ -89,7 +89,7 @@ def sound():
     judge("of a die at rest no way is told", "first_touch" not in die_of(scene, "lower"))
     same("press", [scene["press"][key] for key in ("stroke", "increments", "seconds")], [1, 3, 0.01])
     for words in ("1/4 of the part", "symmetry plane `symmetry 1' through (0, 0, 0)", "die lower, plane", "touches the billet at the start", "stands still",
-                  "3 increments of 0.333333 mm", "0.01 s"):
+                  "stroke 1 mm of die upper, 0.01 s; 3 increments of 0.333333 mm, 0.00333333 s each"):
         judge(f"the listing says: {words}", words in done.stdout, done.stdout)
     mesh = vtu.read("scene/scene_billet.vtu")
     gap = mesh.point_data["gap [mm]"]
