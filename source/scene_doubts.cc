@@ -148,6 +148,21 @@ namespace retroforge
              remeshing.smallest_size * edge <= width;
     }
 
+    /// What of remeshing would do so.
+    std::string how_to_refine(const Parameters &parameters, const double width, const double edge)
+    {
+      const RemesherParameters &remeshing = parameters.remeshing;
+      std::string               text;
+      if (remeshing.sizes == "uniform")
+        return text;
+      if (remeshing.when == "never")
+        text += ", or Remeshing/when = quality";
+      if (remeshing.smallest_size * edge > width)
+        text += (text.empty() ? ", or " : " and ") + std::string("Remeshing/smallest size = ") +
+                as_text(rounded_down(width / edge));
+      return text;
+    }
+
     /// Parts of dies that come into the metal between its nodes and the middles of its edges.
     void tell_unseen(const Parameters               &parameters,
                      const Scene                    &scene,
@@ -180,7 +195,7 @@ namespace retroforge
                              ", between nodes: contact does not see it; set " +
                              (parameters.billet.shape == "file" ? "Remeshing" : "Billet") +
                              "/element size = " + as_text(rounded_down(unseen->width)) +
-                             (parameters.remeshing.when == "never" ? ", or Remeshing/when = quality" : ""));
+                             how_to_refine(parameters, unseen->width, edge));
       }
     }
   } // namespace

@@ -64,7 +64,7 @@ def tip_between_nodes():
     # 0.6 deep it is 0.2 in radius, and its sides lean by atan(1/3): 0.4 cos(atan(1/3)) wide, less what its 24 sides cut off.
     width = 0.4 * math.cos(math.atan(1 / 3)) * math.cos(math.pi / 24)
     judge("a tip between nodes is told", done.returncode == 0 and told and abs(float(told[1]) / width - 1) < 0.01, done.stdout + done.stderr)
-    judge("with a size that sees it", told and 0.9 * width < float(told[2]) <= width)
+    judge("with a size that sees it", told and 0.9 * width < float(told[2]) <= width and "or Remeshing/when = quality and" in done.stdout)
     depth = [float(row["depth"]) for row in history_of("out")]
     judge("and how deep it is", len(depth) == 2 and abs(depth[0] - 0.3) < 0.02 and abs(depth[1] - 0.6) < 0.02, str(depth))
     judge("in the summary", summary_of("out")["deepest"]["die"] == "upper" and abs(summary_of("out")["deepest"]["depth"] - 0.6) < 0.02)
