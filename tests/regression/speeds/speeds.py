@@ -38,7 +38,7 @@ def parts_of_one_motion():
             judge(f"{lower} % of the motion by the lower die, {leading} die leads: energy {e / energy - 1:.1e}, force {f / force - 1:.1e} off",
                   abs(e / energy - 1) < 1e-6 and abs(f / force - 1) < 1e-4)
     sharp, _ = work_of("no_layer", *shared(40, "lower"), "Contact/layer=0")
-    judge(f"without a layer: energy {sharp / energy - 1:.1e} off", 1e-6 < abs(sharp / energy - 1) < 0.01)
+    judge(f"without a layer: energy {sharp / energy - 1:.1e} off", 1e-9 < abs(sharp / energy - 1) < 0.01)
 
 
 def derivatives():
