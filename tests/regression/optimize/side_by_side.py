@@ -46,10 +46,10 @@ def groups_of_two():
 def failing():
     """Steps so long that the contour crosses the axis; and a first design one of whose samples, not the first, begins inside the die."""
     settings = ("Optimisation/first step=400", "Optimisation/largest step=400", "Optimisation/iterations=2")
-    optimize("failing", *settings)
+    optimize("failing", *settings, status=2)
     rows = [row for row in rows_of("failing") if row["decision"] == "failed"]
     judge("some fail", rows and all("with dies/friction = " in row["failure"] for row in rows), rows)
-    optimize("failing2", *settings, groups(2), ranks=2)
+    optimize("failing2", *settings, groups(2), ranks=2, status=2)
     judge_same("where designs fail", "failing2", "failing")
     offset = ("Design/parameters=billet/control point 1 r, die upper/offset", "Optimisation/scattered=die upper/offset",
               "Optimisation/scatter range=-1, 3")
