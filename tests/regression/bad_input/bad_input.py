@@ -25,6 +25,12 @@ def msh(nodes, cells, kind=4):
     return block_meshes.msh(nodes, [(kind, 1, cell) for cell in cells])
 
 
+def slender():
+    """A column of 1 by 1 by 10 mm."""
+    points, cells = block_meshes.block((2, 2, 2), lambda corner: (0.5 * corner[0], 0.5 * corner[1], 5.0 * corner[2]))
+    return msh(points, cells)
+
+
 CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, -1, -1)]
 
 
@@ -52,6 +58,7 @@ MESHES = {
     "no_tets": msh(CORNERS[:3], [(0, 1, 2)], kind=2),
     "cube": block_meshes.msh_of_cube(2, 10.0),
     "cube_in_metres": block_meshes.msh_of_cube(2, 0.01),
+    "slender": slender(),
     "garbage": "this is not a mesh\n",
     "step": "ISO-10303-21;\nHEADER;\n",
     "pointer": "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n",
@@ -68,9 +75,9 @@ def objective(name, *pairs):
     return settings(f"Objectives/names={name}", *(f"Objective {name}/{pair}" for pair in pairs))
 
 
-def binary_stl(*facets, announced):
+def binary_stl(*facets, announced, normal=0.0):
     """Facets of nine coordinates."""
-    return b" " * 80 + struct.pack("<I", announced) + b"".join(struct.pack("<12fH", 0, 0, 0, *facet, 0) for facet in facets)
+    return b" " * 80 + struct.pack("<I", announced) + b"".join(struct.pack("<12fH", *[normal] * 3, *facet, 0) for facet in facets)
 
 
 def square(side):
@@ -91,6 +98,7 @@ STLS = {
     "open.stl": OPEN_STL.encode(),
     "half_dropped.stl": binary_stl(*square(30), announced=1),
     "in_metres.stl": binary_stl(*square(0.03), announced=2),
+    "nan_normals.stl": binary_stl(*square(30), announced=2, normal=math.nan),
     "soup.stl": binary_stl(*((0, 0, i, 10, 0, i, 0, 10, i) for i in range(8)), announced=8),
     "of_git_lfs.stl": MESHES["pointer"].encode(),
     "iges.stl": b" " * 72 + b"S      1\n",
@@ -374,6 +382,10 @@ def told():
              r"note: Design/parameters: 'dies/friction' changes nothing, as the friction of all dies is 0"),
             ("regularisation of a linear metal", settings("Material/strain rate sensitivity=1", "Design/parameters=material/e0"),
              r"note: Design/parameters: 'material/e0' changes nothing, as the strain rate sensitivity is 1"),
+            ("a die with normals that are no numbers", settings("Die lower/shape=stl", "Die lower/file=nan_normals.stl"),
+             r"note: the file of die lower: 2 normals are no numbers"),
+            ("a slender mesh", file_mesh("slender") + settings("Press/stroke=0.1", "Press/increments=1"),
+             r"note: faces of the billet's mesh meet at [1-9][.0-9]* degrees, .*Remeshing/first mesh = true"),
             ("metal in a die", settings("Contact/largest depth=0"), r"the surface was up to .* inside die"),
             ("die that nothing touches", settings("Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0"),
              r"warning: no node touched die side")):
