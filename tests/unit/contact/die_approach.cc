@@ -157,8 +157,8 @@ int main(int argc, char **argv)
   bar.radius           = 10.;
   bar.height           = 40.;
   bar.element_size     = 9.;
-  bar.rotation_axis    = Vec3({0., 1., 0.});
-  bar.rotation_angle   = 90.;
+  bar.rotations.axis   = Vec3({0., 1., 0.});
+  bar.rotations.angle  = 90.;
   bar.translation      = Vec3({0., 0., 10.});
   const TetMesh coarse = make_billet(bar, MPI_COMM_WORLD);
   const auto    bulge  = [](const MetalSurface &surface) {

@@ -25,7 +25,7 @@ void print(const std::string           &what,
   billet.size            = Vec3({20., 20., 20.});
   billet.element_size    = 10.;
   billet.symmetry_planes = symmetry_planes;
-  billet.rotation_angle  = angle;
+  billet.rotations.angle = angle;
   const Scene     scene(make_billet(billet, MPI_COMM_WORLD),
                     ElementPair::mini,
                     {Die("lower", Vec3({0., 0., -1.}), Vec3({0., 0., 1.})),
