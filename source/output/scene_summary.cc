@@ -91,18 +91,26 @@ namespace retroforge
       return as_text(std::isfinite(x) ? std::stod(text.str()) : x);
     }
 
+    /// A coordinate; zero where it is rounding beside `scale`.
+    std::string coordinate(const double x, const double scale)
+    {
+      return as_text(std::abs(x) > 1e-9 * scale ? x : 0.);
+    }
+
     std::string point(const Vec3 &x)
     {
-      const Vec3 y = x + Vec3(); // no -0
-      return "(" + as_text(y[0]) + ", " + as_text(y[1]) + ", " + as_text(y[2]) + ")";
+      const double scale = x.norm();
+      return "(" + coordinate(x[0], scale) + ", " + coordinate(x[1], scale) + ", " + coordinate(x[2], scale) +
+             ")";
     }
 
     std::string range(const SceneSummary::Corners &box)
     {
-      std::string text;
+      const double scale = box.first.norm() + box.second.norm();
+      std::string  text;
       for (unsigned int i = 0; i < 3; ++i)
-        text += std::string(i > 0 ? ", " : "") + "xyz"[i] + " " + as_text(box.first[i]) + " to " +
-                as_text(box.second[i]);
+        text += std::string(i > 0 ? ", " : "") + "xyz"[i] + " " + coordinate(box.first[i], scale) + " to " +
+                coordinate(box.second[i], scale);
       return text + " mm";
     }
 
@@ -115,8 +123,12 @@ namespace retroforge
           << rounded_text(billet.smallest_angle, 3) << " degrees\n    volume of the mesh "
           << as_text(billet.volume) << " mm^3";
       if (std::isfinite(billet.volume_of_shape))
-        out << ", of the shape " << as_text(billet.volume_of_shape) << " mm^3 ("
-            << as_text(std::round(1e4 * (billet.volume / billet.volume_of_shape - 1.)) / 100.) << " %)";
+      {
+        out << ", of the shape " << as_text(billet.volume_of_shape) << " mm^3";
+        const double percent = 100. * (billet.volume / billet.volume_of_shape - 1.);
+        if (std::abs(percent) >= 0.005) // what chords of round sides lack
+          out << " (" << as_text(std::round(100. * percent) / 100.) << " %)";
+      }
       if (std::isnan(billet.whole.copies))
         out << "; the symmetry planes bound no whole part";
       else if (!billet.whole.is_model())
