@@ -83,8 +83,9 @@ namespace retroforge
       "penalty",
       penalty,
       "rho, which is then the same in every design; 0 takes it from `penetration`, the material, the speed "
-      "at which the dies close and the billet's height, and gradients by the first three know it. Units: MPa "
-      "s/mm.",
+      "at which the dies close and the height of the billet, and gradients by the first three know it. "
+      "Units: "
+      "MPa s/mm.",
       Double(0.));
     prm.add_parameter(
       "slip regularisation",
