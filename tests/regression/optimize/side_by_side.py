@@ -55,7 +55,7 @@ def failing():
               "Optimisation/scatter range=-1, 3")
     alone = run("optimize", "first", *offset)
     done = start(["mpirun", "-np", "2", *command("optimize", "first2", *offset, groups(2))])
-    message = next((line for line in alone.stderr.splitlines() if "with die upper/offset = 1" in line), "nothing")
+    message = next((line for line in alone.stderr.splitlines() if "with die upper/offset = 2.5" in line), "nothing")
     judge("the first design must succeed, in all samples", alone.returncode == 1 and "cannot forge the design it begins with" in message, alone.stderr)
     judge("which is told once", done.returncode == 1 and done.stderr.count(message) == 1, done.stderr)
 
