@@ -125,7 +125,7 @@ def refused():
     os.makedirs("folder")
     write("folder/small.prm", prm(SMALL))
     for what, settings, expected in (
-            ("a file that is missing", ["Optimisation/operations=smal.prm"], "names 'smal.prm', which is no file"),
+            ("a file that is missing", ["Optimisation/operations=smal.prm"], "names 'smal.prm', which is a file neither in this folder nor in that of the case"),
             ("no parameter of the design", ["Optimisation/operations=strange.prm"], "has no parameter of the design"),
             ("the same name twice", ["Optimisation/operations=small.prm, folder/small.prm"], "another file is called small"),
             ("the case itself", ["Optimisation/operations=case.prm"], "another file is called case"),
