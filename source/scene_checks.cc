@@ -176,6 +176,13 @@ namespace retroforge
                       in_brackets(approach.gap_place),
                     rule,
                     "turn its velocity round");
+      if (!approach.meeting && approach.gap <= touching_distance(scene, X))
+        throw Error(where + "/velocity",
+                    in_brackets(process.dies[lead].velocity) +
+                      " mm/s moves the die along the billet, which it touches at " +
+                      in_brackets(approach.gap_place) + " and does not press",
+                    "a die that moves must press the billet",
+                    "let the velocity point into the billet");
       if (!approach.meeting)
         throw Error(
           where,

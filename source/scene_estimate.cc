@@ -24,7 +24,7 @@ namespace retroforge
     constexpr double largest_friction = 3.;
 
     /// Extents of an STL die or one by measures over that of the billet.
-    constexpr double small_die = 0.1, large_die = 20.;
+    constexpr double small_die = 0.2, large_die = 20.;
 
     /// Over the height of the billet.
     constexpr double least_path = 1e-3, largest_step = 0.1;
