@@ -34,11 +34,15 @@ namespace retroforge
       return text(0) + ", " + text(1) + ", " + text(2);
     }
 
-    std::string how_to_scale(const Parameters &parameters)
+    /// Of a scene in which a file may be in another unit; else nothing.
+    std::string how_to_scale(const Parameters &parameters, const DieParameters &die)
     {
-      return parameters.billet.shape == "file" ? "set `scale' of the billet or of the die: a mesh in metres "
-                                                 "needs 1000 where lengths are in mm"
-                                               : "set the die's `scale', or correct the billet's measures";
+      const bool of_file = die.shape.name == "stl";
+      return parameters.billet.shape == "file"
+               ? std::string("; set `scale' of the billet") + (of_file ? " or of the die" : "") +
+                   ": a mesh in metres needs 1000 where lengths are in mm"
+             : of_file ? "; set the die's `scale', or correct the billet's measures"
+                       : "";
     }
 
     std::string how_to_stand_outside(const Parameters    &parameters,
@@ -51,17 +55,20 @@ namespace retroforge
       const std::string remedy = "move the die by " + in_brackets(move) + " mm, to Die " + die.name +
                                  "/point = " + as_components(die.point + move) +
                                  ", or the billet as far the other way";
+      const std::string turn   = die.shape.name == "stl"
+                                   ? "turn the facets of its file round, whose normals point to the workpiece"
+                                   : "turn the die's facing round: it points from the die to the billet";
+      const bool        is_way = approach.freeing.norm() > 0.;
+      if (is_behind)
+        return turn + (is_way ? ", or, if it is meant to stand on the other side, " + remedy : "");
+      if (!is_way)
+        return "move the die out of the billet" + how_to_scale(parameters, die);
       if (!parameters.design.at.empty() && !die.follows_billet)
         return "set Die " + die.name +
                "/follows billet = true where a billet that grows lifts the die and ends at the same gap, or "
                "stay closer to the nominal design, or " +
                remedy;
-      if (!is_behind)
-        return remedy + "; " + how_to_scale(parameters);
-      return (die.shape.name == "stl"
-                ? "turn the facets of its file round, whose normals point to the workpiece, or "
-                : "turn the die's facing round, or ") +
-             remedy;
+      return remedy + how_to_scale(parameters, die);
     }
 
     double extent(const NodalVectors<double> &X)
@@ -72,15 +79,15 @@ namespace retroforge
 
     void check_sizes(const Parameters &parameters, const Scene &scene, const NodalVectors<double> &X)
     {
-      for (const Die &die : scene.dies)
-        if (die.surface())
-          if (const double ratio = die.surface()->diagonal() / extent(X);
+      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+        if (const TriangleSurface *surface = scene.dies[d].surface())
+          if (const double ratio = surface->diagonal() / extent(X);
               !(ratio >= smallest_die && ratio <= largest_die))
-            throw Error("Die " + die.name,
-                        "its extent is " + as_text(die.surface()->diagonal()) + " mm, that of the billet " +
+            throw Error("Die " + scene.dies[d].name,
+                        "its extent is " + as_text(surface->diagonal()) + " mm, that of the billet " +
                           as_text(extent(X)) + " mm",
                         "a die is a hundredth of the billet at least, and a thousand times as large at most",
-                        how_to_scale(parameters));
+                        "correct the measures" + how_to_scale(parameters, parameters.dies[d]));
     }
 
     void check_depths(const Parameters &parameters, const Scene &scene)
@@ -184,19 +191,21 @@ namespace retroforge
                     "a die that moves must press the billet",
                     "let the velocity point into the billet");
       if (!approach.meeting)
-        throw Error(
-          where,
-          "does not reach the billet, whose extent is " + size + " mm: it starts " + as_text(approach.gap) +
-            " mm away, nearest to " + in_brackets(approach.gap_place) + ", and passes by",
-          rule,
-          "move the die's point or the billet, or correct its velocity; " + how_to_scale(parameters));
+        throw Error(where,
+                    "does not reach the billet, whose extent is " + size + " mm: it starts " +
+                      as_text(approach.gap) + " mm away, nearest to " + in_brackets(approach.gap_place) +
+                      ", and passes by",
+                    rule,
+                    "move the die's point or the billet, or correct its velocity" +
+                      how_to_scale(parameters, parameters.dies[lead]));
       throw Error(where,
                   "does not reach the billet, whose extent is " + size + " mm: it starts " +
                     as_text(approach.gap) + " mm away and meets it after " +
                     as_text(approach.meeting->travel) + " mm, at " + in_brackets(approach.meeting->place) +
                     ", and the stroke is " + as_text(parameters.press.stroke) + " mm",
                   rule,
-                  "lengthen Press/stroke, move the die's point or the billet; " + how_to_scale(parameters));
+                  "lengthen Press/stroke, move the die's point or the billet" +
+                    how_to_scale(parameters, parameters.dies[lead]));
     }
 
     /// Signed distance of each surface node from a die.

@@ -50,12 +50,15 @@ namespace retroforge
         const auto total = timings_.scope("total");
         look();
         attempt([&]() { draw(); });
+        if (!summary_.refusals.empty())
+          summary_.estimate.reset(); // of a forging that cannot be
       }
       summary_.seconds = timings_.seconds("total");
       write_file(command_.output_directory + "/scene.json", summary_.to_json());
-      std::cout << summary_.listing() << "  " << as_text(summary_.seconds) << " s; contrib/report "
-                << command_.output_directory << " draws it\n"
-                << std::flush;
+      std::cout << summary_.listing() << "  looked at in " << as_text(summary_.seconds) << " s";
+      if (summary_.billet || !summary_.dies.empty())
+        std::cout << "; contrib/report " << command_.output_directory << " draws it";
+      std::cout << std::endl;
       if (!summary_.refusals.empty())
         refusal = summary_.refusals.front();
     }
@@ -96,6 +99,7 @@ namespace retroforge
       return;
     const PressParameters &press = parts_->parameters.press;
     summary_.press               = {parts_->leading_die, press.stroke, parts_->seconds, press.increments};
+    summary_.metal               = {parts_->parameters.material.law.K, parts_->parameters.material.law.m};
     describe_dies();
     if (!parts_->mesh)
       return;
@@ -270,7 +274,7 @@ namespace retroforge
       }
       described.touches  = !described.overlap && approach.gap <= touching;
       const double speed = described.velocity.norm();
-      if (approach.meeting && approach.meeting->travel <= speed * seconds + touching)
+      if (!described.overlap && approach.meeting && approach.meeting->travel <= speed * seconds + touching)
       {
         described.first_touch     = {approach.meeting->travel, approach.meeting->place};
         described.stroke_at_touch = approach.meeting->travel / speed / seconds * summary_.press->stroke;

@@ -27,7 +27,8 @@ SMALL = 0.05  # of the extent: overlaps below it are magnified
 
 
 def place(x):
-    return "(" + ", ".join(f"{c:.4g}" for c in x) + ")"
+    size = np.linalg.norm(x)
+    return "(" + ", ".join(f"{c if abs(c) > 1e-9 * size else 0:.4g}" for c in x) + ")"
 
 
 def millimetres(value):
@@ -119,7 +120,7 @@ class ScenePage:
             for die in self.dies:
                 touch = die.get("first_touch") or {}
                 if touch.get("place") and not die["touches"]:
-                    marks.append((touch["place"], f"die {die['name']} after {millimetres(touch['distance'])}"))
+                    marks.append((touch["place"], f"die {die['name']} touches here first, after {millimetres(touch['distance'])}"))
         if marks:
             mark = np.array(marks[0][0], float)
             inwards = centre - mark
@@ -168,8 +169,8 @@ class ScenePage:
             overlap = die.get("overlap")
             if overlap:
                 inside = "a point of it inside the billet" if overlap["of_the_die"] else "inside the die"
-                stands = bad(f"{millimetres(overlap['distance'])} {inside}, at {place(overlap['place'])}; free when the die moves by "
-                             f"{place(overlap['frees'])} mm")
+                frees = f"; free when the die moves by {place(overlap['frees'])} mm" if any(overlap["frees"]) else ""
+                stands = bad(f"{millimetres(overlap['distance'])} {inside}, at {place(overlap['place'])}{frees}")
             elif die["touches"]:
                 stands = f"touches, at {place(die['gap']['place'])}"
             elif die["gap"]["distance"] is None:
@@ -177,7 +178,9 @@ class ScenePage:
             else:
                 stands = f"{millimetres(die['gap']['distance'])} away, nearest to {place(die['gap']['place'])}"
             moves = f"{place(die['velocity'])} mm/s" + (", leads" if die["leads"] else "") if any(die["velocity"]) else "stands still"
-            if not any(die["velocity"]) or die["touches"] or overlap:
+            if die["touches"]:
+                first = "at the start"
+            elif not any(die["velocity"]) or overlap:
                 first = "–"
             elif touch.get("distance") is None:
                 first = "unknown" if not self.billet else "moves away from it" if die.get("moves_away") else "does not within the stroke"
@@ -200,7 +203,9 @@ class ScenePage:
                 ("volume of the mesh [mm³]", number(billet["volume"]))]
         shape = billet.get("volume_of_shape")
         if shape is not None:
-            rows.append(("volume of the shape [mm³]", f"{number(shape)}; the mesh has {100 * (billet['volume'] / shape - 1):+.2g} % of it"))
+            percent = 100 * (1 - billet["volume"] / shape)
+            lacking = f"; the mesh {'lacks' if percent > 0 else 'has more by'} {abs(percent):.2g} %" if abs(percent) >= 0.005 else ""
+            rows.append(("volume of the shape [mm³]", number(shape) + lacking))
         copies = billet["whole"]["copies"]
         if copies is None:
             rows.append(("whole part", "the symmetry planes bound none"))
@@ -229,7 +234,7 @@ class ScenePage:
                                         for when, force in (("where the dies first press", estimate["first_force"]),
                                                             ("after the stroke", estimate["final_force"])) if force is not None
                                         for factor, unit in [readable("N", force)])])
-            self.to.note(f"By the {estimate['name']}, without any forging: to a factor of two.")
+            self.to.note(f"By the {estimate['name']}, without any forging: to a factor of two in open upsetting; closed cavities and flash take several times more.")
 
 
 def middle(points):

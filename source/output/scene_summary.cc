@@ -149,7 +149,9 @@ namespace retroforge
       if (die.overlap)
         out << "    OVERLAPS: " << (die.is_of_die ? "a point of it is " : "the billet is ")
             << as_text(die.overlap->distance) << " mm inside the " << (die.is_of_die ? "billet" : "die")
-            << ", at " << point(die.overlap->place) << "; free when moved by " << point(die.frees) << " mm\n";
+            << ", at " << point(die.overlap->place)
+            << (die.frees.norm() > 0. ? "; free when the die moves by " + point(die.frees) + " mm" : "")
+            << '\n';
       else if (die.touches)
         out << "    touches the billet at the start, at " << point(die.gap.place) << '\n';
       else if (std::isfinite(die.gap.distance))
@@ -168,11 +170,11 @@ namespace retroforge
         return;
       }
       out << "    moves at " << point(die.velocity) << " mm/s"
-          << (die.leads ? " and leads: the stroke is its path" : "");
+          << (die.leads ? ", and the stroke is measured on it" : "");
       if (with_billet && !die.touches && !die.overlap)
       {
         if (std::isfinite(die.first_touch.distance))
-          out << "; touches the billet first at " << point(die.first_touch.place) << " after a way of "
+          out << "; touches the billet first at " << point(die.first_touch.place) << " after "
               << as_text(die.first_touch.distance) << " mm, at stroke " << as_text(die.stroke_at_touch)
               << " mm";
         else
@@ -184,7 +186,8 @@ namespace retroforge
 
     void list(std::ostream &out, const SceneSummary::Die &die, const bool with_billet)
     {
-      out << "  die " << die.name << ", " << die.shape << ", friction " << as_text(die.friction) << '\n';
+      out << "  die " << die.name << ", " << die.shape << ", friction alpha = " << as_text(die.friction)
+          << '\n';
       if (die.extents)
         out << "    " << range(*die.extents) << ", " << die.n_facets << " facets\n";
       else
@@ -194,6 +197,12 @@ namespace retroforge
       list_path(out, die, with_billet);
       if (std::isfinite(die.smallest_size))
         out << "    edges near it are wanted down to " << as_text(die.smallest_size) << " mm\n";
+    }
+
+    void list(std::ostream &out, const SceneSummary::Metal &metal)
+    {
+      out << "  metal, sigma = sqrt3^(m+1) K e^m with K = " << as_text(metal.consistency)
+          << " MPa s^m, m = " << as_text(metal.rate_sensitivity) << '\n';
     }
 
     void list(std::ostream &out, const SceneSummary::Press &press)
@@ -212,7 +221,8 @@ namespace retroforge
           << " mm/s, strain rate " << rounded_text(estimate.strain_rate, 3) << " /s, flow stress "
           << rounded_text(estimate.stress, 3) << " MPa\n    force on the whole part "
           << rounded_text(estimate.first_force, 3) << " N where the dies first press, "
-          << rounded_text(estimate.final_force, 3) << " N after the stroke, to a factor of two\n";
+          << rounded_text(estimate.final_force, 3)
+          << " N after the stroke: to a factor of two in open upsetting, more with flash\n";
     }
   } // namespace
 
@@ -230,6 +240,8 @@ namespace retroforge
     json["dies"] = SceneJson::array();
     for (const Die &die : dies)
       json["dies"].push_back(in_json(die));
+    if (metal)
+      json["metal"] = {{"consistency", metal->consistency}, {"rate_sensitivity", metal->rate_sensitivity}};
     if (press)
       json["press"] = {{"leading_die", press->leading_die},
                        {"stroke", press->stroke},
@@ -258,6 +270,8 @@ namespace retroforge
       list(out, *billet);
     for (const Die &die : dies)
       list(out, die, billet.has_value());
+    if (metal)
+      list(out, *metal);
     if (press)
       list(out, *press);
     if (estimate)

@@ -78,6 +78,11 @@ namespace retroforge
       bool   moves_away      = false;   ///< it would touch the billet if it went back
     };
 
+    struct Metal
+    {
+      double consistency = unknown, rate_sensitivity = unknown; ///< K [MPa s^m], m
+    };
+
     struct Press
     {
       std::string  leading_die;
@@ -101,8 +106,9 @@ namespace retroforge
 
     std::optional<Billet>   billet;
     std::vector<Die>        dies; ///< those that could be made
+    std::optional<Metal>    metal;
     std::optional<Press>    press;
-    std::optional<Estimate> estimate;
+    std::optional<Estimate> estimate;          ///< of a sound scene
     double                  seconds = unknown; ///< that it took to look
 
     /// The text of the file.
