@@ -606,7 +606,7 @@ end
     for (const DieParameters &die : dies)
       names.push_back(die.name);
     if (press.leading_die.empty())
-      throw Error("Dies", "no die moves", "one at least must", "give a die a velocity");
+      throw Error("Dies", "no die moves", "one at least must", "give a die a velocity" + unlisted_dies());
     throw Error("Press/leading die",
                 "there is no die '" + press.leading_die + "'",
                 "the dies are: " + join(names),
@@ -678,6 +678,15 @@ end
         design.names.erase(found);
         without_effect.push_back("Design/parameters: '" + name + "' changes nothing, as " + reason);
       }
+  }
+
+  std::string Parameters::unlisted_dies() const
+  {
+    std::string text;
+    for (const std::string &sentence : without_effect)
+      if (sentence.rfind("section `Die ", 0) == 0)
+        text += "; " + sentence;
+    return text;
   }
 
   Parameters &Parameters::settle(const BilletSize &size)

@@ -273,7 +273,8 @@ namespace retroforge
                     way.str() + ")" +
                     (scene.dies.size() > 1 ? ": no other die stands in its way within the stroke" : ""),
                   "a billet is forged between dies, or a die and a symmetry plane across its way",
-                  "add the die that is missing to Dies/names, or move it into the way (point, facing)");
+                  "add the die that is missing to Dies/names, or move it into the way (point, facing)" +
+                    parameters.unlisted_dies());
     }
 
     /// The first die to touch the billet is one that moves.

@@ -125,6 +125,9 @@ namespace retroforge
     /// A case to start from: all parameters with their meaning, a box between two planes.
     static void print_template(std::ostream &out);
 
+    /// Sections of dies that no list names, as the end of a message: a die that is missing may be there.
+    std::string unlisted_dies() const;
+
     /// Of a run that takes no derivatives: leaves out design parameters that would change nothing.
     void leave_out_idle_parameters();
 
