@@ -5,8 +5,9 @@
 //   (B^T A^-1 B - C) p = beta^2 M p
 // with M the mass matrix of the pressures and v = 0 on the whole boundary of a cube. It must not fall as the
 // mesh is refined. That of P2/P1 is decided by cells at the boundary, few of whose velocities are free, and
-// scatters with the generator's meshes (0.109 to 0.22 on three): those have a bound, and a series of grids must not fall. It begins
-// with five cells to an edge: with three the constant is 0.03. A, B, C are, bubbles condensed,
+// scatters with the generator's meshes (0.109 to 0.22 on three): those have a bound, and a series of grids
+// must not fall. It begins with five cells to an edge: with three the constant is 0.03. A, B, C are, bubbles
+// condensed,
 // - the kernels' blocks for K = m = 1, where A is the energy of 2 eps:eps (P2/P1 has no C);
 // - of the mini element the same with the norm of the gradient instead, in closed form: a bubble b decouples
 // from the linear part and leaves
