@@ -3,6 +3,7 @@
 """The samples of a robust optimisation forged by groups of ranks side by side: bit for bit what one rank finds, with designs that fail, and
 killed and resumed by another number of groups.  Usage: side_by_side.py RETROFORGE"""
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -63,6 +64,7 @@ def failing():
 def killed():
     n_lines = len(text_of("one", "journal.jsonl").splitlines())
     for lines, n in ((2, 2), (n_lines // 2, 1)):
+        shutil.rmtree("killed", ignore_errors=True)  # or its lines would be counted before it begins
         with subprocess.Popen(["mpirun", "-np", "2", *command("optimize", "killed", groups(2), "--overwrite")], env=ENVIRONMENT,
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as running:
             while running.poll() is None and lines_of("killed") < lines:

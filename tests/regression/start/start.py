@@ -70,7 +70,9 @@ def tip_between_nodes():
     judge("in the summary", summary_of("out")["deepest"]["die"] == "upper" and abs(summary_of("out")["deepest"]["depth"] - 0.6) < 0.02)
     done = simulate("cone.prm", "Press/stroke=2", "Press/increments=8")
     force = [float(row["force"]) for row in history_of("out")]
-    judge("where the mesh is refined at the start, it presses", done.returncode == 0 and force[-1] > 100 and "does not see" not in done.stdout,
+    # Indentation takes about three times the flow stress, 3.6 MPa, on the section of the tip, whose radius is a third of its depth.
+    least = 3 * 3.6 * math.pi * (2 / 3) ** 2
+    judge("where the mesh is refined at the start, it presses", done.returncode == 0 and force[-1] > least and "does not see" not in done.stdout,
           done.stdout + done.stderr)
 
 
