@@ -14,22 +14,10 @@
 #include <sstream>
 #include <tuple>
 
+#include "file_bytes.h"
 #include "geometry_test_tools.h"
 
 using namespace retroforge;
-
-std::string bytes_of(const std::string &file)
-{
-  std::ifstream      in(file, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
-
-void write_bytes(const std::string &file, const std::string &bytes)
-{
-  std::ofstream(file, std::ios::binary) << bytes;
-}
 
 std::string replaced(std::string text, const std::string &from, const std::string &to)
 {
