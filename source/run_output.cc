@@ -108,12 +108,12 @@ namespace retroforge
 
   HistoryRow RunOutput::row_of(const IncrementEvent &event)
   {
-    const ForgingState     &state  = event.state;
-    const Scene            &scene  = state.leg->scene;
-    const Ownership        &cells  = scene.partition.cells();
-    const std::vector<Die> &dies   = case_.model.dies;
-    const double            size   = volume(scene.mesh, state.X, cells);
-    const auto              states = case_.process.at_stroke(state.stroke).dies;
+    const ForgingState      &state  = event.state;
+    const Scene             &scene  = state.leg->scene;
+    const ReplicatedEntries &cells  = scene.discretization.cells();
+    const std::vector<Die>  &dies   = case_.model.dies;
+    const double             size   = volume(scene.mesh, state.X, cells);
+    const auto               states = case_.process.at_stroke(state.stroke).dies;
     const Penetration deepest = deepest_point(scene.mesh, scene.topology, dies, states, state.X, case_.comm);
     if (!(deepest.depth <= deepest_.depth))
       deepest_ = {deepest.depth,

@@ -330,7 +330,7 @@ namespace retroforge
 
   SceneEstimate estimate_scene(const Case &at)
   {
-    const Scene scene(at.billet, at.model.element, at.model.dies, at.comm);
+    const Scene scene(at.billet, at.model.discretization, at.model.dies, at.comm);
     return estimate_scene(at.parameters, scene, at.process, at.X_0);
   }
 } // namespace retroforge

@@ -105,7 +105,8 @@ namespace retroforge
       return;
     describe_billet();
     attempt([&]() {
-      const Scene scene(*parts_->mesh, parts_->parameters.discretization.pair(), parts_->dies, MPI_COMM_SELF);
+      const Scene scene(
+        *parts_->mesh, parts_->parameters.discretization.choice(), parts_->dies, MPI_COMM_SELF);
       describe_approaches(scene);
       if (made)
         estimate(scene);
