@@ -3,7 +3,7 @@
 #pragma once
 
 #include <retroforge/adjoint/sweep.h>
-#include <retroforge/parameters.h>
+#include <retroforge/case/parameters.h>
 
 #include <optional>
 
