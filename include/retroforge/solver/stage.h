@@ -2,7 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/contact/contact.h>
+#include <retroforge/contact/contact_areas.h>
+#include <retroforge/contact/interface_law.h>
 #include <retroforge/discretization/field.h>
 #include <retroforge/discretization/field_exchange.h>
 #include <retroforge/element/semi_analytic.h>
