@@ -1,14 +1,179 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/contact/interface_law.h>
+#include <retroforge/contact/norton_friction.h>
+#include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
+
+#include <deque>
 
 namespace retroforge
 {
   namespace
   {
-    bool has_friction(const ContactNode<double> &node)
+    struct NamedLaw
     {
-      return node.Sf * node.alpha != 0.;
+      std::string                         name;
+      std::unique_ptr<const InterfaceLaw> law;
+    };
+
+    /// The laws there are, by the names that parameter files have for them.
+    std::deque<NamedLaw> &interface_laws()
+    {
+      static std::deque<NamedLaw> laws = [] {
+        std::deque<NamedLaw> made;
+        made.push_back({"Norton", std::make_unique<NortonFriction>()});
+        return made;
+      }();
+      return laws;
+    }
+
+    std::vector<std::string> names_of_laws()
+    {
+      std::vector<std::string> names;
+      for (const NamedLaw &known : interface_laws())
+        names.push_back(known.name);
+      return names;
+    }
+  } // namespace
+
+  const InterfaceLaw &interface_law(const unsigned int i)
+  {
+    AssertIndexRange(i, interface_laws().size());
+    return *interface_laws()[i].law;
+  }
+
+  unsigned int find_interface_law(const std::string &name, const std::string &where)
+  {
+    const std::vector<std::string> names = names_of_laws();
+    const auto                     found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+    {
+      const std::string near = nearest_name(name, names, tolerated_edits(name));
+      throw Error(where,
+                  "'" + name + "' is no law of friction",
+                  "there are: " + join(names),
+                  near.empty() ? "name one of these" : "did you mean '" + near + "'?");
+    }
+    return found - names.begin();
+  }
+
+  void add_interface_law(const std::string &name, std::unique_ptr<const InterfaceLaw> law)
+  {
+    Assert(law != nullptr, dealii::ExcMessage("no law"));
+    for (const std::string &known : names_of_laws())
+      AssertThrow(known != name, dealii::ExcMessage("there is a law of friction of this name"));
+    interface_laws().push_back({name, std::move(law)});
+  }
+
+  DieState<double> initial_state(const DieParameters &die)
+  {
+    return {die.velocity,
+            Vec3(),
+            die.friction,
+            {},
+            find_interface_law(die.friction_law, "Die " + die.name + "/friction law")};
+  }
+
+  namespace
+  {
+    /// On a unit of area, without regularisation.
+    struct TypicalSliding
+    {
+      const ContactLaw<double>   sharp;
+      const SlidingPoint<double> point;
+
+      TypicalSliding(const DieState<double>    &die,
+                     const double               slip,
+                     const double               pressure,
+                     const MaterialLaw<double> &metal)
+          : point{1., die.friction, slip * slip, pressure, metal, sharp}
+      {
+      }
+      TypicalSliding(const TypicalSliding &) = delete; // its members refer to each other
+    };
+  } // namespace
+
+  double friction_traction(const DieState<double>    &die,
+                           const double               slip,
+                           const double               pressure,
+                           const MaterialLaw<double> &metal)
+  {
+    return interface_law(die.interface_law).factor(TypicalSliding(die, slip, pressure, metal).point) * slip;
+  }
+
+  bool needs_regularisation(const DieState<double> &die, const MaterialLaw<double> &metal)
+  {
+    return die.friction > 0. &&
+           !std::isfinite(interface_law(die.interface_law).factor(TypicalSliding(die, 0., 1., metal).point));
+  }
+
+  double linear_friction(const DieState<double>    &die,
+                         const double               slip,
+                         const double               pressure,
+                         const MaterialLaw<double> &metal,
+                         const MaterialLaw<double> &linear_metal)
+  {
+    return interface_law(die.interface_law)
+      .linear_coefficient(TypicalSliding(die, slip, pressure, metal).point, linear_metal);
+  }
+
+  double InterfaceLaw::potential_ratio(const SlidingPoint<double> &) const
+  {
+    AssertThrow(false, dealii::ExcMessage("friction without a potential"));
+    return 0.;
+  }
+
+  namespace
+  {
+    template <typename Number>
+    bool has_friction(const ContactNode<Number> &node)
+    {
+      return value_of(node.Sf) * value_of(node.alpha) != 0.;
+    }
+
+    /// Friction at a point, with what it depends on.
+    template <typename Number>
+    struct Friction
+    {
+      const InterfaceLaw        &law;
+      const Vector3<Number>      dv;
+      const SlidingPoint<Number> point;
+      const Number               factor;
+
+      /// @param pressing  the normal force
+      Friction(const ContactNode<Number> &node,
+               const Number              &pressing,
+               const MaterialLaw<Number> &metal,
+               const ContactLaw<Number>  &contact)
+          : law(interface_law(node.interface_law))
+          , dv(slip(node))
+          , point{node.Sf, node.alpha, Number(dv * dv), Number(pressing / node.S), metal, contact}
+          , factor(law.factor(point))
+      {
+      }
+    };
+
+    /// Adds the derivatives, in all but the slip, of a scalar whose derivative in the factor is `factor_bar`,
+    /// and factor times that in its logarithm.
+    void reverse_factor(const Friction<double>    &friction,
+                        const ContactNode<double> &node,
+                        const double               factor_bar,
+                        const double               log_bar,
+                        double                    &h_bar,
+                        ContactNodeBar            &bar)
+    {
+      SlidingBar numbers;
+      friction.law.reverse(friction.point, log_bar, numbers);
+      bar.Sf += log_bar / node.Sf;
+      bar.alpha += numbers.coefficient;
+      add_numbers(numbers.metal, bar.law);
+      add_numbers(numbers.contact, bar.contact);
+      const double pressure_bar = node.active ? factor_bar * friction.law.pressure_slope(friction.point) : 0.;
+      if (pressure_bar != 0.)
+      {
+        h_bar += pressure_bar * friction.point.contact.rho;
+        bar.contact.rho += pressure_bar * approach_excess(node);
+      }
     }
   } // namespace
 
@@ -17,13 +182,14 @@ namespace retroforge
                                 const MaterialLaw<Number> &law,
                                 const ContactLaw<Number>  &contact)
   {
+    const Number    pressing = normal_force(node, contact);
     Vector3<Number> force;
     if (node.active)
-      force += node.n * Number(contact.rho * node.S * approach_excess(node));
-    if (value_of(node.Sf) * value_of(node.alpha) != 0.)
+      force += node.n * pressing;
+    if (has_friction(node))
     {
-      const Vector3<Number> dv = slip(node);
-      force += dv * FrictionLaw<Number>{law, contact}(Number(node.Sf * node.alpha), Number(dv * dv));
+      const Friction<Number> friction(node, pressing, law, contact);
+      force += friction.dv * friction.factor;
     }
     return force;
   }
@@ -33,23 +199,24 @@ namespace retroforge
                         const MaterialLaw<Number> &law,
                         const ContactLaw<Number>  &contact)
   {
-    if (value_of(node.Sf) * value_of(node.alpha) == 0.)
+    if (!has_friction(node))
       return Number(0.);
-    const Vector3<Number> dv  = slip(node);
-    const Number          dv2 = dv * dv;
-    return FrictionLaw<Number>{law, contact}(Number(node.Sf * node.alpha), dv2) * dv2;
+    const Friction<Number> friction(node, normal_force(node, contact), law, contact);
+    return friction.factor * friction.point.slip2;
   }
 
   double contact_potential(const ContactNode<double> &node,
                            const MaterialLaw<double> &law,
                            const ContactLaw<double>  &contact)
   {
-    const double              h   = node.active ? approach_excess(node) : 0.;
-    const Vec3                dv  = slip(node);
-    const double              dv2 = dv * dv;
-    const FrictionLaw<double> friction{law, contact};
-    return 0.5 * contact.rho * node.S * h * h +
-           (has_friction(node) ? friction(node.Sf * node.alpha, dv2) * friction.potential_ratio(dv2) : 0.);
+    const double pressing  = normal_force(node, contact);
+    double       potential = 0.5 * pressing * approach_excess(node);
+    if (has_friction(node))
+    {
+      const Friction<double> friction(node, pressing, law, contact);
+      potential += friction.factor * friction.law.potential_ratio(friction.point);
+    }
+    return potential;
   }
 
   dealii::Tensor<2, 3> contact_tangent(const ContactNode<double> &node,
@@ -61,17 +228,41 @@ namespace retroforge
       tangent += contact.rho * node.S * outer_product(node.n, node.n);
     if (has_friction(node))
     {
-      const Vec3                dv  = slip(node);
-      const double              dv2 = dv * dv;
-      const FrictionLaw<double> friction{law, contact};
-      const double              factor = friction(node.Sf * node.alpha, dv2);
-      tangent -= factor * outer_product(node.n, node.n);
+      const Friction<double> friction(node, normal_force(node, contact), law, contact);
+      tangent -= friction.factor * outer_product(node.n, node.n);
       for (unsigned int i = 0; i < 3; ++i)
-        tangent[i][i] += factor;
-      if (const double slope = friction.slope(dv2); slope != 0.)
-        tangent += factor * slope * outer_product(dv, dv);
+        tangent[i][i] += friction.factor;
+      if (const double slope = friction.law.slip_slope(friction.point); slope != 0.)
+        tangent += friction.factor * slope * outer_product(friction.dv, friction.dv);
+      if (const double slope = node.active ? friction.law.pressure_slope(friction.point) : 0.; slope != 0.)
+        tangent += slope * contact.rho * outer_product(friction.dv, node.n);
     }
     return tangent;
+  }
+
+  namespace
+  {
+    /// That of  weight * normal_force,  without the motion's: derivative in h.
+    double reverse_penalty(const ContactNode<double> &node,
+                           const ContactLaw<double>  &contact,
+                           const double               weight,
+                           ContactNodeBar            &bar)
+    {
+      const double h = approach_excess(node);
+      bar.S += contact.rho * h * weight;
+      bar.contact.rho += node.S * h * weight;
+      return contact.rho * node.S * weight;
+    }
+  } // namespace
+
+  ContactNodeBar reverse_normal_force(const ContactNode<double> &node,
+                                      const ContactLaw<double>  &contact,
+                                      const double               weight)
+  {
+    ContactNodeBar bar;
+    if (node.active)
+      reverse_kinematics(node, Vec3(), reverse_penalty(node, contact, weight, bar), bar);
+    return bar;
   }
 
   ContactNodeBar reverse_contact_force(const ContactNode<double> &node,
@@ -80,26 +271,20 @@ namespace retroforge
                                        const Vec3                &lambda)
   {
     ContactNodeBar bar;
-    double         h_bar = 0.;
+    const double   pressing = normal_force(node, contact);
+    double         h_bar    = 0.;
     if (node.active)
     {
-      const double h = approach_excess(node), lambda_n = lambda * node.n;
-      h_bar           = contact.rho * node.S * lambda_n;
-      bar.S           = contact.rho * h * lambda_n;
-      bar.n           = contact.rho * node.S * h * lambda;
-      bar.contact.rho = node.S * h * lambda_n;
+      h_bar = reverse_penalty(node, contact, lambda * node.n, bar);
+      bar.n = pressing * lambda;
     }
     Vec3 dv_bar;
     if (has_friction(node))
     {
-      const Vec3                dv  = slip(node);
-      const double              dv2 = dv * dv, product = lambda * dv;
-      const FrictionLaw<double> friction{law, contact};
-      const double              factor = friction(node.Sf * node.alpha, dv2);
-      bar.Sf                           = factor * product / node.Sf;
-      bar.alpha                        = factor * product / node.alpha;
-      friction.reverse(dv2, factor * product, bar.law, bar.contact);
-      dv_bar = factor * (lambda + friction.slope(dv2) * product * dv);
+      const Friction<double> friction(node, pressing, law, contact);
+      const double           product = lambda * friction.dv;
+      reverse_factor(friction, node, product, friction.factor * product, h_bar, bar);
+      dv_bar = friction.factor * (lambda + friction.law.slip_slope(friction.point) * product * friction.dv);
     }
     reverse_kinematics(node, dv_bar, h_bar, bar);
     return bar;
@@ -113,14 +298,12 @@ namespace retroforge
     ContactNodeBar bar;
     if (!has_friction(node))
       return bar;
-    const Vec3                dv  = slip(node);
-    const double              dv2 = dv * dv;
-    const FrictionLaw<double> friction{law, contact};
-    const double              factor = weight * friction(node.Sf * node.alpha, dv2);
-    bar.Sf                           = factor * dv2 / node.Sf;
-    bar.alpha                        = factor * dv2 / node.alpha;
-    friction.reverse(dv2, factor * dv2, bar.law, bar.contact);
-    reverse_kinematics(node, factor * (2. + friction.slope(dv2) * dv2) * dv, 0., bar);
+    const Friction<double> friction(node, normal_force(node, contact), law, contact);
+    const double           dv2 = friction.point.slip2, factor = weight * friction.factor;
+    double                 h_bar = 0.;
+    reverse_factor(friction, node, weight * dv2, factor * dv2, h_bar, bar);
+    reverse_kinematics(
+      node, factor * (2. + friction.law.slip_slope(friction.point) * dv2) * friction.dv, h_bar, bar);
     return bar;
   }
 

@@ -26,6 +26,7 @@ namespace retroforge
                               const Linearisation  linearisation)
   {
     const ActiveSet chosen = active.empty() ? stage.decide_active(W) : active;
+    system_.symmetric      = stage.has_potential();
     frames_                = make_frames(scene_, stage.contact, chosen);
     sums_->assemble(stage, W, linearisation);
     pressure_scale_                           = sums_->viscosity_over_edge();
@@ -120,7 +121,7 @@ namespace retroforge
     for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
     {
       const NodeIndex k = velocities_.owned()[local];
-      const Vec3      v = frames_[k].to_frame(r.V[k]);
+      const Vec3      v = frames_[k].to_tests(r.V[k]);
       for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
         momentum2 += std::pow(scale_[3 * k + i] * v[i], 2);
     }
@@ -154,7 +155,8 @@ namespace retroforge
     return result;
   }
 
-  void SaddleMatrix::load(const Field<double> &rhs, la::BlockVector &b) const
+  void
+  SaddleMatrix::load(const Field<double> &rhs, const Transposition transposition, la::BlockVector &b) const
   {
     const Field<double> from       = condensed(rhs);
     double             *momentum   = b.block(0).begin();
@@ -162,7 +164,8 @@ namespace retroforge
     for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
     {
       const NodeIndex k = velocities_.owned()[local];
-      const Vec3      v = frames_[k].to_frame(from.V[k]);
+      const Vec3      v = transposition == Transposition::plain ? frames_[k].to_tests(from.V[k])
+                                                                : frames_[k].to_frame(from.V[k]);
       for (unsigned int i = 0; i < 3; ++i)
         momentum[3 * local + i] = i < frames_[k].n_fixed ? 0. : scale_[3 * k + i] * v[i];
     }
@@ -170,7 +173,10 @@ namespace retroforge
       continuity[local] = pressure_scale_ * from.P[pressures_.owned()[local]];
   }
 
-  void SaddleMatrix::unload(const la::BlockVector &x, const Field<double> &rhs, Field<double> &solution) const
+  void SaddleMatrix::unload(const la::BlockVector &x,
+                            const Field<double>   &rhs,
+                            const Transposition    transposition,
+                            Field<double>         &solution) const
   {
     solution               = Field<double>(scene_.spaces);
     const double *velocity = x.block(0).begin();
@@ -181,7 +187,8 @@ namespace retroforge
       Vec3            v;
       for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
         v[i] = scale_[3 * k + i] * velocity[3 * local + i];
-      solution.V[k] = frames_[k].to_space(v);
+      solution.V[k] =
+        transposition == Transposition::plain ? frames_[k].to_space(v) : frames_[k].from_tests(v);
     }
     for (unsigned int local = 0; local < pressures_.range().n_owned(); ++local)
       solution.P[pressures_.owned()[local]] = pressure_scale_ * pressure[local];
@@ -195,14 +202,18 @@ namespace retroforge
     }
   }
 
-  void SaddleMatrix::load_guess(const Field<double> &guess, la::BlockVector &x) const
+  void SaddleMatrix::load_guess(const Field<double> &guess,
+                                const Transposition  transposition,
+                                la::BlockVector     &x) const
   {
     double *velocity = x.block(0).begin();
     double *pressure = x.block(1).begin();
     for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
     {
       const NodeIndex k = velocities_.owned()[local];
-      const Vec3      v = frames_[k].to_frame(guess.V[k]);
+      const Vec3      v = transposition == Transposition::plain || system_.symmetric
+                            ? frames_[k].to_frame(guess.V[k])
+                            : Vec3(transpose(invert(frames_[k].tests)) * guess.V[k]);
       for (unsigned int i = 0; i < 3; ++i)
         velocity[3 * local + i] = i < frames_[k].n_fixed ? 0. : v[i] / scale_[3 * k + i];
     }

@@ -26,6 +26,14 @@ namespace retroforge
                                      const ContactSet<Number>   &contact,
                                      const NodalVectors<Number> &X);
 
+  /// A third of the surface at a node over the S of its pair: where velocities are quadratic, a vertex has
+  /// only a twelfth of a face.
+  template <typename Number>
+  double surface_over_S(const ContactSet<Number> &contact)
+  {
+    return contact.quadratic ? 4. : 1.;
+  }
+
   /// Pull-back of contact_areas: S_bar, Sf_bar -> X_bar and the ramps of the increment.
   void reverse_contact_areas(const TetMesh              &mesh,
                              const Topology             &topology,

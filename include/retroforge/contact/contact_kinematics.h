@@ -2,8 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/contact/contact_law.h>
 #include <retroforge/contact/contact_search.h>
-#include <retroforge/contact/friction.h>
 
 #include <algorithm>
 #include <cmath>
@@ -135,6 +135,7 @@ namespace retroforge
     Number          alpha;
     bool            active; ///< counts as h > 0
     ApproachLaw     approach;
+    unsigned int    interface_law = 0; ///< of the die (interface_law.h)
   };
 
   /// Speed at which a gap may close: delta/tau, so that what is in reach arrives within tau; with a layer l

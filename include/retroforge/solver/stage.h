@@ -102,6 +102,10 @@ namespace retroforge
     /// Deformation and friction power [mJ/s], this rank's part of the sums.
     std::pair<Number, Number> power(const Field<Number> &W, const ActiveSet &active) const;
 
+    /// Whether the residual is the gradient of a power functional in V, and the Newton matrix symmetric:
+    /// where the friction of all dies is.
+    bool has_potential() const;
+
     /// Which pairs are pressed: those with h > 0, and what they hold (ContactSet::middles_around).
     ActiveSet decide_active(const Field<Number> &W) const;
 
