@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <deal.II/base/data_out_base.h>
+
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/mesh/whole_part.h>
 #include <retroforge/output/contact_fields.h>
@@ -74,6 +76,11 @@ namespace retroforge
       std::snprintf(text, sizeof text, "%06u", number);
       return text;
     }
+
+    std::string fields_file(const unsigned int increment)
+    {
+      return "fields_" + six_digits(increment) + ".vtu";
+    }
   } // namespace
 
   FieldWriter::FieldWriter(const MPI_Comm              comm,
@@ -82,7 +89,7 @@ namespace retroforge
                            const Process<double>      &process,
                            const TetMesh              &billet,
                            const NodalVectors<double> &X_0)
-      : comm_(comm)
+      : is_first_(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
       , directory_(directory)
       , model_(model)
       , process_(process)
@@ -92,12 +99,12 @@ namespace retroforge
   {
   }
 
-  void FieldWriter::write(const MPI_Comm comm, const std::string &file, const Workpiece &workpiece) const
+  void FieldWriter::write(const std::string &file, const Workpiece &workpiece) const
   {
     const TetMesh   &mesh = workpiece.mesh;
     const CellFields cells =
       cell_fields(mesh, workpiece.spaces, workpiece.position, workpiece.W, process_.law);
-    FieldFile<3> picture(workpiece.X, mesh.cells, comm);
+    FieldFile<3> picture(workpiece.X, mesh.cells);
     picture.add_linear("pressure", "MPa", workpiece.W.P);
     picture.add_velocity("velocity", "mm/s", workpiece.W.V, workpiece.spaces);
     if (workpiece.displacement)
@@ -141,7 +148,7 @@ namespace retroforge
     while (!series_.empty() && series_.back().first == time)
       series_.pop_back();
     series_.emplace_back(time, file);
-    if (dealii::Utilities::MPI::this_mpi_process(comm_) != 0)
+    if (!is_first_)
       return;
     for (unsigned int d = 0; d < model_.dies.size(); ++d)
       series_.emplace_back(time, write_die(d, stroke, suffix, X));
@@ -150,21 +157,21 @@ namespace retroforge
     write_file(directory_ + "/fields.pvd", out.str());
   }
 
-  void FieldWriter::add_billet()
+  void FieldWriter::write_billet() const
   {
-    add_billet(comm_);
-  }
-
-  void FieldWriter::add_billet(const MPI_Comm comm)
-  {
-    const std::string          file = "fields_" + six_digits(0) + ".vtu";
     const Spaces               spaces(billet_, Topology(billet_), model_.element);
     const Field<double>        at_rest(spaces);
     const std::vector<double>  zero(billet_.n_nodes(), 0.), strain(billet_.n_cells(), 0.);
     const NodalVectors<double> still(billet_.n_nodes());
     const ContactFields        contact{zero, zero, still};
-    write(comm, file, {billet_, spaces, X_0_, X_0_, at_rest, strain, &still, &contact});
-    add_step(0., file, six_digits(0), X_0_);
+    write(fields_file(0), {billet_, spaces, X_0_, X_0_, at_rest, strain, &still, &contact});
+  }
+
+  void FieldWriter::add_billet()
+  {
+    if (is_first_)
+      write_billet();
+    add_step(0., fields_file(0), six_digits(0), X_0_);
   }
 
   void FieldWriter::follow(const IncrementEvent &event)
@@ -178,15 +185,16 @@ namespace retroforge
 
   void FieldWriter::add(const IncrementEvent &event)
   {
-    const ForgingState &run     = event.state;
-    const Scene        &scene   = run.leg->scene;
-    const SolvedStage  &last    = event.solved.last();
-    const ContactFields contact = contact_fields(last.stage, run.next.W, last.active);
-    const std::string   number = six_digits(run.increments), file = "fields_" + number + ".vtu";
-    write(comm_,
-          file,
-          {scene.mesh, scene.spaces, run.X, last.X, run.next.W, run.strain, &displacement_, &contact});
-    add_step(run.stroke, file, number, run.X);
+    const ForgingState &run   = event.state;
+    const Scene        &scene = run.leg->scene;
+    const SolvedStage  &last  = event.solved.last();
+    if (is_first_)
+    {
+      const ContactFields contact = contact_fields(last.stage, run.next.W, last.active);
+      write(fields_file(run.increments),
+            {scene.mesh, scene.spaces, run.X, last.X, run.next.W, run.strain, &displacement_, &contact});
+    }
+    add_step(run.stroke, fields_file(run.increments), six_digits(run.increments), run.X);
   }
 
   void FieldWriter::add_failed(const ForgingState &state)
@@ -194,9 +202,11 @@ namespace retroforge
     // The increment that failed may have begun with a remeshing, which nobody was told of.
     const auto *displacement = state.remeshed.size() == n_remeshings_ ? &displacement_ : nullptr;
     if (series_.empty())
-      add_billet(MPI_COMM_SELF);
-    write(MPI_COMM_SELF,
-          "failed.vtu",
+    {
+      write_billet();
+      add_step(0., fields_file(0), six_digits(0), X_0_);
+    }
+    write("failed.vtu",
           {state.leg->scene.mesh,
            state.leg->scene.spaces,
            state.X,
