@@ -117,7 +117,7 @@ namespace retroforge
       // Of a triangle's edges the corners are those of a tetrahedron's first three.
       constexpr unsigned int n_edges = dim * (dim + 1) / 2;
       n_points_per_cell_             = dim + 1 + n_edges;
-      std::vector<unsigned int> with_middles;
+      std::vector<int> with_middles;
       for (std::size_t c = 0; c < n_cells_; ++c)
       {
         const auto *corner = &connectivity_[(dim + 1) * c];
