@@ -16,6 +16,10 @@ namespace retroforge
 {
   namespace
   {
+    /// Ends of the edges, in the order of VTK's quadratic tetrahedron.
+    constexpr std::array<std::array<unsigned int, 2>, 6> edge_ends = {
+      {{{0, 1}}, {{1, 2}}, {{2, 0}}, {{0, 3}}, {{1, 3}}, {{2, 3}}}};
+
     template <typename Number>
     constexpr const char *vtk_type = nullptr;
     template <>
@@ -107,22 +111,29 @@ namespace retroforge
   void FieldFile<dim>::add_velocity(const std::string          &name,
                                     const std::string          &unit,
                                     const NodalVectors<double> &values,
-                                    const Spaces               &spaces)
+                                    const MiddleNodes          *middles)
   {
-    AssertDimension(n_nodes_, spaces.n_pressure_nodes());
-    AssertDimension(values.size(), spaces.n_velocity_nodes());
-    if (spaces.edges())
-    {
-      edges_             = spaces.edges()->nodes;
-      n_points_per_cell_ = spaces.n_nodes_per_cell();
-      connectivity_.clear();
-      for (std::size_t c = 0; c < n_cells_; ++c)
-        connectivity_.insert(
-          connectivity_.end(), spaces.velocity_nodes(c), spaces.velocity_nodes(c) + n_points_per_cell_);
-    }
+    if (middles)
+      make_quadratic(*middles);
+    AssertDimension(values.size(), n_nodes_ + edges_.size());
     add(point_data_, name, unit, values.size(), 3, [&](const std::size_t k, const unsigned int component) {
       return values[k][component];
     });
+  }
+
+  template <int dim>
+  void FieldFile<dim>::make_quadratic(const MiddleNodes &middles)
+  {
+    const std::vector<std::int32_t> corners = std::move(connectivity_);
+    edges_                                  = middles.ends();
+    n_points_per_cell_                      = dim + 1 + edge_ends.size();
+    connectivity_.clear();
+    for (auto cell = corners.begin(); cell != corners.end(); cell += dim + 1)
+    {
+      connectivity_.insert(connectivity_.end(), cell, cell + dim + 1);
+      for (const auto &[a, b] : edge_ends)
+        connectivity_.push_back(middles.between(cell[a], cell[b]));
+    }
   }
 
   template <int dim>

@@ -29,14 +29,15 @@ namespace retroforge
   std::vector<NodeFrame>
   make_frames(const Scene &scene, const ContactSet<double> &contact, const ActiveSet &active)
   {
-    std::vector<NodeFrame>    frames(scene.spaces.n_velocity_nodes());
-    std::vector<unsigned int> n_axes(scene.spaces.n_velocity_nodes(), 0);
-    const auto                append = [&](const NodeIndex k, const Vec3 &direction) {
+    const NodeNumbering      &nodes = *scene.discretization.condensed_nodes();
+    std::vector<NodeFrame>    frames(nodes.n_places());
+    std::vector<unsigned int> n_axes(nodes.n_places(), 0);
+    const auto                append = [&](const unsigned int k, const Vec3 &direction) {
       n_axes[k] = append_axis(frames[k].axes, n_axes[k], direction);
     };
-    for (NodeIndex k = 0; k < frames.size(); ++k)
+    for (unsigned int k = 0; k < frames.size(); ++k)
     {
-      for (const Vec3 &direction : scene.spaces.fixed_directions(k))
+      for (const Vec3 &direction : scene.discretization.fixed_directions(k))
         append(k, direction);
       frames[k].n_fixed = n_axes[k];
     }
@@ -48,8 +49,8 @@ namespace retroforge
           if (const ContactPoint &point = contact.pairs[p].point;
               (active[p] != 0) == holds && point.has_own_velocity() == of_nodes)
             for (unsigned int i = 0; i < point.n_velocity_nodes(); ++i)
-              append(point.velocity_node_at(i), contact.projections[p].n);
-    for (NodeIndex k = 0; k < frames.size(); ++k)
+              append(nodes.place(point.velocity_node_at(i)), contact.projections[p].n);
+    for (unsigned int k = 0; k < frames.size(); ++k)
       if (n_axes[k] == 0)
         frames[k].axes = dealii::unit_symmetric_tensor<3>();
       else
@@ -67,6 +68,24 @@ namespace retroforge
             append(k, unit);
         }
       }
+    for (NodeFrame &frame : frames)
+      frame.tests = frame.axes;
     return frames;
+  }
+
+  void choose_tests(const dealii::Tensor<2, 3> &tangent, NodeFrame &frame)
+  {
+    if (frame.n_fixed == 3)
+      return;
+    unsigned int p = frame.n_fixed;
+    for (unsigned int i = p + 1; i < 3; ++i)
+      if (tangent[i][i] > tangent[p][p])
+        p = i;
+    for (unsigned int i = frame.n_fixed; i < 3; ++i)
+      if (const double difference = tangent[i][p] - tangent[p][i]; difference != 0.)
+      {
+        frame.tests[i] -= difference / tangent[p][p] * frame.axes[p];
+        frame.identity = false;
+      }
   }
 } // namespace retroforge

@@ -2,7 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/discretization/spaces.h>
+#include <retroforge/core/types.h>
+#include <retroforge/discretization/middle_nodes.h>
 #include <retroforge/element/cell_stress.h>
 
 #include <array>
@@ -34,12 +35,13 @@ namespace retroforge
     void add_linear(const std::string &name, const std::string &unit, const std::vector<double> &values);
     void add_linear(const std::string &name, const std::string &unit, const NodalVectors<double> &values);
 
-    /// A velocity of these spaces, linear or quadratic as they are; bubbles are not shown.
-    /// @param values  at the velocity nodes
+    /// A velocity that is linear, or quadratic with nodes in the middles of edges; bubbles are not shown.
+    /// @param values   at the velocity nodes
+    /// @param middles  null where it is linear
     void add_velocity(const std::string          &name,
                       const std::string          &unit,
                       const NodalVectors<double> &values,
-                      const Spaces               &spaces);
+                      const MiddleNodes          *middles);
 
     /// Fields that are constant in each cell. Tensors get nine components, row by row.
     void add_constant(const std::string &name, const std::string &unit, const std::vector<double> &values);
@@ -72,6 +74,9 @@ namespace retroforge
              std::size_t         n,
              unsigned int        n_components,
              const ValueAt      &value_at);
+
+    /// The middles of the edges become points.
+    void make_quadratic(const MiddleNodes &middles);
 
     /// Nodal values have their means in the middles of the edges where these are points.
     void write_at_points(std::ostream &out, const Array &array) const;

@@ -56,6 +56,7 @@ namespace retroforge
       Vec3                   velocity;      ///< [mm/s]
       Vec3                   travel;        ///< over the stroke [mm]
       double                 friction      = 0.;
+      std::string            friction_name = "alpha"; ///< of the coefficient in its law
       bool                   leads         = false;
       double                 smallest_size = unknown; ///< of the edges wanted near it [mm]
 

@@ -20,7 +20,7 @@ namespace retroforge
 
     /// Solution of the uncondensed system, or of the transposed one, for the right-hand side rhs (owned
     /// entries), to `tolerance` relative to the scaled right-hand side. Returns the number of Krylov
-    /// iterations (0 for a direct solve). A rank gets what it works with (FieldExchange).
+    /// iterations (0 for a direct solve). A rank gets its own entries and those it reads.
     /// @param guesses  fields, like the solutions of earlier systems, the best combination of which is the
     /// start
     unsigned int solve(const Field<double>              &rhs,
@@ -39,7 +39,7 @@ namespace retroforge
 
     /// Of a right-hand side as solve_derivative() sees it, scaled, without bubbles and penalised rows: what
     /// its tolerance is relative to.
-    double norm_of_derivative(const Field<double> &rhs) const;
+    double norm_of_derivative(const Field<double> &rhs, Transposition transposition) const;
 
     /// Forget the preconditioner: the next solve makes a new one.
     void reset() { solver_.reset(); }
@@ -52,7 +52,8 @@ namespace retroforge
 
   private:
     /// The system's vectors of fields.
-    std::vector<la::BlockVector> starts_from(const std::vector<Field<double>> &guesses) const;
+    std::vector<la::BlockVector> starts_from(const std::vector<Field<double>> &guesses,
+                                             Transposition                     transposition) const;
 
     Timings     &timings_;
     SaddleMatrix matrix_;

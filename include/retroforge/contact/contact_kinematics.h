@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/contact/contact_law.h>
+#include <retroforge/contact/contact_search.h>
+
+#include <algorithm>
+#include <cmath>
+
+/// @file
+/// Gaps, normals and ramps of the points that contact looks at, and the speeds at which gaps close.
+///
+/// For a point against a die, its position and velocity means of its nodes' (ContactPoint):  u = V_k - v_die,
+/// h = u·n - a(delta),  a = delta/tau or, with a layer l, l/tau asinh(delta/l),  dv = u - (u·n) n.
+/// A node held off the die by an edge that touches counts as touching.
+///
+/// Uniform pressure does not load the vertices of a quadratic velocity: whether one is pressed would be
+/// decided by the last digits. So one is pressed, too, where the middles of all its surface edges are. On
+/// curved dies the gaps are those that flat faces can close (level_gaps.h).
+///
+/// What belongs to the increment (delta, n, w, tau) is found once at X_i and kept for all its stages:
+/// ContactSet. What belongs to a stage, the areas, is computed from the stage's positions (contact_areas.h).
+namespace retroforge
+{
+  /// How fast a gap closes, beyond its time tau.
+  struct ApproachLaw
+  {
+    double layer = 0.; ///< of the approach speed [mm]; 0: none
+    double part  = 1.; ///< of a whole increment, where it was cut
+
+    ApproachLaw(const double layer = 0., const double part = 1.) : layer(layer), part(part) {}
+  };
+
+  /// What of the numerics stands in an increment's equations of contact. It is recorded with the increment,
+  /// since a run may go on with other numerics: the backward sweep and the replay use what was used.
+  struct ContactNumerics
+  {
+    double       approach = 1.; ///< approach time in increments: tau = approach * dt
+    double       layer    = 0.; ///< of the approach speed [mm]
+    double       step     = 0.; ///< stroke of a whole increment [mm]
+    FrictionRamp ramp;
+    double       edge_stiffness = 1.; ///< of edges' penalty over the nodes'
+
+    /// Of an increment of a given stroke.
+    ApproachLaw approach_law(const double stroke) const
+    {
+      return {layer, step > 0. ? std::min(1., stroke / step) : 1.};
+    }
+  };
+
+  /// An edge of the surface, whose ends and middle are in reach of one curved die.
+  struct Chord
+  {
+    unsigned int                middle;
+    std::array<unsigned int, 2> ends;   ///< entries in ContactSet::pairs, as the middle's
+    std::array<unsigned int, 2> images; ///< how often it stands at each end in the whole
+  };
+
+  /// Contact as found at the start of an increment.
+  template <typename Number>
+  struct ContactSet
+  {
+    struct Face
+    {
+      unsigned int                face;   ///< index into TetMesh::faces
+      std::array<unsigned int, 3> points; ///< its corners' entries in `pairs`
+      Number                      weight; ///< product of the three ramps
+    };
+
+    std::vector<ContactPair>        pairs;
+    std::vector<Projection<Number>> projections; ///< of each pair, at X_i
+    /// w(delta) of each pair; of a node, where edges at it may touch in its place, 1 - (1 - w) product (1 -
+    /// w_edge).
+    std::vector<Number> ramps;
+    /// (pair of a node, pair of an edge at it) of this product's factors.
+    std::vector<std::array<unsigned int, 2>> touched_by_edges;
+    /// Faces or, where velocities are quadratic, the four equal triangles that the middles of its edges cut
+    /// each into.
+    std::vector<Face> friction_faces;
+    /// Where velocities are quadratic: of each pair of a vertex, the pairs of its surface edges' middles, if
+    /// all of them are in reach of its die, and the die is smooth there; else, and of middles, none.
+    std::vector<std::vector<unsigned int>> middles_around;
+    /// Where velocities are quadratic: edges at a curved die, and all gaps before they were levelled [mm].
+    std::vector<Chord>  chords;
+    std::vector<Number> own_gaps;
+    bool                quadratic = false;
+    Number              tau       = 1.; ///< approach time [s]
+    ApproachLaw         approach;
+    double              edge_stiffness = 1.; ///< of edges' penalty over the nodes'
+  };
+
+  /// Derivatives in the increment's data: what ContactSet depends on is filled in later, by
+  /// reverse_contact_set.
+  struct ContactSetBar
+  {
+    std::vector<double> delta, ramp;
+    std::vector<Vec3>   n;
+
+    explicit ContactSetBar(const std::size_t n_pairs) : delta(n_pairs, 0.), ramp(n_pairs, 0.), n(n_pairs) {}
+  };
+
+  /// How points approach the dies in an increment, and where friction sets in.
+  template <typename Number>
+  struct ContactApproach
+  {
+    FrictionRamp ramp;
+    Number       tau; ///< approach time [s]
+    ApproachLaw  law            = {};
+    double       edge_stiffness = 1.; ///< of edges' penalty over the nodes'
+  };
+
+  /// Gaps, normals and ramps of given pairs. Collective: each rank projects its share of them.
+  template <typename Number>
+  ContactSet<Number> make_contact_set(const ContactView<Number>      &view,
+                                      const std::vector<ContactPair> &pairs,
+                                      const ContactApproach<Number>  &approach);
+
+  /// Pull-back of make_contact_set: adds to X_bar, to the dies' displacements, and to vertices where there is
+  /// an entry for each.
+  void reverse_contact_set(const ContactView<double>     &view,
+                           const ContactSet<double>      &contact,
+                           const FrictionRamp            &ramp,
+                           const ContactSetBar           &bar,
+                           NodalVectors<double>          &X_bar,
+                           std::vector<DieState<double>> &dies_bar);
+
+  /// One point with all that its force depends on.
+  template <typename Number>
+  struct ContactNode
+  {
+    Vector3<Number> u; ///< V - v_die
+    Vector3<Number> n;
+    Number          delta, tau, S, Sf;
+    Number          alpha;
+    bool            active; ///< counts as h > 0
+    ApproachLaw     approach;
+    unsigned int    interface_law = 0; ///< of the die (interface_law.h)
+  };
+
+  /// Speed at which a gap may close: delta/tau, so that what is in reach arrives within tau; with a layer l
+  ///   l/tau A,  A = asinh(delta/l),
+  /// the same near the die, but flatter where a free node meets it. The force then sets in gradually, and the
+  /// energy is smoother in the design, at less delay than a longer tau costs.
+  ///
+  /// What is inside a die comes out of it at no more than 2 l in a whole increment, and that part of it in
+  /// one that was cut:  A -> A (1 + (A / (2 part))^2)^(-1/2)  for delta < 0. Without that bound a shorter
+  /// increment would throw it out so much faster, and however short it is, elements would be turned over.
+  template <typename Number>
+  Number approach_speed(const Number &delta, const Number &tau, const ApproachLaw &law)
+  {
+    using std::log;
+    using std::sqrt;
+    if (law.layer == 0.)
+      return delta / tau;
+    const Number s = delta / law.layer;
+    if (value_of(s) >= 0.)
+      return law.layer / tau * log(Number(sqrt(Number(1. + s * s)) + s));
+    const Number A = log(Number(sqrt(Number(1. + s * s)) - s)), a = A * (1. / (2. * law.part));
+    return -law.layer / tau * A / sqrt(Number(1. + a * a));
+  }
+
+  /// Its derivative in delta.
+  inline double approach_slope(const double delta, const double tau, const ApproachLaw &law)
+  {
+    if (law.layer == 0.)
+      return 1. / tau;
+    const double s = delta / law.layer, slope = 1. / (tau * std::sqrt(1. + s * s));
+    if (s >= 0.)
+      return slope;
+    const double a = std::asinh(-s) / (2. * law.part);
+    return slope / std::pow(1. + a * a, 1.5);
+  }
+
+  /// The gap whose approach speed is `speed`, which is positive: the reverse function.
+  inline double approach_distance(const double speed, const double tau, const ApproachLaw &law)
+  {
+    return law.layer == 0. ? speed * tau : law.layer * std::sinh(speed * tau / law.layer);
+  }
+
+  template <typename Number>
+  Number approach_excess(const ContactNode<Number> &node)
+  {
+    return node.u * node.n - approach_speed(node.delta, node.tau, node.approach);
+  }
+
+  /// Velocity along the die [mm/s].
+  template <typename Number>
+  Vector3<Number> slip(const ContactNode<Number> &node)
+  {
+    return node.u - node.n * Number(node.u * node.n);
+  }
+
+  /// Derivatives of a scalar of one node.
+  struct ContactNodeBar
+  {
+    Vec3   u, n;
+    double delta = 0., tau = 0., S = 0., Sf = 0., alpha = 0.;
+
+    MaterialLaw<double> law;
+    ContactLaw<double>  contact;
+  };
+
+  /// Adds the derivatives in u, n, delta and tau of a scalar whose derivatives in dv and h are given.
+  void
+  reverse_kinematics(const ContactNode<double> &node, const Vec3 &dv_bar, double h_bar, ContactNodeBar &bar);
+} // namespace retroforge
