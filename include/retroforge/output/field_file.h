@@ -5,7 +5,7 @@
 #include <retroforge/core/types.h>
 #include <retroforge/discretization/middle_nodes.h>
 #include <retroforge/element/cell_stress.h>
-#include <>
+#include <retroforge/mesh/tet_mesh.h>
 
 #include <array>
 #include <cstdint>
