@@ -4,6 +4,7 @@
 #include <deal.II/base/utilities.h>
 #include <deal.II/grid/reference_cell.h>
 
+#include <retroforge/element/cell_geometry.h>
 #include <retroforge/output/field_file.h>
 #include <retroforge/output/safe_file.h>
 
@@ -16,10 +17,6 @@ namespace retroforge
 {
   namespace
   {
-    /// Ends of the edges, in the order of VTK's quadratic tetrahedron.
-    constexpr std::array<std::array<unsigned int, 2>, 6> edge_ends = {
-      {{{0, 1}}, {{1, 2}}, {{2, 0}}, {{0, 3}}, {{1, 3}}, {{2, 3}}}};
-
     template <typename Number>
     constexpr const char *vtk_type = nullptr;
     template <>
@@ -124,15 +121,17 @@ namespace retroforge
   template <int dim>
   void FieldFile<dim>::make_quadratic(const MiddleNodes &middles)
   {
+    // A triangle's edges are the first three of a tetrahedron's.
+    constexpr unsigned int          n_edges = dim * (dim + 1) / 2;
     const std::vector<std::int32_t> corners = std::move(connectivity_);
     edges_                                  = middles.ends();
-    n_points_per_cell_                      = dim + 1 + edge_ends.size();
+    n_points_per_cell_                      = dim + 1 + n_edges;
     connectivity_.clear();
     for (auto cell = corners.begin(); cell != corners.end(); cell += dim + 1)
     {
       connectivity_.insert(connectivity_.end(), cell, cell + dim + 1);
-      for (const auto &[a, b] : edge_ends)
-        connectivity_.push_back(middles.between(cell[a], cell[b]));
+      for (unsigned int e = 0; e < n_edges; ++e) // in VTK's order, too
+        connectivity_.push_back(middles.between(cell[tet_edge_corners[e][0]], cell[tet_edge_corners[e][1]]));
     }
   }
 
