@@ -219,6 +219,20 @@ namespace retroforge
       });
     }
 
+    /// Planes on whose inner side all vertices of a die stand.
+    std::vector<std::string>
+    planes_beside(const TetMesh &mesh, const TriangleSurface &surface, const Vec3 &displacement)
+    {
+      std::vector<std::string> names;
+      for (const Patch &patch : mesh.patches)
+        if (const auto &plane = patch.symmetry;
+            plane && std::all_of(surface.vertices().begin(), surface.vertices().end(), [&](const Vec3 &x) {
+              return (x + displacement - plane->point) * plane->normal < -surface.rounding();
+            }))
+          names.push_back(patch.name);
+      return names;
+    }
+
     SceneSummary::Corners corners_of(NodalVectors<double> X, const Vec3 &displacement)
     {
       for (Vec3 &x : X)
@@ -278,7 +292,11 @@ namespace retroforge
       described.friction_name = interface_law(state.interface_law).coefficient().name;
       described.leads         = die.name == parts_->leading_die;
       if (die.surface())
+      {
         described.extents = corners_of(die.surface()->vertices(), state.displacement);
+        if (parts_->mesh)
+          described.mirrored_by = planes_beside(*parts_->mesh, *die.surface(), state.displacement);
+      }
       summary_.dies.push_back(std::move(described));
     }
   }

@@ -110,27 +110,29 @@ namespace retroforge
                                     const NodalVectors<double> &values,
                                     const MiddleNodes          *middles)
   {
-    AssertDimension(values.size(), n_nodes_ + (middles ? middles->size() : 0));
     if (middles)
-    {
-      edges_             = middles->ends();
-      // Of a triangle's edges the corners are those of a tetrahedron's first three.
-      constexpr unsigned int n_edges = dim * (dim + 1) / 2;
-      n_points_per_cell_             = dim + 1 + n_edges;
-      std::vector<int> with_middles;
-      for (std::size_t c = 0; c < n_cells_; ++c)
-      {
-        const auto *corner = &connectivity_[(dim + 1) * c];
-        with_middles.insert(with_middles.end(), corner, corner + dim + 1);
-        for (unsigned int e = 0; e < n_edges; ++e)
-          with_middles.push_back(
-            middles->between(corner[tet_edge_corners[e][0]], corner[tet_edge_corners[e][1]]));
-      }
-      connectivity_ = std::move(with_middles);
-    }
+      make_quadratic(*middles);
+    AssertDimension(values.size(), n_nodes_ + edges_.size());
     add(point_data_, name, unit, values.size(), 3, [&](const std::size_t k, const unsigned int component) {
       return values[k][component];
     });
+  }
+
+  template <int dim>
+  void FieldFile<dim>::make_quadratic(const MiddleNodes &middles)
+  {
+    // A triangle's edges are the first three of a tetrahedron's.
+    constexpr unsigned int          n_edges = dim * (dim + 1) / 2;
+    const std::vector<std::int32_t> corners = std::move(connectivity_);
+    edges_                                  = middles.ends();
+    n_points_per_cell_                      = dim + 1 + n_edges;
+    connectivity_.clear();
+    for (auto cell = corners.begin(); cell != corners.end(); cell += dim + 1)
+    {
+      connectivity_.insert(connectivity_.end(), cell, cell + dim + 1);
+      for (unsigned int e = 0; e < n_edges; ++e) // in VTK's order, too
+        connectivity_.push_back(middles.between(cell[tet_edge_corners[e][0]], cell[tet_edge_corners[e][1]]));
+    }
   }
 
   template <int dim>

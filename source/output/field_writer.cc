@@ -243,7 +243,7 @@ namespace retroforge
     const LastSolution &solution       = state.solution.V.empty() ? at_rest : state.solution;
     write("failed.vtu",
           {state.leg->scene.mesh,
-           state.leg->scene.discretization.middles(),
+           discretization.middles(),
            state.X,
            state.X,
            solution.V,

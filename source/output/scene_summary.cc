@@ -68,7 +68,8 @@ namespace retroforge
                         {"leads", die.leads},
                         {"smallest_size", die.smallest_size},
                         {"gap", in_json(die.gap)},
-                        {"touches", die.touches}};
+                        {"touches", die.touches},
+                        {"mirrored_by", die.mirrored_by}};
       if (die.touches)
         json["contact_area"] = die.contact_area;
       if (die.overlap)
@@ -208,6 +209,9 @@ namespace retroforge
         out << "    " << range(*die.extents) << ", " << die.n_facets << " facets\n";
       else
         out << "    through " << point(die.point) << ", facing " << point(die.facing) << '\n';
+      for (const std::string &plane : die.mirrored_by)
+        out << "    all of it on one side of plane `" << plane
+            << "': the whole part has its mirror image, too, as another die\n";
       if (with_billet)
         list_place(out, die);
       list_path(out, die, with_billet);

@@ -5,6 +5,7 @@
 #include <retroforge/core/types.h>
 #include <retroforge/discretization/middle_nodes.h>
 #include <retroforge/element/cell_stress.h>
+#include <retroforge/mesh/tet_mesh.h>
 
 #include <array>
 #include <cstdint>
@@ -74,6 +75,9 @@ namespace retroforge
              std::size_t         n,
              unsigned int        n_components,
              const ValueAt      &value_at);
+
+    /// The middles of the edges become points.
+    void make_quadratic(const MiddleNodes &middles);
 
     /// Nodal values have their means in the middles of the edges where these are points.
     void write_at_points(std::ostream &out, const Array &array) const;

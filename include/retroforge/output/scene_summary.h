@@ -65,6 +65,9 @@ namespace retroforge
         double distance = unknown; ///< [mm]
         Vec3   place;              ///< of the billet, at the start [mm]
       };
+      /// Planes of symmetry on whose inner side all of it stands: the whole part has its images beside it.
+      std::vector<std::string> mirrored_by;
+
       /// The nearest point of the billet, at the start.
       Place  gap;
       bool   touches      = false;

@@ -133,6 +133,10 @@ def gaps():
     same("gap of a tip above the middle of a face", upper["gap"]["distance"], 2.5, 1e-6)
     same("its way", upper["first_touch"]["distance"], 2.5, 1e-6)
     same("its place", upper["first_touch"]["place"], [1.5, 2, 10], 1e-5)
+    judge("it stands on the planes of symmetry", upper["mirrored_by"] == [], upper)
+    done, scene = look("tip beside a plane", *pyramid(12.5, ["Die upper/point=3, 0, 12.5"]), "Press/stroke=4")
+    judge("beside one its image is another die", die_of(scene, "upper")["mirrored_by"] == ["symmetry 1"]
+          and "all of it on one side of plane `symmetry 1'" in done.stdout, done.stdout)
     judge("extents of a surface", near(upper["extents"], [[-2.5, -2, 12.5], [5.5, 6, 16.5]], 1e-6) and upper["facets"] == 4, upper)
 
     done, scene = look("two dies that move", "Die upper/point=0, 0, 13", "Die lower/point=0, 0, -1", "Die lower/velocity=0, 0, 50",

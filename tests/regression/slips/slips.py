@@ -61,8 +61,8 @@ WARNED = {
                                        "Die upper/point"),
     "punch off the symmetry planes": (settings("Die upper/shape=punch", "Die upper/point=0, -6, 40", "Die upper/Punch/radius=10"),
                                       "Die upper/point"),
-    "punch beyond a symmetry plane": (settings("Die upper/shape=punch", "Die upper/point=8, -22, 40", "Die upper/Punch/radius=10"),
-                                      "Die upper/point"),
+    "die beyond a symmetry plane": (settings("Dies/names=lower, upper, beside", "Die beside/shape=punch", "Die beside/facing=0, 0, -1",
+                                             "Die beside/point=8, -22, 40", "Die beside/Punch/radius=10"), "Die beside/point"),
     "die in inches": (stl("plate_in_inches.stl"), "Die lower/scale"),
     "die scaled to inches twice": (stl("plate.stl", "Die lower/scale=25.4"), "Die lower/scale"),
 }
