@@ -287,7 +287,8 @@ namespace retroforge
     // A recorded active set comes with its solution.
     const bool        decides = frozen.empty() && !linear;
     std::vector<char> held;
-    if (decides && !from_rest)
+    // Friction that follows the pressure needs to know it from the start.
+    if (decides && (!from_rest || !stage.has_potential()))
       held = hold_on_dies(stage, W, pressed);
     const double speed = volume_and_speed(stage).second;
     settle_bubbles_in_reach(stage, speed, W);

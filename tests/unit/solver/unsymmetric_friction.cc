@@ -41,7 +41,7 @@ namespace
 
     static std::vector<Die> make_dies()
     {
-      const Vec3 down({0.05, -0.08, -1.});
+      const Vec3 down({0.08, 0., -1.});
       return {Die("lower", wavy_sheet(), 2., {true, 40., 1.}),
               Die("upper", Vec3({0., 0., 5.8}), down / down.norm())};
     }
@@ -108,7 +108,7 @@ namespace
     {
       linear.method         = method;
       linear.max_iterations = 2000;
-      parameters.tolerance  = 1e-10;
+      parameters.tolerance  = 1e-8;
     }
   };
 
