@@ -114,14 +114,14 @@ namespace retroforge
   {
     /// The triangles of velocity nodes that a face is made of.
     template <typename Use>
-    void for_each_triangle(const TetMesh &mesh, const MeshEdges *edges, const unsigned int f, const Use &use)
+    void for_each_triangle(const TetMesh &mesh, const MiddleNodes *edges, const unsigned int f, const Use &use)
     {
       const auto &k = mesh.faces[f].nodes;
       if (!edges)
         return use(k);
       std::array<NodeIndex, 3> m; // between corner i and the next
       for (unsigned int i = 0; i < 3; ++i)
-        m[i] = mesh.n_nodes() + edges->of_faces[f][i];
+        m[i] = edges->between(k[i], k[(i + 1) % 3]);
       use({{k[0], m[0], m[2]}});
       use({{k[1], m[1], m[0]}});
       use({{k[2], m[2], m[1]}});
@@ -135,8 +135,7 @@ namespace retroforge
 
     /// ContactSet::middles_around
     std::vector<std::vector<unsigned int>> middles_around(const Topology                 &topology,
-                                                          const unsigned int              n_vertices,
-                                                          const MeshEdges                &edges,
+                                                          const MiddleNodes              &edges,
                                                           const PairOfVelocityNode       &index,
                                                           const std::vector<ContactPair> &pairs)
     {
@@ -149,7 +148,7 @@ namespace retroforge
         for (const unsigned int d : dies)
         {
           const auto &ends   = topology.surface_edges[e];
-          const auto  middle = index.find({d, n_vertices + edges.find(ends[0], ends[1])});
+          const auto  middle = index.find({d, edges.between(ends[0], ends[1])});
           for (unsigned int i = 0; i < 2; ++i)
             if (const auto vertex = index.find({d, ends[i]}); vertex != index.end())
             {
@@ -188,7 +187,7 @@ namespace retroforge
     }
     if (edges)
     {
-      contact.middles_around = middles_around(topology, mesh.n_nodes(), *edges, index, pairs);
+      contact.middles_around = middles_around(topology, *edges, index, pairs);
       contact.chords         = find_chords(view, pairs, index);
       level_gaps(X, approach.ramp, contact);
     }

@@ -113,7 +113,7 @@ namespace retroforge
     const auto node   = [&](const std::size_t i) { return X[nodes[i]]; };
     const auto middle = [&](const std::size_t e) {
       const auto &[a, b] = edges[e];
-      return ContactPoint::middle(a, b, view.mesh.n_nodes() + view.edges->find(a, b));
+      return ContactPoint::middle(a, b, view.edges->between(a, b));
     };
     for (unsigned int d = 0; d < view.dies.size(); ++d)
     {
