@@ -47,11 +47,7 @@ namespace
     }
 
     Block(Random &random, const double rho, const ElementPair pair, const std::string &law)
-        : scene(half_box_mesh(Vec3({10., 8., 6.}), {{4, 6, 4}}),
-                pair,
-                make_dies(),
-                MPI_COMM_WORLD,
-                Bubbles::all)
+        : scene(half_box_mesh(Vec3({10., 8., 6.}), {{4, 6, 4}}), {pair}, make_dies(), MPI_COMM_WORLD)
         , X(scene.mesh.X)
     {
       for (Vec3 &x : X)
@@ -80,17 +76,19 @@ namespace
     /// Without what the plane of symmetry fixes.
     Field<double> random_field(Random &random) const
     {
-      Field<double> w(scene.spaces);
-      for (NodeIndex k = 0; k < scene.spaces.n_velocity_nodes(); ++k)
+      const auto   &spaces = scene.discretization;
+      Field<double> w(spaces);
+      for (unsigned int place = 0; place < spaces.velocity_nodes()->n_owned(); ++place)
       {
-        w.V[k] = random.vector();
-        for (const Vec3 &n : scene.spaces.fixed_directions(k))
-          w.V[k] -= (w.V[k] * n) * n;
+        Vec3 &v = w.V.at_place(place);
+        v       = random.vector();
+        if (place < spaces.condensed_nodes()->n_owned())
+          for (const Vec3 &n : spaces.fixed_directions(place))
+            v -= (v * n) * n;
       }
-      for (double &p : w.P)
-        p = random.scalar();
-      for (Vec3 &beta : w.beta)
-        beta = 0.1 * random.vector();
+      for (unsigned int place = 0; place < spaces.pressure_nodes()->n_owned(); ++place)
+        w.P.at_place(place) = random.scalar();
+      w.update_ghosts();
       return w;
     }
   };
@@ -115,15 +113,13 @@ namespace
   /// Of what ranks own.
   double dot(const Scene &scene, const Field<double> &a, const Field<double> &b)
   {
-    double sum = 0.;
-    for (const NodeIndex k : scene.velocities.owned())
-      sum += a.V[k] * b.V[k];
-    for (const NodeIndex k : scene.partition.nodes().owned())
-      sum += a.P[k] * b.P[k];
-    if (scene.spaces.n_bubbles() > 0)
-      for (const CellIndex c : scene.partition.cells().owned())
-        sum += a.beta[scene.spaces.bubble(c)] * b.beta[scene.spaces.bubble(c)];
-    return scene.partition.sum(sum);
+    const auto &spaces = scene.discretization;
+    double      sum    = 0.;
+    for (unsigned int place = 0; place < spaces.velocity_nodes()->n_owned(); ++place)
+      sum += a.V.at_place(place) * b.V.at_place(place);
+    for (unsigned int place = 0; place < spaces.pressure_nodes()->n_owned(); ++place)
+      sum += a.P.at_place(place) * b.P.at_place(place);
+    return spaces.sum(sum);
   }
 
   double norm(const Scene &scene, const Field<double> &a)
@@ -140,30 +136,24 @@ namespace
     convert(block.X, X);
     const ContactSet<Dual> contact = block.contact_of(physics, X);
     const Stage<Dual>      stage(block.scene, physics, contact, X);
-    Field<Dual>            at(block.scene.spaces);
+    Field<Dual>            at(block.scene.discretization);
+    Field<double>          derivative(block.scene.discretization);
     const auto             along = [](const double value, const double dot) {
       Dual x(1, value);
       x.fastAccessDx(0) = dot;
       return x;
     };
-    for (std::size_t k = 0; k < W.V.size(); ++k)
+    for (unsigned int place = 0; place < at.V.size(); ++place)
       for (unsigned int i = 0; i < 3; ++i)
-        at.V[k][i] = along(W.V[k][i], w.V[k][i]);
-    for (std::size_t k = 0; k < W.P.size(); ++k)
-      at.P[k] = along(W.P[k], w.P[k]);
-    for (std::size_t c = 0; c < W.beta.size(); ++c)
-      for (unsigned int i = 0; i < 3; ++i)
-        at.beta[c][i] = along(W.beta[c][i], w.beta[c][i]);
+        at.V.at_place(place)[i] = along(W.V.at_place(place)[i], w.V.at_place(place)[i]);
+    for (unsigned int place = 0; place < at.P.size(); ++place)
+      at.P.at_place(place) = along(W.P.at_place(place), w.P.at_place(place));
     const Field<Dual> r = stage.residual(at, active);
-    Field<double>     derivative(block.scene.spaces);
-    for (std::size_t k = 0; k < W.V.size(); ++k)
+    for (unsigned int place = 0; place < at.V.size(); ++place)
       for (unsigned int i = 0; i < 3; ++i)
-        derivative.V[k][i] = r.V[k][i].dx(0);
-    for (std::size_t k = 0; k < W.P.size(); ++k)
-      derivative.P[k] = r.P[k].dx(0);
-    for (std::size_t c = 0; c < W.beta.size(); ++c)
-      for (unsigned int i = 0; i < 3; ++i)
-        derivative.beta[c][i] = r.beta[c][i].dx(0);
+        derivative.V.at_place(place)[i] = r.V.at_place(place)[i].dx(0);
+    for (unsigned int place = 0; place < at.P.size(); ++place)
+      derivative.P.at_place(place) = r.P.at_place(place).dx(0);
     return derivative;
   }
 
@@ -192,7 +182,7 @@ namespace
     const Scene      &scene = block.scene;
     const std::string name  = std::string(pair == ElementPair::mini ? "linear" : "quadratic") + ", penalty " +
                              (rho > 1e3 ? "stiff" : "soft");
-    Field<double>          W(scene.spaces);
+    Field<double>          W(scene.discretization);
     Solver                 solver(scene, "auto");
     const NewtonStatistics found  = solver.newton.solve(block.stage(), W, {});
     const ActiveSet        active = block.stage().decide_active(W);
