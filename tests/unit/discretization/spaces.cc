@@ -17,8 +17,8 @@
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/tria_description.h>
 
-#include <retroforge/discretization/fe_simplex_hat.h>
 #include <retroforge/discretization/triangulation.h>
+#include <retroforge/element/fe_simplex_hat.h>
 #include <retroforge/mesh/cell_faces.h>
 #include <retroforge/mesh/edges.h>
 
@@ -62,38 +62,50 @@ void check_triangulation(const TetMesh &mesh)
             << " patches\n";
 }
 
+template <int dim>
 void check_shapes()
 {
-  const FE_SimplexHat         fe;
-  const dealii::Quadrature<3> rule = hat_quadrature();
-  Errors                      errors;
-  Random                      random;
-  for (unsigned int a = 0; a < 5; ++a)
-    for (unsigned int i = 0; i < 5; ++i)
+  constexpr unsigned int        n = dim + 2;
+  const FE_SimplexHat<dim>      fe;
+  const dealii::Quadrature<dim> rule = hat_quadrature<dim>();
+  Errors                        errors;
+  Random                        random;
+  for (unsigned int a = 0; a < n; ++a)
+    for (unsigned int i = 0; i < n; ++i)
       errors.compare("values at the vertices, and the bubble's at the barycentre",
                      fe.shape_value(i, fe.get_unit_support_points()[a]),
-                     a < 4   ? double(i == a)
-                     : i < 4 ? 0.25
-                             : 1.);
-  for (const dealii::Point<3> &x : rule.get_points())
-    for (unsigned int i = 0; i < 5; ++i)
-      for (unsigned int d = 0; d < 3; ++d)
+                     a <= dim   ? double(i == a)
+                     : i <= dim ? 1. / (dim + 1.)
+                                : 1.);
+  for (const dealii::Point<dim> &x : rule.get_points())
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int d = 0; d < dim; ++d)
       {
-        const double     step = 1e-3; // linear up to the next face
-        dealii::Point<3> right(x), left(x);
+        const double       step = 1e-3; // linear up to the next face
+        dealii::Point<dim> right(x), left(x);
         right[d] += step;
         left[d] -= step;
         errors.compare("gradients against differences",
                        fe.shape_grad(i, x)[d],
                        (fe.shape_value(i, right) - fe.shape_value(i, left)) / (2. * step));
       }
-  std::vector<double>                 dofs(5), expected = random.scalars(5);
-  std::vector<dealii::Vector<double>> values(5, dealii::Vector<double>(1));
-  for (unsigned int a = 0; a < 5; ++a)
-    for (unsigned int i = 0; i < 5; ++i)
+  std::vector<double>                 dofs(n), expected = random.scalars(n);
+  std::vector<dealii::Vector<double>> values(n, dealii::Vector<double>(1));
+  for (unsigned int a = 0; a < n; ++a)
+    for (unsigned int i = 0; i < n; ++i)
       values[a](0) += expected[i] * fe.shape_value(i, fe.get_unit_support_points()[a]);
   fe.convert_generalized_support_point_values_to_dof_values(values, dofs);
   errors.compare("interpolation", dofs, expected);
+  // That of a cone of height 1.
+  const double volume = fe.reference_cell().volume();
+  for (const auto &points : {rule, iterated_on_hat(dealii::QGaussSimplex<dim>(2))})
+  {
+    double integral = 0.;
+    for (unsigned int q = 0; q < points.size(); ++q)
+      integral += fe.shape_value(dim + 1, points.point(q)) * points.weight(q);
+    errors.compare("integral of the bubble", integral, volume / (dim + 1.));
+  }
+  std::cout << fe.get_name() << '\n';
   errors.print(1e-12);
 }
 
@@ -103,8 +115,8 @@ struct MiniSpace
   static constexpr const char *name = "mini";
   using Values                      = CellValues<double>;
 
-  static dealii::FESystem<3>   fe() { return {FE_SimplexHat(), 3, dealii::FE_SimplexP<3>(1), 1}; }
-  static dealii::Quadrature<3> rule() { return hat_quadrature(); }
+  static dealii::FESystem<3>   fe() { return {FE_SimplexHat<3>(), 3, dealii::FE_SimplexP<3>(1), 1}; }
+  static dealii::Quadrature<3> rule() { return hat_quadrature<3>(); }
   static Values                random_values(Random &random) { return random.cell_values(); }
   static unsigned int          n_dofs(const TetMesh &mesh) { return 4 * mesh.n_nodes() + 3 * mesh.n_cells(); }
   static double               &velocity(Values &w, const unsigned int shape, const unsigned int component)
@@ -293,7 +305,8 @@ int main(int argc, char **argv)
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
   {
     check_triangulation(mesh);
-    check_shapes();
+    check_shapes<2>();
+    check_shapes<3>();
   }
   check<MiniSpace>(mesh);
   check<QuadraticSpace>(mesh);
