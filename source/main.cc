@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/program.h>
-#include <retroforge/scan.h>
+#include <retroforge/app/program.h>
+#include <retroforge/scan/scan.h>
 
 int main(int argc, char **argv)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/exception_message.h>
-#include <retroforge/trial.h>
+#include <retroforge/run/trial.h>
 
 #include <iostream>
 

@@ -104,20 +104,6 @@ namespace retroforge
       };
     }
 
-    /// Makes an array of cells whose owned entries are right complete.
-    void gather(const Ownership &cells, std::vector<Dual> &x)
-    {
-      std::vector<double> numbers;
-      for (const Dual &of_cell : x)
-        numbers.insert(numbers.end(), {of_cell.val(), of_cell.dx(0)});
-      cells.gather(numbers.data(), 2);
-      for (CellIndex c = 0; c < x.size(); ++c)
-      {
-        x[c]                 = Dual(numbers[2 * c]);
-        x[c].fastAccessDx(0) = numbers[2 * c + 1];
-      }
-    }
-
     /// From the new mesh back to the old: X' = J X + c, and the strain.
     void reverse_change_mesh(const RemeshRecord        &remesh,
                              const TetMesh             &old_mesh,
@@ -204,20 +190,14 @@ namespace retroforge
       end = record.stroke + record.step;
       for (auto &of_objective : rows)
         of_objective.push_back(row_of(record, process));
-      const Ownership &cells = leg->scene.partition.cells();
       X = leg->increment.tangent(process, X, record, [&](const StageView<Dual> &view, const Dual &dt) {
         for (std::size_t o = 0; o < run.objectives.size(); ++o)
           if (run.objectives[o].path)
             add_integrals(*run.objectives[o].path, view, rows[o].back());
-        strain = accumulate_strain(leg->scene.mesh,
-                                   leg->scene.spaces,
-                                   view.stage.X,
-                                   view.W,
-                                   Dual(view.weight * dt),
-                                   strain,
-                                   cells.owned());
+        strain =
+          accumulate_strain(leg->scene.discretization, view.stage.X, view.W, Dual(view.weight * dt), strain);
       });
-      gather(cells, strain);
+      complete_entries(leg->scene.discretization.cells(), strain.data(), 1);
     }
     const auto        dies = process.at_stroke(end).dies;
     std::vector<Dual> values;

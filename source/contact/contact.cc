@@ -166,7 +166,7 @@ namespace retroforge
     const auto node   = [&](const std::size_t i) { return X[nodes[i]]; };
     const auto middle = [&](const std::size_t e) {
       const auto &[a, b] = edges[e];
-      return ContactPoint::middle(a, b, view.mesh.n_nodes() + view.edges->find(a, b));
+      return ContactPoint::middle(a, b, view.edges->between(a, b));
     };
     for (unsigned int d = 0; d < view.dies.size(); ++d)
     {
@@ -283,14 +283,15 @@ namespace retroforge
   {
     /// The triangles of velocity nodes that a face is made of.
     template <typename Use>
-    void for_each_triangle(const TetMesh &mesh, const MeshEdges *edges, const unsigned int f, const Use &use)
+    void
+    for_each_triangle(const TetMesh &mesh, const MiddleNodes *edges, const unsigned int f, const Use &use)
     {
       const auto &k = mesh.faces[f].nodes;
       if (!edges)
         return use(k);
       std::array<NodeIndex, 3> m; // between corner i and the next
       for (unsigned int i = 0; i < 3; ++i)
-        m[i] = mesh.n_nodes() + edges->of_faces[f][i];
+        m[i] = edges->between(mesh.faces[f].nodes[i], mesh.faces[f].nodes[(i + 1) % 3]);
       use({{k[0], m[0], m[2]}});
       use({{k[1], m[1], m[0]}});
       use({{k[2], m[2], m[1]}});
@@ -304,8 +305,7 @@ namespace retroforge
 
     /// ContactSet::middles_around
     std::vector<std::vector<unsigned int>> middles_around(const Topology                 &topology,
-                                                          const unsigned int              n_vertices,
-                                                          const MeshEdges                &edges,
+                                                          const MiddleNodes              &edges,
                                                           const PairOfVelocityNode       &index,
                                                           const std::vector<ContactPair> &pairs)
     {
@@ -318,7 +318,7 @@ namespace retroforge
         for (const unsigned int d : dies)
         {
           const auto &ends   = topology.surface_edges[e];
-          const auto  middle = index.find({d, n_vertices + edges.find(ends[0], ends[1])});
+          const auto  middle = index.find({d, edges.between(ends[0], ends[1])});
           for (unsigned int i = 0; i < 2; ++i)
             if (const auto vertex = index.find({d, ends[i]}); vertex != index.end())
             {
@@ -357,7 +357,7 @@ namespace retroforge
     }
     if (edges)
     {
-      contact.middles_around = middles_around(topology, mesh.n_nodes(), *edges, index, pairs);
+      contact.middles_around = middles_around(topology, *edges, index, pairs);
       contact.chords         = find_chords(view, pairs, index);
       level_gaps(X, approach.ramp, contact);
     }

@@ -15,11 +15,18 @@ namespace retroforge
       "accuracy where dies and billet are flat; where they are curved, flat faces limit both alike, "
       "and P2-P1 has the smoother gradients. Units: none.",
       dealii::Patterns::Selection("mini|P2-P1"));
+    prm.add_parameter("triangulation",
+                      triangulation,
+                      "How the mesh lies on the ranks of a parallel run: shared, every rank has all cells of "
+                      "deal.II's triangulation; or fully distributed, its own and those around them, which "
+                      "takes less memory on many ranks. Results are the same. Units: none.",
+                      dealii::Patterns::Selection("shared|fully distributed"));
     prm.leave_subsection();
   }
 
-  ElementPair DiscretizationParameters::pair() const
+  DiscretizationChoice DiscretizationParameters::choice() const
   {
-    return element == "mini" ? ElementPair::mini : ElementPair::taylor_hood;
+    return {element == "mini" ? ElementPair::mini : ElementPair::taylor_hood,
+            triangulation == "shared" ? TriangulationKind::shared : TriangulationKind::fully_distributed};
   }
 } // namespace retroforge

@@ -35,24 +35,24 @@ namespace retroforge
       return points;
     }
 
+    /// Of the visited cells, in their order.
     struct DeviatoricRates
     {
       std::vector<PointRates<double>> at_corners;
-      std::vector<double>             volume; ///< of the cells, at least 0
+      std::vector<double>             volume; ///< at least 0
     };
 
-    DeviatoricRates deviatoric_rates(const TetMesh              &mesh,
-                                     const Spaces               &spaces,
+    DeviatoricRates deviatoric_rates(const Discretization<3>    &discretization,
                                      const NodalVectors<double> &X,
                                      const Field<double>        &W)
     {
       DeviatoricRates rates;
-      with_pair(spaces, [&](const auto pair) {
-        for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+      with_pair(discretization, [&](const auto pair) {
+        for (const CellIndex c : discretization.visited_cells())
         {
-          const auto geometry = geometry_of_cell(mesh, X, c);
+          const auto geometry = geometry_of_cell(discretization, X, c);
           rates.volume.push_back(std::max(geometry.volume, 0.));
-          rates.at_corners.push_back(corner_strain_rates(geometry, pair.at_nodes(spaces, W, c)));
+          rates.at_corners.push_back(corner_strain_rates(geometry, pair.at_nodes(discretization, W, c)));
           for (Symmetric<double> &e : rates.at_corners.back())
             remove_trace(e);
         }
@@ -60,40 +60,56 @@ namespace retroforge
       return rates;
     }
 
-    std::vector<Symmetric<double>> recovered(const TetMesh &mesh, const DeviatoricRates &rates)
+    /// At the nodes of pressures, ghosts included: a rank visits all cells at its own nodes.
+    NodeVector<6, double> recovered(const Discretization<3> &discretization, const DeviatoricRates &rates)
     {
-      std::vector<Symmetric<double>> at_nodes(mesh.n_nodes(), Symmetric<double>{});
-      std::vector<double>            weight(mesh.n_nodes(), 0.);
-      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+      const auto           &nodes = discretization.pressure_nodes();
+      NodeVector<6, double> at_nodes(nodes->of_width(6));
+      std::vector<double>   weight(nodes->n_places(), 0.);
+      for (const CellIndex c : discretization.visited_cells())
+      {
+        const unsigned int i = discretization.place_of_cell(c);
         for (unsigned int a = 0; a < 4; ++a)
         {
-          add(rates.volume[c], rates.at_corners[c][a], at_nodes[mesh.cells[c][a]]);
-          weight[mesh.cells[c][a]] += rates.volume[c];
+          const unsigned int place = discretization.pressure_places(c)[a];
+          for (unsigned int k = 0; k < 6; ++k)
+            at_nodes.at_place(place)[k] += rates.volume[i] * rates.at_corners[i][a][k];
+          weight[place] += rates.volume[i];
         }
-      for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
-        if (weight[k] > 0.)
-          for (double &e : at_nodes[k])
-            e /= weight[k];
+      }
+      for (unsigned int place = 0; place < nodes->n_owned(); ++place)
+        if (weight[place] > 0.)
+          at_nodes.at_place(place) /= weight[place];
+      at_nodes.update_ghosts();
       return at_nodes;
+    }
+
+    Symmetric<double> to_symmetric(const dealii::Tensor<1, 6> &entries)
+    {
+      Symmetric<double> e;
+      for (unsigned int k = 0; k < 6; ++k)
+        e[k] = entries[k];
+      return e;
     }
   } // namespace
 
-  std::vector<double> indicated_errors(const TetMesh              &mesh,
-                                       const Spaces               &spaces,
+  std::vector<double> indicated_errors(const Discretization<3>    &discretization,
                                        const NodalVectors<double> &X,
                                        const Field<double>        &W,
                                        const MaterialLaw<double>  &law)
   {
-    const DeviatoricRates rates    = deviatoric_rates(mesh, spaces, X, W);
-    const auto            at_nodes = recovered(mesh, rates);
-    std::vector<double>   errors(mesh.n_cells(), 0.);
-    for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+    const DeviatoricRates rates    = deviatoric_rates(discretization, X, W);
+    const auto            at_nodes = recovered(discretization, rates);
+    std::vector<double>   errors(discretization.cells().range().n, 0.);
+    for (const CellIndex c : discretization.cells().owned())
     {
-      const auto              &n      = mesh.cells[c];
-      const double             weight = 0.25 * rates.volume[c];
-      const PointRates<double> own    = at_points(rates.at_corners[c]),
-                               better = at_points(
-                                 {{at_nodes[n[0]], at_nodes[n[1]], at_nodes[n[2]], at_nodes[n[3]]}});
+      const unsigned int  i      = discretization.place_of_cell(c);
+      const unsigned int *n      = discretization.pressure_places(c);
+      const double        weight = 0.25 * rates.volume[i];
+      PointRates<double>  at_corners;
+      for (unsigned int a = 0; a < 4; ++a)
+        at_corners[a] = to_symmetric(at_nodes.at_place(n[a]));
+      const PointRates<double> own = at_points(rates.at_corners[i]), better = at_points(at_corners);
       const PointRates<double> s = stresses(own, law, weight), s_better = stresses(better, law, weight);
       for (unsigned int q = 0; q < 4; ++q)
       {
@@ -103,6 +119,7 @@ namespace retroforge
         errors[c] += std::max(0., double_contraction(jump, e));
       }
     }
+    discretization.cells().complete(errors.data(), 1);
     return errors;
   }
 } // namespace retroforge

@@ -4,42 +4,25 @@
 #include <retroforge/discretization/strain_history.h>
 #include <retroforge/element/cell_geometry.templates.h>
 
-#include <numeric>
-
 namespace retroforge
 {
   template <typename Number>
-  std::vector<Number> accumulate_strain(const TetMesh              &mesh,
-                                        const Spaces               &spaces,
+  std::vector<Number> accumulate_strain(const Discretization<3>    &discretization,
                                         const NodalVectors<Number> &X,
                                         const Field<Number>        &W,
                                         const Number               &dt,
                                         const std::vector<Number>  &q_n)
   {
-    std::vector<CellIndex> all(mesh.n_cells());
-    std::iota(all.begin(), all.end(), 0);
-    return accumulate_strain(mesh, spaces, X, W, dt, q_n, all);
-  }
-
-  template <typename Number>
-  std::vector<Number> accumulate_strain(const TetMesh                &mesh,
-                                        const Spaces                 &spaces,
-                                        const NodalVectors<Number>   &X,
-                                        const Field<Number>          &W,
-                                        const Number                 &dt,
-                                        const std::vector<Number>    &q_n,
-                                        const std::vector<CellIndex> &cells)
-  {
     std::vector<Number> q = q_n;
-    with_pair(spaces, [&](const auto pair) {
-      for (const CellIndex c : cells)
-        q[c] += dt * cell_strain_rate(geometry_of_cell(mesh, X, c), pair.on_cell(spaces, W, c));
+    with_pair(discretization, [&](const auto pair) {
+      for (const CellIndex c : discretization.cells().owned())
+        q[c] +=
+          dt * cell_strain_rate(geometry_of_cell(discretization, X, c), pair.on_cell(discretization, W, c));
     });
     return q;
   }
 
-  double reverse_accumulate_strain(const TetMesh              &mesh,
-                                   const Spaces               &spaces,
+  double reverse_accumulate_strain(const Discretization<3>    &discretization,
                                    const NodalVectors<double> &X,
                                    const Field<double>        &W,
                                    const double                dt,
@@ -48,39 +31,30 @@ namespace retroforge
                                    NodalVectors<double>       &X_bar)
   {
     double dt_bar = 0.;
-    with_pair(spaces, [&](const auto pair) {
-      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+    with_pair(discretization, [&](const auto pair) {
+      for (const CellIndex c : discretization.cells().owned())
       {
         if (q_bar[c] == 0.)
           continue;
-        const auto                                       w          = pair.on_cell(spaces, W, c);
-        const auto                                       geometry   = geometry_of_cell(mesh, X, c);
+        const auto                                       w          = pair.on_cell(discretization, W, c);
+        const auto                                       geometry   = geometry_of_cell(discretization, X, c);
         typename decltype(pair)::template Values<double> w_bar      = {};
         Four<Vec3>                                       cell_X_bar = {};
         dt_bar += q_bar[c] * cell_strain_rate(geometry, w);
         reverse_cell_strain_rate(geometry, w, dt * q_bar[c], w_bar, cell_X_bar);
-        pair.add(spaces, w_bar, c, W_bar);
-        for (unsigned int a = 0; a < 4; ++a)
-          X_bar[mesh.cells[c][a]] += cell_X_bar[a];
+        pair.add(discretization, w_bar, c, W_bar);
+        add_to_positions(discretization, cell_X_bar, c, X_bar);
       }
     });
     return dt_bar;
   }
 
 #define RETROFORGE_INSTANTIATE(Number)                                         \
-  template std::vector<Number> accumulate_strain(const TetMesh &,              \
-                                                 const Spaces &,               \
+  template std::vector<Number> accumulate_strain(const Discretization<3> &,    \
                                                  const NodalVectors<Number> &, \
                                                  const Field<Number> &,        \
                                                  const Number &,               \
-                                                 const std::vector<Number> &); \
-  template std::vector<Number> accumulate_strain(const TetMesh &,              \
-                                                 const Spaces &,               \
-                                                 const NodalVectors<Number> &, \
-                                                 const Field<Number> &,        \
-                                                 const Number &,               \
-                                                 const std::vector<Number> &,  \
-                                                 const std::vector<CellIndex> &);
+                                                 const std::vector<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE

@@ -12,7 +12,7 @@ namespace retroforge
     struct SurfaceFace
     {
       std::array<NodeIndex, 3> nodes;
-      std::array<EdgeIndex, 3> edges;
+      std::array<NodeIndex, 3> middles;
       Vector3<Number>          s;      ///< area vector [mm^2]
       Vector3<Number>          defect; ///< mean of the middles minus mean of the vertices [mm/s]
 
@@ -85,12 +85,17 @@ namespace retroforge
       {
         if (!in.mesh.is_surface(in.mesh.faces[f]))
           continue;
-        SurfaceFace<Number> face{in.mesh.faces[f].nodes, in.edges.of_faces[f], {}, {}};
-        const auto         &X0 = in.X[face.nodes[0]];
+        const auto         &n = in.mesh.faces[f].nodes;
+        SurfaceFace<Number> face{
+          n,
+          {{in.middles.between(n[0], n[1]), in.middles.between(n[1], n[2]), in.middles.between(n[2], n[0])}},
+          {},
+          {}};
+        const auto &X0 = in.X[face.nodes[0]];
         face.s = cross(Vector3<Number>(in.X[face.nodes[1]] - X0), Vector3<Number>(in.X[face.nodes[2]] - X0)) *
                  Number(0.5);
         for (unsigned int i = 0; i < 3; ++i)
-          face.defect += in.V[in.mesh.n_nodes() + face.edges[i]] - in.V[face.nodes[i]];
+          face.defect += in.V[face.middles[i]] - in.V[face.nodes[i]];
         face.defect *= Number(1. / 3.);
         faces.push_back(face);
       }
@@ -243,7 +248,7 @@ namespace retroforge
       {
         const NormalBar &normal = normal_bar[face.nodes[i]];
         s_bar += (normal.N + normal.A * direction) / 3.;
-        bar.V[n + face.edges[i]] += defect_bar;
+        bar.V[face.middles[i]] += defect_bar;
         bar.V[face.nodes[i]] -= defect_bar;
       }
       reverse_area_vector(face.nodes, in.X, s_bar, bar.X);

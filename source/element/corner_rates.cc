@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/element/corner_rates.h>
-#include <retroforge/mesh/edges.h>
 
 namespace retroforge
 {

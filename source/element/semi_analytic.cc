@@ -31,7 +31,7 @@ namespace retroforge
       return slope;
     }
 
-    double inner_product(const CellValues<double> &r, const CellValues<double> &lambda)
+    double contraction(const CellValues<double> &r, const CellValues<double> &lambda)
     {
       double sum = r.beta * lambda.beta;
       for (unsigned int a = 0; a < 4; ++a)
@@ -39,7 +39,7 @@ namespace retroforge
       return sum;
     }
 
-    double inner_product(const TaylorHoodValues<double> &r, const TaylorHoodValues<double> &lambda)
+    double contraction(const TaylorHoodValues<double> &r, const TaylorHoodValues<double> &lambda)
     {
       double sum = 0.;
       for (unsigned int a = 0; a < 10; ++a)
@@ -58,7 +58,7 @@ namespace retroforge
                                       const ShapeDerivatives    &how)
   {
     return differences(X, how, [&](const Four<Vec3> &at) {
-      return inner_product(cell_residual(cell_geometry(at), w, law), lambda);
+      return contraction(cell_residual(cell_geometry(at), w, law), lambda);
     });
   }
 

@@ -2,7 +2,6 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/element/tangent_pack.templates.h>
 #include <retroforge/element/taylor_hood.templates.h>
-#include <retroforge/mesh/edges.h>
 
 namespace retroforge
 {

@@ -9,7 +9,7 @@
 
 namespace retroforge
 {
-  double volume(const TetMesh &mesh, const NodalVectors<double> &X, const Ownership &cells)
+  double volume(const TetMesh &mesh, const NodalVectors<double> &X, const ReplicatedEntries &cells)
   {
     double sum = 0.;
     for (const CellIndex c : cells.owned())
@@ -17,7 +17,7 @@ namespace retroforge
     return dealii::Utilities::MPI::sum(sum, cells.comm());
   }
 
-  double minimum_quality(const TetMesh &mesh, const NodalVectors<double> &X, const Ownership &cells)
+  double minimum_quality(const TetMesh &mesh, const NodalVectors<double> &X, const ReplicatedEntries &cells)
   {
     double quality = std::numeric_limits<double>::max();
     for (const CellIndex c : cells.owned())

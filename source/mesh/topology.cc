@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/mesh/symmetry_directions.h>
 #include <retroforge/mesh/topology.h>
 #include <retroforge/mesh/whole_part.h>
 
@@ -82,31 +83,15 @@ namespace retroforge
       return rows;
     }
 
-    // Appends the part of `normal` across the directions from `first` on, unless it is already fixed.
-    void orthonormalise_into(std::vector<Vec3> &directions, const std::size_t first, Vec3 normal)
-    {
-      for (unsigned int pass = 0; pass < 2; ++pass)
-        for (std::size_t i = first; i < directions.size(); ++i)
-          normal -= (normal * directions[i]) * directions[i];
-      if (normal.norm() > 1e-6)
-        directions.push_back(normal / normal.norm());
-    }
-
-    // Those of symmetry, ascending, that each of n places lies on. @param places  on a boundary face
-    template <typename Places>
-    Rows<unsigned int> planes_at(const TetMesh &mesh, const unsigned int n, const Places &places)
-    {
-      std::vector<std::pair<unsigned int, unsigned int>> pairs;
-      for (unsigned int f = 0; f < mesh.faces.size(); ++f)
-        if (!mesh.is_surface(mesh.faces[f]))
-          for (const unsigned int place : places(f))
-            pairs.emplace_back(place, mesh.faces[f].patch);
-      return make_rows(std::move(pairs), n);
-    }
-
+    // Those of symmetry, ascending, that each node lies on.
     Rows<unsigned int> planes_at_nodes(const TetMesh &mesh)
     {
-      return planes_at(mesh, mesh.n_nodes(), [&](const unsigned int f) { return mesh.faces[f].nodes; });
+      std::vector<std::pair<unsigned int, unsigned int>> pairs;
+      for (const BoundaryFace &face : mesh.faces)
+        if (!mesh.is_surface(face))
+          for (const NodeIndex node : face.nodes)
+            pairs.emplace_back(node, face.patch);
+      return make_rows(std::move(pairs), mesh.n_nodes());
     }
 
     // Of a piece of the workpiece, around what lies on all of these planes, in the whole. Planes whose angle
@@ -139,25 +124,7 @@ namespace retroforge
       }
       return images;
     }
-
-    Rows<Vec3> fixed_directions_on(const TetMesh &mesh, const Rows<unsigned int> &patches)
-    {
-      Rows<Vec3> rows;
-      for (unsigned int place = 0; place < patches.size(); ++place)
-      {
-        for (const unsigned int patch : patches[place])
-          orthonormalise_into(rows.entries, rows.begin.back(), mesh.patches[patch].symmetry->normal);
-        rows.begin.push_back(rows.entries.size());
-      }
-      return rows;
-    }
   } // namespace
-
-  Rows<Vec3> fixed_directions_of_edges(const TetMesh &mesh, const MeshEdges &edges)
-  {
-    return fixed_directions_on(
-      mesh, planes_at(mesh, edges.size(), [&](const unsigned int f) { return edges.of_faces[f]; }));
-  }
 
   Topology::Topology(const TetMesh &mesh)
       : surface_faces(surface_faces_at_nodes(mesh))
@@ -165,7 +132,8 @@ namespace retroforge
       , edge_images(images_of_edges(mesh, surface_edges))
       , cells(cells_at_nodes(mesh))
       , neighbours(neighbours_of_nodes(mesh, cells))
-      , fixed_directions(fixed_directions_on(mesh, planes_at_nodes(mesh)))
+      , fixed_directions(
+          symmetry_directions(mesh, mesh.n_nodes(), [](const BoundaryFace &face) { return face.nodes; }))
   {
   }
 } // namespace retroforge

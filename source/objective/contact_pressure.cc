@@ -14,7 +14,8 @@ namespace retroforge
     bool is_mine(const StageView<Number> &view, const unsigned int p, const unsigned int die)
     {
       const ContactPair &pair = view.stage.contact.pairs[p];
-      return pair.die == die && pair.point.is_node() && view.stage.scene.partition.owns(pair.point.nodes[0]);
+      return pair.die == die && pair.point.is_node() &&
+             view.stage.scene.discretization.owns(pair.point.nodes[0]);
     }
 
     /// Force of a point along the die's normal. A vertex of quadratic velocities that is pressed because the
@@ -51,7 +52,7 @@ namespace retroforge
     bool is_seen(const StageView<Number> &view, const unsigned int p, const unsigned int die)
     {
       const ContactPair &pair = view.stage.contact.pairs[p];
-      return pair.die == die && view.stage.scene.partition.sees(pair.point.nodes);
+      return pair.die == die && view.stage.scene.discretization.sees(pair.point.nodes);
     }
 
     /// Of each pair of a node of this rank: its force and its half of those of the edges at it, over a third

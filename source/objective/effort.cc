@@ -39,7 +39,7 @@ namespace retroforge
       Number               power(0.);
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
         if (stage.contact.pairs[p].die == die &&
-            stage.scene.partition.owns(stage.contact.pairs[p].point.nodes[0]))
+            stage.scene.discretization.owns(stage.contact.pairs[p].point.nodes[0]))
           power -= contact_force(
                      stage.contact_node(p, view.W, view.active), stage.physics.law, stage.physics.contact) *
                    stage.physics.dies[die].velocity;
@@ -56,7 +56,7 @@ namespace retroforge
       ContactPullback      pullback(view, bar);
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
         if (stage.contact.pairs[p].die == die &&
-            stage.scene.partition.owns(stage.contact.pairs[p].point.nodes[0]))
+            stage.scene.discretization.owns(stage.contact.pairs[p].point.nodes[0]))
         {
           const ContactNode<double> node = stage.contact_node(p, view.W, view.active);
           pullback.add(p, reverse_contact_force(node, stage.physics.law, stage.physics.contact, -weight * v));

@@ -36,7 +36,7 @@ namespace retroforge
       if (sector.contains(shift +
                           (vertices[triangle[0]] + vertices[triangle[1]] + vertices[triangle[2]]) / 3.))
         decisions_.target.push_back(triangle);
-    const auto [begin, end] = share_of_rank(vertices.size(), view.scene.partition.comm);
+    const auto [begin, end] = share_of_rank(vertices.size(), view.scene.discretization.comm());
     for (unsigned int l = begin; l < end; ++l)
     {
       const Vec3 x = vertices[l] + shift;

@@ -17,9 +17,9 @@ namespace retroforge
     Number strain_rate(const StageView<Number> &view, const CellIndex c)
     {
       const Scene &scene = view.stage.scene;
-      return with_pair(scene.spaces, [&](const auto pair) -> Number {
-        return cell_strain_rate(geometry_of_cell(scene.mesh, view.stage.X, c),
-                                pair.on_cell(scene.spaces, view.W, c));
+      return with_pair(scene.discretization, [&](const auto pair) -> Number {
+        return cell_strain_rate(geometry_of_cell(scene.discretization, view.stage.X, c),
+                                pair.on_cell(scene.discretization, view.W, c));
       });
     }
 
@@ -27,15 +27,15 @@ namespace retroforge
     reverse_strain_rate(const StageView<double> &view, const CellIndex c, const double weight, StageBar &bar)
     {
       const Scene &scene = view.stage.scene;
-      with_pair(scene.spaces, [&](const auto pair) {
+      with_pair(scene.discretization, [&](const auto pair) {
         typename decltype(pair)::template Values<double> w_bar = {};
         Four<Vec3>                                       X_bar = {};
-        reverse_cell_strain_rate(geometry_of_cell(scene.mesh, view.stage.X, c),
-                                 pair.on_cell(scene.spaces, view.W, c),
+        reverse_cell_strain_rate(geometry_of_cell(scene.discretization, view.stage.X, c),
+                                 pair.on_cell(scene.discretization, view.W, c),
                                  weight,
                                  w_bar,
                                  X_bar);
-        pair.add(scene.spaces, w_bar, c, bar.W);
+        pair.add(scene.discretization, w_bar, c, bar.W);
         for (unsigned int a = 0; a < 4; ++a)
           bar.X[scene.mesh.cells[c][a]] += X_bar[a];
       });
@@ -130,7 +130,7 @@ namespace retroforge
         if (!scene.mesh.is_surface(face) || value_of(weight_of(region, face, view.stage.X)) == 0.)
           continue;
         FreeFace free{face, cell_at(scene.topology, face), {}};
-        if (!scene.partition.cells().owns(free.cell))
+        if (!scene.discretization.cells().owns(free.cell))
           continue;
         for (const auto &[die, first] : pairs[face.nodes[0]])
           for (const auto &[die_1, second] : pairs[face.nodes[1]])
@@ -158,9 +158,9 @@ namespace retroforge
   template <typename Number>
   std::vector<Number> FoldIntegrals::operator()(const StageView<Number> &view) const
   {
-    const Stage<Number> &stage     = view.stage;
-    const Partition     &partition = stage.scene.partition;
-    std::vector<Number>  sums(3, Number(0.));
+    const Stage<Number>     &stage          = view.stage;
+    const Discretization<3> &discretization = stage.scene.discretization;
+    std::vector<Number>      sums(3, Number(0.));
     for (const FreeFace &free : free_faces(view, region_))
     {
       const Number area = free_part(stage.contact, free) * weight_of(region_, free.face, stage.X) *
@@ -168,7 +168,7 @@ namespace retroforge
       sums[0] += area * power(strain_rate(view, free.cell), Number(exponent_));
       sums[1] += area;
     }
-    for (const CellIndex c : partition.cells().owned())
+    for (const CellIndex c : discretization.cells().owned())
       sums[2] += strain_rate(view, c) / double(stage.scene.mesh.n_cells());
     return sums;
   }
@@ -177,8 +177,8 @@ namespace retroforge
                               const std::vector<double> &weights,
                               StageBar                  &bar) const
   {
-    const Stage<double> &stage     = view.stage;
-    const Partition     &partition = stage.scene.partition;
+    const Stage<double>     &stage          = view.stage;
+    const Discretization<3> &discretization = stage.scene.discretization;
     for (const FreeFace &free : free_faces(view, region_))
     {
       const double part = free_part(stage.contact, free), e = strain_rate(view, free.cell);
@@ -193,7 +193,7 @@ namespace retroforge
         reverse_strain_rate(view, free.cell, e_bar, bar);
     }
     if (weights[2] != 0.)
-      for (const CellIndex c : partition.cells().owned())
+      for (const CellIndex c : discretization.cells().owned())
         reverse_strain_rate(view, c, weights[2] / stage.scene.mesh.n_cells(), bar);
   }
 

@@ -11,7 +11,8 @@ namespace retroforge
     ContactView<Number> contact_view(const FinalView<Number> &view)
     {
       const Scene &scene = view.scene;
-      return {scene.mesh, scene.topology, scene.dies, view.dies, view.X, nullptr, scene.partition.comm};
+      return {
+        scene.mesh, scene.topology, scene.dies, view.dies, view.X, nullptr, scene.discretization.comm()};
     }
 
     template <typename Number>

@@ -66,10 +66,10 @@ namespace retroforge
   std::vector<Number> RadiusObjective::compute_integrals(const FinalView<Number> &view) const
   {
     using std::sqrt;
-    std::vector<Number> sums(3, Number(0.));
-    const Partition    &partition = view.scene.partition;
-    const auto          S         = lumped_areas(triangles(view.scene.mesh), view.X);
-    for (const NodeIndex k : partition.nodes().owned())
+    std::vector<Number>      sums(3, Number(0.));
+    const Discretization<3> &discretization = view.scene.discretization;
+    const auto               S              = lumped_areas(triangles(view.scene.mesh), view.X);
+    for (const NodeIndex k : discretization.pressure_nodes()->owned())
       if (value_of(S[k]) > 0.)
       {
         const Vector3<Number> d  = from_axis(view.X[k]);
@@ -86,11 +86,11 @@ namespace retroforge
                                           const std::vector<double> &weights,
                                           FinalBar                  &bar) const
   {
-    const Partition    &partition = view.scene.partition;
-    const auto          faces     = triangles(view.scene.mesh);
-    const auto          S         = lumped_areas(faces, view.X);
-    std::vector<double> S_bar(S.size(), 0.);
-    for (const NodeIndex k : partition.nodes().owned())
+    const Discretization<3> &discretization = view.scene.discretization;
+    const auto               faces          = triangles(view.scene.mesh);
+    const auto               S              = lumped_areas(faces, view.X);
+    std::vector<double>      S_bar(S.size(), 0.);
+    for (const NodeIndex k : discretization.pressure_nodes()->owned())
       if (S[k] > 0.)
       {
         const Vec3   d = from_axis(view.X[k]);

@@ -41,14 +41,14 @@ namespace retroforge
       reference_ = view.q.empty() ? 0. : *std::max_element(view.q.begin(), view.q.end());
       return;
     }
-    const Partition &partition = view.scene.partition;
-    double           strain = 0., volume = 0.;
-    for (const CellIndex c : partition.cells().owned())
+    const Discretization<3> &discretization = view.scene.discretization;
+    double                   strain = 0., volume = 0.;
+    for (const CellIndex c : discretization.cells().owned())
     {
       strain += cell_volume(view, c) * view.q[c];
       volume += cell_volume(view, c);
     }
-    reference_ = partition.sum(strain) / partition.sum(volume);
+    reference_ = discretization.sum(strain) / discretization.sum(volume);
   }
 
   template <typename Number>
@@ -70,9 +70,9 @@ namespace retroforge
   template <typename Number>
   std::vector<Number> StrainObjective::compute_integrals(const FinalView<Number> &view) const
   {
-    const Partition    &partition = view.scene.partition;
-    std::vector<Number> sums(3, Number(0.));
-    for (const CellIndex c : partition.cells().owned())
+    const Discretization<3> &discretization = view.scene.discretization;
+    std::vector<Number>      sums(3, Number(0.));
+    for (const CellIndex c : discretization.cells().owned())
     {
       const Number volume = cell_volume(view, c);
       const auto   f      = integrands(view.q[c]);
@@ -97,8 +97,8 @@ namespace retroforge
                                           const std::vector<double> &weights,
                                           FinalBar                  &bar) const
   {
-    const Partition &partition = view.scene.partition;
-    for (const CellIndex c : partition.cells().owned())
+    const Discretization<3> &discretization = view.scene.discretization;
+    for (const CellIndex c : discretization.cells().owned())
     {
       const auto f = integrands(view.q[c]), slope = slopes(view.q[c]);
       reverse_cell_volume(view, c, weights[0] + weights[1] * f[0] + weights[2] * f[1], bar.X);

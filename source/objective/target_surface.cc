@@ -50,7 +50,7 @@ namespace retroforge
     const Vec3               shift = displacement(view);
     std::vector<SeenFeature> seen;
     for (NodeIndex k = 0; k < view.X.size(); ++k)
-      if (view.scene.partition.owns(k) && view.scene.topology.is_on_surface(k) &&
+      if (view.scene.discretization.owns(k) && view.scene.topology.is_on_surface(k) &&
           (!region_ || is_inside(*region_, view.X[k])))
         if (const DieFeature feature = closest(view.X[k] - shift); feature.found())
           seen.push_back({k, feature});

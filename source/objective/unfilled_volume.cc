@@ -85,7 +85,7 @@ namespace retroforge
     const NodalVectors<double> vertices = workpiece_.vertices(view);
     const Sector               sector(view.scene.mesh);
     samples_.clear();
-    const auto [begin, end] = share_of_rank(n_[0] * n_[1] * n_[2], view.scene.partition.comm);
+    const auto [begin, end] = share_of_rank(n_[0] * n_[1] * n_[2], view.scene.discretization.comm());
     for (unsigned int g = begin; g < end; ++g)
     {
       const unsigned int i[3] = {g % n_[0], g / n_[0] % n_[1], g / n_[0] / n_[1]};

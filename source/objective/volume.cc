@@ -8,7 +8,7 @@ namespace retroforge
   template <typename Number>
   Number cell_volume(const FinalView<Number> &view, const CellIndex c)
   {
-    return cell_geometry(positions_of_cell(view.scene.mesh, view.X, c)).volume;
+    return cell_geometry(positions_of_cell(view.scene.discretization, view.X, c)).volume;
   }
 
   void reverse_cell_volume(const FinalView<double> &view,
@@ -16,18 +16,19 @@ namespace retroforge
                            const double             volume_bar,
                            NodalVectors<double>    &X_bar)
   {
-    const TetMesh             &mesh     = view.scene.mesh;
-    const CellGeometry<double> geometry = cell_geometry(positions_of_cell(mesh, view.X, c));
-    for (unsigned int a = 0; a < 4; ++a)
-      X_bar[mesh.cells[c][a]] += volume_bar * geometry.volume * geometry.g[a];
+    const auto          &discretization = view.scene.discretization;
+    CellGeometry<double> geometry       = geometry_of_cell(discretization, view.X, c);
+    for (Vec3 &g : geometry.g)
+      g *= volume_bar * geometry.volume;
+    add_to_positions(discretization, geometry.g, c, X_bar);
   }
 
   template <typename Number>
   std::vector<Number> VolumeObjective::compute_integrals(const FinalView<Number> &view) const
   {
-    const Partition &partition = view.scene.partition;
-    Number           volume(0.);
-    for (const CellIndex c : partition.cells().owned())
+    const Discretization<3> &discretization = view.scene.discretization;
+    Number                   volume(0.);
+    for (const CellIndex c : discretization.cells().owned())
       volume += cell_volume(view, c);
     return {volume};
   }
@@ -36,8 +37,8 @@ namespace retroforge
                                           const std::vector<double> &weights,
                                           FinalBar                  &bar) const
   {
-    const Partition &partition = view.scene.partition;
-    for (const CellIndex c : partition.cells().owned())
+    const Discretization<3> &discretization = view.scene.discretization;
+    for (const CellIndex c : discretization.cells().owned())
       reverse_cell_volume(view, c, weights[0], bar.X);
   }
 

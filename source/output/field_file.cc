@@ -151,12 +151,19 @@ namespace retroforge
   void FieldFile<dim>::add_velocity(const std::string          &name,
                                     const std::string          &unit,
                                     const NodalVectors<double> &values,
-                                    const Spaces               &spaces)
+                                    const MiddleNodes          *middles)
   {
-    const unsigned int n_points = spaces.edges() ? dim + 1 + edge_ends.size() : dim + 1;
-    add(name, unit, n_points, 3, [&](const CellIndex c, const unsigned int a, const unsigned int component) {
-      return values.at(spaces.velocity_nodes(c)[a])[component];
-    });
+    const unsigned int n_points = middles ? dim + 1 + edge_ends.size() : dim + 1;
+    add(name,
+        unit,
+        n_points,
+        3,
+        [&](const CellIndex c, const unsigned int point, const unsigned int component) {
+          if (point <= dim)
+            return values.at(cells_[c][point])[component];
+          const auto [a, b] = edge_ends[point - (dim + 1)];
+          return values.at(middles->between(cells_[c][a], cells_[c][b]))[component];
+        });
   }
 
   template <int dim>

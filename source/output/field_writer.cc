@@ -17,10 +17,11 @@ namespace retroforge
   struct FieldWriter::Workpiece
   {
     const TetMesh              &mesh;
-    const Spaces               &spaces;
+    const MiddleNodes          *middles; ///< null where velocities are linear
     const NodalVectors<double> &X;
-    const NodalVectors<double> &position; ///< where W is an equilibrium
-    const Field<double>        &W;
+    const NodalVectors<double> &position; ///< where V and P are an equilibrium
+    const NodalVectors<double> &V;        ///< of velocity nodes but bubbles, on this rank all
+    const std::vector<double>  &P;
     const std::vector<double>  &strain;
     const NodalVectors<double> *displacement; ///< null: unknown
     const ContactFields        *contact;      ///< null: unknown
@@ -46,25 +47,47 @@ namespace retroforge
     {
     }
 
-    /// Bubbles of all cells follow from V and P.
+    /// Bubbles follow from V and P.
+    template <typename Values>
+    void
+    add_cell(const CellGeometry<double> &geometry, Values w, const MaterialLaw<double> &law, CellFields &to)
+    {
+      recover_bubble(geometry, law, w);
+      to.strain_rate.push_back(cell_strain_rate(geometry, w));
+      to.stress.push_back(cell_deviatoric_stress(geometry, w, law));
+      to.von_mises.push_back(von_mises(to.stress.back()));
+    }
+
     CellFields cell_fields(const TetMesh              &mesh,
-                           const Spaces               &spaces,
+                           const MiddleNodes          *middles,
                            const NodalVectors<double> &X,
-                           const Field<double>        &W,
+                           const NodalVectors<double> &V,
+                           const std::vector<double>  &P,
                            const MaterialLaw<double>  &law)
     {
       CellFields fields;
-      with_pair(spaces, [&](const auto pair) {
-        for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+      for (const auto &nodes : mesh.cells)
+      {
+        Four<Vec3>               x;
+        CellValues<double>       linear;
+        TaylorHoodValues<double> quadratic;
+        for (unsigned int a = 0; a < 4; ++a)
         {
-          const auto geometry = geometry_of_cell(mesh, X, c);
-          auto       w        = pair.at_nodes(spaces, W, c);
-          recover_bubble(geometry, law, w);
-          fields.strain_rate.push_back(cell_strain_rate(geometry, w));
-          fields.stress.push_back(cell_deviatoric_stress(geometry, w, law));
-          fields.von_mises.push_back(von_mises(fields.stress.back()));
+          x[a]        = X[nodes[a]];
+          linear.V[a] = quadratic.V[a] = V[nodes[a]];
+          linear.P[a] = quadratic.P[a] = P[nodes[a]];
         }
-      });
+        if (middles)
+          for (unsigned int e = 0; e < 6; ++e)
+          {
+            const auto [a, b]  = tet_edge_corners[e];
+            quadratic.V[4 + e] = V[middles->between(nodes[a], nodes[b])];
+          }
+        if (middles)
+          add_cell(cell_geometry(x), quadratic, law, fields);
+        else
+          add_cell(cell_geometry(x), linear, law, fields);
+      }
       return fields;
     }
 
@@ -96,10 +119,10 @@ namespace retroforge
   {
     const TetMesh   &mesh = workpiece.mesh;
     const CellFields cells =
-      cell_fields(mesh, workpiece.spaces, workpiece.position, workpiece.W, process_.law);
+      cell_fields(mesh, workpiece.middles, workpiece.position, workpiece.V, workpiece.P, process_.law);
     FieldFile<3> picture(workpiece.X, mesh.cells, comm);
-    picture.add_linear("pressure", "MPa", workpiece.W.P);
-    picture.add_velocity("velocity", "mm/s", workpiece.W.V, workpiece.spaces);
+    picture.add_linear("pressure", "MPa", workpiece.P);
+    picture.add_velocity("velocity", "mm/s", workpiece.V, workpiece.middles);
     if (workpiece.displacement)
       picture.add_linear("displacement", "mm", *workpiece.displacement);
     if (workpiece.contact)
@@ -158,12 +181,12 @@ namespace retroforge
   void FieldWriter::add_billet(const MPI_Comm comm)
   {
     const std::string          file = "fields_" + six_digits(0) + ".vtu";
-    const Spaces               spaces(billet_, Topology(billet_), model_.element);
-    const Field<double>        at_rest(spaces);
+    const Discretization<3>    discretization(billet_, model_.discretization, comm);
     const std::vector<double>  zero(billet_.n_nodes(), 0.), strain(billet_.n_cells(), 0.);
-    const NodalVectors<double> still(billet_.n_nodes());
+    const NodalVectors<double> still(billet_.n_nodes()), at_rest(discretization.condensed_nodes()->n());
     const ContactFields        contact{zero, zero, still};
-    write(comm, file, {billet_, spaces, X_0_, X_0_, at_rest, strain, &still, &contact});
+    write(
+      comm, file, {billet_, discretization.middles(), X_0_, X_0_, at_rest, zero, strain, &still, &contact});
     add_step(0., file, six_digits(0), X_0_);
   }
 
@@ -181,11 +204,19 @@ namespace retroforge
     const ForgingState &run     = event.state;
     const Scene        &scene   = run.leg->scene;
     const SolvedStage  &last    = event.solved.last();
-    const ContactFields contact = contact_fields(last.stage, run.next.W, last.active);
+    const ContactFields contact = contact_fields(last.stage, last.W, last.active);
     const std::string   number = six_digits(run.increments), file = "fields_" + number + ".vtu";
     write(comm_,
           file,
-          {scene.mesh, scene.spaces, run.X, last.X, run.next.W, run.strain, &displacement_, &contact});
+          {scene.mesh,
+           scene.discretization.middles(),
+           run.X,
+           last.X,
+           run.solution.V,
+           run.solution.P,
+           run.strain,
+           &displacement_,
+           &contact});
     add_step(run.stroke, file, number, run.X);
   }
 
@@ -195,13 +226,18 @@ namespace retroforge
     const auto *displacement = state.remeshed.size() == n_remeshings_ ? &displacement_ : nullptr;
     if (series_.empty())
       add_billet(MPI_COMM_SELF);
+    const auto         &discretization = state.leg->scene.discretization;
+    const LastSolution  at_rest        = {NodalVectors<double>(discretization.condensed_nodes()->n()),
+                                          std::vector<double>(discretization.n_vertices(), 0.)};
+    const LastSolution &solution       = state.solution.V.empty() ? at_rest : state.solution;
     write(MPI_COMM_SELF,
           "failed.vtu",
           {state.leg->scene.mesh,
-           state.leg->scene.spaces,
+           state.leg->scene.discretization.middles(),
            state.X,
            state.X,
-           state.next.W,
+           solution.V,
+           solution.P,
            state.strain,
            displacement,
            nullptr});

@@ -25,10 +25,11 @@ namespace retroforge
     /// @param speed  with which the node then goes through the die
     void sink_into_die(const Stage<double> &stage, const unsigned int p, const double speed, Field<double> &W)
     {
-      const NodeIndex           k    = stage.contact.pairs[p].point.velocity_node;
-      const ContactNode<double> node = stage.contact_node(p, W, {});
-      Vec3                      free = node.n;
-      for (const Vec3 &fixed : stage.scene.spaces.fixed_directions(k))
+      const NodeIndex           k              = stage.contact.pairs[p].point.velocity_node;
+      const ContactNode<double> node           = stage.contact_node(p, W, {});
+      Vec3                      free           = node.n;
+      const auto               &discretization = stage.scene.discretization;
+      for (const Vec3 &fixed : discretization.fixed_directions(discretization.condensed_nodes()->place(k)))
         free -= (fixed * free) * fixed;
       constexpr double held = 1e-3; // of the normal: symmetry holds the node, not the die
       if (const double part = free * node.n; part > held)
@@ -61,7 +62,7 @@ namespace retroforge
         if (pairs[p].point.has_own_velocity())
           edges[p] = 0;
       Field<double> r = stage.residual(W, edges);
-      stage.scene.exchange.update(r.V);
+      r.V.update_ghosts();
       std::vector<double> force(pairs.size(), 0.);
       for (unsigned int p = 0; p < pairs.size(); ++p)
         if (pairs[p].point.has_own_velocity())

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <deal.II/base/mpi.h>
+
 #include <retroforge/core/error.h>
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/solver/contact_steps.h>
@@ -40,13 +42,13 @@ namespace retroforge
     /// Of the billet, and of the fastest die.
     std::pair<double, double> volume_and_speed(const Stage<double> &stage)
     {
-      const Partition &partition = stage.scene.partition;
-      double           volume = 0., speed = 0.;
-      for (const CellIndex c : partition.cells().owned())
-        volume += geometry_of_cell(stage.scene.mesh, stage.X, c).volume;
+      const Discretization<3> &discretization = stage.scene.discretization;
+      double                   volume = 0., speed = 0.;
+      for (const CellIndex c : discretization.cells().owned())
+        volume += geometry_of_cell(stage.scene.discretization, stage.X, c).volume;
       for (const auto &die : stage.physics.dies)
         speed = std::max(speed, die.velocity.norm());
-      return {partition.sum(volume), speed};
+      return {discretization.sum(volume), speed};
     }
 
     /// A strain rate typical of the press.
@@ -83,28 +85,25 @@ namespace retroforge
                                    const Scale         &scale,
                                    Field<double>       &r)
   {
-    r                     = stage.residual(W, frozen);
-    const auto  norm      = system_.residual_norm(r);
-    double      bubble2   = 0.;
-    const auto &partition = scene_.partition;
-    if (scene_.spaces.n_bubbles() > 0)
-      for (const CellIndex c : partition.cells().owned())
-        bubble2 += r.beta[scene_.spaces.bubble(c)].norm_square();
-    const double momentum = std::sqrt(norm.first * norm.first + partition.sum(bubble2));
+    r                          = stage.residual(W, frozen);
+    const auto  norm           = system_.residual_norm(r);
+    double      bubble2        = 0.;
+    const auto &discretization = scene_.discretization;
+    if (discretization.has_bubbles())
+      for (const CellIndex c : discretization.cells().owned())
+        bubble2 += MiniPair::bubble(discretization, r, c).norm_square();
+    const double momentum = std::sqrt(norm.first * norm.first + discretization.sum(bubble2));
     return std::max(momentum / scale.first, norm.second / scale.second);
   }
 
   /// d/da of the functional along the step: momentum and bubble rows only.
   double Newton::slope(const Field<double> &r, const Field<double> &step) const
   {
-    const auto &partition = scene_.partition;
-    double      sum       = 0.;
-    for (const NodeIndex k : scene_.velocities.owned())
-      sum += r.V[k] * step.V[k];
-    if (scene_.spaces.n_bubbles() > 0)
-      for (const CellIndex c : partition.cells().owned())
-        sum += r.beta[scene_.spaces.bubble(c)] * step.beta[scene_.spaces.bubble(c)];
-    return partition.sum(sum);
+    const auto &discretization = scene_.discretization;
+    double      sum            = 0.;
+    for (unsigned int place = 0; place < discretization.velocity_nodes()->n_owned(); ++place)
+      sum += r.V.at_place(place) * step.V.at_place(place);
+    return discretization.sum(sum);
   }
 
   double Newton::line_search(const Stage<double> &stage,
@@ -114,8 +113,8 @@ namespace retroforge
                              const ActiveSet     &active)
   {
     // The pressure takes its full step: it is the multiplier of the functional's constraint.
-    for (NodeIndex k = 0; k < W.P.size(); ++k)
-      W.P[k] += step.P[k];
+    for (unsigned int place = 0; place < W.P.size(); ++place)
+      W.P.at_place(place) += step.P.at_place(place);
     Field<double> velocity_step = step;
     std::fill(velocity_step.P.begin(), velocity_step.P.end(), 0.);
     const auto residual_at = [&](const double a) {
@@ -126,11 +125,11 @@ namespace retroforge
     const Field<double> whole = residual_at(1.);
     // What the new pressures add to the slope at the start is their product with the change of continuity,
     // which is linear in the velocity.
-    const auto &partition = scene_.partition;
-    double      added     = 0.;
-    for (const NodeIndex k : partition.nodes().owned())
-      added += step.P[k] * (whole.P[k] - r.P[k]);
-    const double start = slope(r, step) + partition.sum(added);
+    const auto &discretization = scene_.discretization;
+    double      added          = 0.;
+    for (unsigned int place = 0; place < discretization.pressure_nodes()->n_owned(); ++place)
+      added += step.P.at_place(place) * (whole.P.at_place(place) - r.P.at_place(place));
+    const double start = slope(r, step) + discretization.sum(added);
     double       a     = 1.;
     if (start < 0.)
     {
@@ -184,7 +183,7 @@ namespace retroforge
     for (unsigned int pass = 0; pass < 3; ++pass)
     {
       Field<double> r = linear.residual(W, active);
-      Field<double> rhs(scene_.spaces);
+      Field<double> rhs(scene_.discretization);
       rhs.add(-1., r);
       system_.assemble(linear, W, active);
       statistics.krylov += system_.solve(rhs, 1e-4, step);
@@ -197,7 +196,7 @@ namespace retroforge
     // No die reaches the metal: it stays where it is, and does not drift along a motion that costs nothing.
     active = frozen.empty() ? linear.decide_active(W) : frozen;
     if (std::none_of(active.begin(), active.end(), [](const char pressed) { return pressed != 0; }))
-      W = Field<double>(scene_.spaces);
+      W = Field<double>(scene_.discretization);
   }
 
   namespace
@@ -207,12 +206,30 @@ namespace retroforge
     /// systems solved to a part of such a residual say nothing of the rest: those are left as they are.
     void settle_bubbles_in_reach(const Stage<double> &stage, const double speed, Field<double> &W)
     {
-      constexpr double  farthest = 1e3; // of the dies' speed
-      std::vector<Vec3> before   = W.beta;
+      constexpr double farthest       = 1e3; // of the dies' speed
+      const auto      &discretization = stage.scene.discretization;
+      if (!discretization.has_bubbles())
+        return;
+      const NodeVector<3, double> before = W.V;
       settle_bubbles(stage, W);
-      for (std::size_t c = 0; c < before.size(); ++c)
-        if (!(W.beta[c].norm() <= farthest * speed))
-          W.beta[c] = before[c];
+      for (const CellIndex c : discretization.visited_cells())
+      {
+        const unsigned int place = discretization.velocity_places(c)[4];
+        if (!(W.V.at_place(place).norm() <= farthest * speed))
+          W.V.at_place(place) = before.at_place(place);
+      }
+    }
+  } // namespace
+
+  namespace
+  {
+    /// Whether no node moves, on any rank.
+    bool is_at_rest(const Discretization<3> &discretization, const Field<double> &W)
+    {
+      bool moves = false;
+      for (unsigned int place = 0; place < discretization.condensed_nodes()->n_owned(); ++place)
+        moves = moves || W.V.at_place(place).norm_square() > 0.;
+      return dealii::Utilities::MPI::max(moves ? 1 : 0, discretization.comm()) == 0;
     }
   } // namespace
 
@@ -246,9 +263,8 @@ namespace retroforge
                                  const ActiveSet     &pressed)
   {
     NewtonStatistics statistics;
-    const bool       linear = stage.physics.law.is_linear();
-    const bool       from_rest =
-      std::all_of(W.V.begin(), W.V.end(), [](const Vec3 &v) { return v.norm_square() == 0.; });
+    const bool       linear    = stage.physics.law.is_linear();
+    const bool       from_rest = is_at_rest(scene_.discretization, W);
     if (from_rest && !linear)
       initial_guess(stage, W, frozen, statistics);
     // A recorded active set comes with its solution.
@@ -284,10 +300,7 @@ namespace retroforge
       statistics.residual = relative_residual(stage, W, first_active, scale, r);
       const bool found    = first_active == frozen && statistics.residual <= parameters_.tolerance;
       if (found && frozen.empty())
-      {
-        scene_.exchange.gather(W);
         return statistics;
-      }
       if (iteration > 0)
         assemble();
       picard -= picard > 0;
@@ -301,14 +314,13 @@ namespace retroforge
       const double promise = 0.1 * std::max(statistics.residual, fall * fall);
       double       forcing = linear ? goal : std::max(goal, std::min(largest_forcing, promise));
       forcing              = found ? refined : std::min(0.5, std::max(1e-12, forcing));
-      Field<double> rhs(scene_.spaces);
+      Field<double> rhs(scene_.discretization);
       rhs.add(-1., r);
       statistics.krylov += system_.solve(rhs, forcing, step);
       ++statistics.iterations;
       if (found)
       {
         W.add(1., step);
-        scene_.exchange.gather(W);
         return statistics;
       }
       if (first_active == frozen && statistics.residual > settled)

@@ -29,14 +29,15 @@ namespace retroforge
   std::vector<NodeFrame>
   make_frames(const Scene &scene, const ContactSet<double> &contact, const ActiveSet &active)
   {
-    std::vector<NodeFrame>    frames(scene.spaces.n_velocity_nodes());
-    std::vector<unsigned int> n_axes(scene.spaces.n_velocity_nodes(), 0);
-    const auto                append = [&](const NodeIndex k, const Vec3 &direction) {
+    const NodeNumbering      &nodes = *scene.discretization.condensed_nodes();
+    std::vector<NodeFrame>    frames(nodes.n_places());
+    std::vector<unsigned int> n_axes(nodes.n_places(), 0);
+    const auto                append = [&](const unsigned int k, const Vec3 &direction) {
       n_axes[k] = append_axis(frames[k].axes, n_axes[k], direction);
     };
-    for (NodeIndex k = 0; k < frames.size(); ++k)
+    for (unsigned int k = 0; k < frames.size(); ++k)
     {
-      for (const Vec3 &direction : scene.spaces.fixed_directions(k))
+      for (const Vec3 &direction : scene.discretization.fixed_directions(k))
         append(k, direction);
       frames[k].n_fixed = n_axes[k];
     }
@@ -48,8 +49,8 @@ namespace retroforge
           if (const ContactPoint &point = contact.pairs[p].point;
               (active[p] != 0) == holds && point.has_own_velocity() == of_nodes)
             for (unsigned int i = 0; i < point.n_velocity_nodes(); ++i)
-              append(point.velocity_node_at(i), contact.projections[p].n);
-    for (NodeIndex k = 0; k < frames.size(); ++k)
+              append(nodes.place(point.velocity_node_at(i)), contact.projections[p].n);
+    for (unsigned int k = 0; k < frames.size(); ++k)
       if (n_axes[k] == 0)
         frames[k].axes = dealii::unit_symmetric_tensor<3>();
       else

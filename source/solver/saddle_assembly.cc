@@ -8,31 +8,37 @@ namespace retroforge
 
   namespace
   {
-    /// The columns that owned row nodes meet in the visited cells.
-    /// @param rows, columns  of a cell: (nodes, how many)
-    template <typename CellRows, typename CellColumns, typename LocalRow, typename Number>
-    Rows<unsigned int> neighbours(const Partition   &partition,
-                                  const unsigned int n_rows,
-                                  const CellRows    &rows,
-                                  const CellColumns &columns,
-                                  const LocalRow    &local_row,
-                                  const Number      &number)
+    /// The rows of a pattern that belong to vertices, and in all rows the columns that do: velocities have
+    /// the vertices first on every rank, in the order of the pressures.
+    struct VertexPatterns
     {
-      std::vector<std::vector<unsigned int>> met(n_rows);
-      for (const CellIndex c : partition.visited_cells)
-        for (const NodeIndex a : rows(c))
-          if (const unsigned int local = local_row(a); local != invalid_index)
-            for (const NodeIndex b : columns(c))
-              met[local].push_back(number(b));
-      Rows<unsigned int> result;
-      for (std::vector<unsigned int> &row : met)
+      Rows<unsigned int> of_velocities, of_pressures, velocities_of_pressures;
+    };
+
+    VertexPatterns vertex_patterns(const Discretization<3> &discretization, const Rows<unsigned int> &met)
+    {
+      const NodeNumbering &velocities = *discretization.condensed_nodes(),
+                          &pressures  = *discretization.pressure_nodes();
+      VertexPatterns patterns;
+      for (unsigned int row = 0; row < met.size(); ++row)
       {
-        std::sort(row.begin(), row.end());
-        row.erase(std::unique(row.begin(), row.end()), row.end());
-        result.entries.insert(result.entries.end(), row.begin(), row.end());
-        result.begin.push_back(result.entries.size());
+        std::vector<unsigned int> vertices;
+        for (const unsigned int column : met[row])
+          if (const NodeIndex k = velocities.node_at(velocities.place_of_index(column));
+              k < discretization.n_vertices())
+            vertices.push_back(pressures.index_at(pressures.place(k)));
+        const auto append = [](const auto &columns, Rows<unsigned int> &rows) {
+          rows.entries.insert(rows.entries.end(), columns.begin(), columns.end());
+          rows.begin.push_back(rows.entries.size());
+        };
+        append(vertices, patterns.of_velocities);
+        if (row < pressures.n_owned())
+        {
+          append(vertices, patterns.of_pressures);
+          append(met[row], patterns.velocities_of_pressures);
+        }
       }
-      return result;
+      return patterns;
     }
 
     /// q x
@@ -75,45 +81,26 @@ namespace retroforge
 
   void SaddleMatrix::make_patterns()
   {
-    const Partition   &partition = scene_.partition;
-    const Spaces      &spaces    = scene_.spaces;
-    const unsigned int n_of_cell = spaces.pair() == ElementPair::mini ? 4 : 10;
-    const auto         velocity  = [&](const CellIndex c) {
-      return ArrayView<const NodeIndex>(spaces.velocity_nodes(c), n_of_cell);
+    const auto              &discretization = scene_.discretization;
+    const NodeRange         &v = velocities_.range(), &p = pressures_.range();
+    const Rows<unsigned int> met = discretization.velocity_pattern();
+    const auto pattern           = [](const NodeRange &rows, const NodeRange &columns, const auto &of_rows) {
+      return std::make_shared<const NodePattern>(rows, columns, of_rows);
     };
-    const auto pressure = [&](const CellIndex c) {
-      return ArrayView<const NodeIndex>(spaces.velocity_nodes(c), 4);
-    };
-    const auto velocity_row = [&](const NodeIndex k) {
-      return velocities_.owns(k) ? velocities_.local(k) : invalid_index;
-    };
-    const auto pressure_row = [&](const NodeIndex k) {
-      return pressures_.owns(k) ? pressures_.local(k) : invalid_index;
-    };
-    const auto velocity_number = [&](const NodeIndex k) { return velocities_.number(k); };
-    const auto pressure_number = [&](const NodeIndex k) { return pressures_.number(k); };
-    const auto pattern = [](const NodeRange &rows, const NodeRange &columns, const Rows<unsigned int> &met) {
-      return std::make_shared<const NodePattern>(rows, columns, met);
-    };
-    const NodeRange   &v = velocities_.range(), &p = pressures_.range();
-    const unsigned int n_v = v.n_owned(), n_p = p.n_owned();
-    const auto         pp =
-      pattern(p, p, neighbours(partition, n_p, pressure, pressure, pressure_row, pressure_number));
-    const bool alike = n_of_cell == 4;
-    const auto vv =
-      alike ? pp
-            : pattern(v, v, neighbours(partition, n_v, velocity, velocity, velocity_row, velocity_number));
-    const auto vp =
-      alike ? pp
-            : pattern(v, p, neighbours(partition, n_v, velocity, pressure, velocity_row, pressure_number));
-    const auto pv =
-      alike ? pp
-            : pattern(p, v, neighbours(partition, n_p, pressure, velocity, pressure_row, velocity_number));
+    const auto vv = pattern(v, v, met);
+    auto       vp = vv, pv = vv, pp = vv;
+    if (discretization.middles())
+    {
+      const VertexPatterns vertices = vertex_patterns(discretization, met);
+      vp                            = pattern(v, p, vertices.of_velocities);
+      pv                            = pattern(p, v, vertices.velocities_of_pressures);
+      pp                            = pattern(p, p, vertices.of_pressures);
+    }
     const auto make = [&](la::SparseMatrix                         &matrix,
                           const std::shared_ptr<const NodePattern> &met,
                           const unsigned int                        rows,
                           const unsigned int                        columns) {
-      return std::make_unique<NodeMatrix>(matrix, met, rows, columns, partition.comm);
+      return std::make_unique<NodeMatrix>(matrix, met, rows, columns, discretization.comm());
     };
     la::BlockSparseMatrix &matrix = system_.matrix;
     matrix.reinit(2, 2);
@@ -123,42 +110,40 @@ namespace retroforge
     system_.C = make(matrix.block(1, 1), pp, 1, 1);
     system_.S = make(system_.schur, pp, 1, 1);
     matrix.collect_sizes();
-    for (unsigned int local = 0; local < n_v; ++local)
+    for (unsigned int local = 0; local < v.n_owned(); ++local)
       diagonal_.push_back(vv->position(local, v.begin + local));
     // A numbers its columns by itself: from there back to nodes.
-    std::vector<NodeIndex> node_of_number(v.n);
-    for (NodeIndex k = 0; k < v.n; ++k)
-      node_of_number[velocities_.number(k)] = k;
-    for (const unsigned int number : vv->column_nodes())
-      column_nodes_.push_back(node_of_number[number]);
-    if (spaces.edges())
-      make_interpolation_pattern(*spaces.edges());
+    for (const unsigned int row : vv->column_nodes())
+      column_places_.push_back(velocities_.place_of_index(row));
+    if (const MiddleNodes *middles = discretization.middles())
+      make_interpolation_pattern(*middles);
   }
 
-  void SaddleMatrix::make_interpolation_pattern(const MeshEdges &edges)
+  void SaddleMatrix::make_interpolation_pattern(const MiddleNodes &middles)
   {
     Rows<unsigned int> parents;
     const unsigned int n_vertices = scene_.mesh.n_nodes();
     for (const NodeIndex k : velocities_.owned())
     {
       if (k < n_vertices)
-        parents.entries.push_back(pressures_.number(k));
+        parents.entries.push_back(pressures_.index_at(pressures_.place(k)));
       else
-        for (const NodeIndex end : edges.nodes[k - n_vertices])
-          parents.entries.push_back(pressures_.number(end));
+        for (const NodeIndex end : middles.ends_of(k))
+          parents.entries.push_back(pressures_.index_at(pressures_.place(end)));
       parents.begin.push_back(parents.entries.size());
     }
     const auto pattern =
       std::make_shared<const NodePattern>(velocities_.range(), pressures_.range(), parents);
-    system_.P = std::make_unique<NodeMatrix>(system_.interpolation, pattern, 3, 3, scene_.partition.comm);
+    system_.P =
+      std::make_unique<NodeMatrix>(system_.interpolation, pattern, 3, 3, scene_.discretization.comm());
   }
 
   std::vector<double> SaddleMatrix::viscous_diagonal() const
   {
     std::vector<double> diagonal;
-    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
+    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
-      const NodeFrame &frame = frames_[velocities_.owned()[local]];
+      const NodeFrame &frame = frames_[local];
       const auto      &block = sums_->row(local)[diagonal_[local]];
       for (unsigned int i = 0; i < 3; ++i)
       {
@@ -176,13 +161,13 @@ namespace retroforge
     const NodePattern &pattern    = system_.A->pattern();
     const unsigned int n_vertices = scene_.mesh.n_nodes();
     const double       squared    = pressure_scale_ * pressure_scale_;
-    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
+    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
-      const NodeIndex           k       = velocities_.owned()[local];
-      const double             *scale_k = &unknown_scale_[3 * k];
-      const auto                columns = pattern.row(local);
-      const TangentSums::Block *block   = sums_->row(local);
-      const double             *schur   = sums_->schur_row(local);
+      const bool                is_vertex = velocities_.node_at(local) < n_vertices;
+      const Vec3               &scale_k   = unknown_scale_.at_place(local);
+      const auto                columns   = pattern.row(local);
+      const TangentSums::Block *block     = sums_->row(local);
+      const double             *schur     = sums_->schur_row(local);
       double                   *A[3], *B[3], *D = nullptr, *C = nullptr, *S = nullptr;
       for (unsigned int i = 0; i < 3; ++i)
       {
@@ -190,7 +175,7 @@ namespace retroforge
         B[i] = system_.B->entry(local, i, 0);
       }
       // Vertices come first among the velocities, in the order of the pressures.
-      if (k < n_vertices)
+      if (is_vertex)
       {
         D = system_.D->entry(local, 0, 0);
         C = system_.C->entry(local, 0, 0);
@@ -198,30 +183,31 @@ namespace retroforge
       }
       for (unsigned int met = 0; met < columns.size(); ++met, ++block, ++schur)
       {
-        const NodeIndex b       = column_nodes_[columns[met]];
-        const double   *scale_b = &unknown_scale_[3 * b];
-        double          of_velocities[3][3];
+        const unsigned int b            = column_places_[columns[met]];
+        const bool         meets_vertex = velocities_.node_at(b) < n_vertices;
+        const Vec3        &scale_b      = unknown_scale_.at_place(b);
+        double             of_velocities[3][3];
         for (unsigned int i = 0; i < 3; ++i)
           for (unsigned int j = 0; j < 3; ++j)
             of_velocities[i][j] = block->rows[i][j];
-        rotate(frames_[k], frames_[b], of_velocities);
+        rotate(frames_[local], frames_[b], of_velocities);
         for (unsigned int i = 0; i < 3; ++i)
           for (unsigned int j = 0; j < 3; ++j)
             *A[i]++ = scale_k[i] * of_velocities[i][j] * scale_b[j];
-        if (b < n_vertices)
+        if (meets_vertex)
         {
           double of_pressure[3] = {block->rows[0][3], block->rows[1][3], block->rows[2][3]};
-          rotate(frames_[k], of_pressure);
+          rotate(frames_[local], of_pressure);
           for (unsigned int i = 0; i < 3; ++i)
             *B[i]++ = scale_k[i] * of_pressure[i] * pressure_scale_;
         }
-        if (k < n_vertices)
+        if (is_vertex)
         {
           double of_velocity[3] = {block->rows[3][0], block->rows[3][1], block->rows[3][2]};
           rotate(frames_[b], of_velocity);
           for (unsigned int j = 0; j < 3; ++j)
             *D++ = pressure_scale_ * of_velocity[j] * scale_b[j];
-          if (b < n_vertices)
+          if (meets_vertex)
           {
             *C++ = squared * block->rows[3][3];
             *S++ = squared * *schur;
@@ -239,16 +225,16 @@ namespace retroforge
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
     {
       const ContactPoint &point = stage.contact.pairs[p].point;
-      if (!scene_.partition.sees(point.nodes))
+      if (!scene_.discretization.sees(point.nodes))
         continue;
       const Tensor<2, 3> of_point =
         point.velocity_weight() * point.velocity_weight() *
         contact_tangent(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact);
       for (unsigned int a = 0; a < point.n_velocity_nodes(); ++a)
-        if (const NodeIndex k = point.velocity_node_at(a); velocities_.owns(k))
+        if (const unsigned int k = velocities_.place(point.velocity_node_at(a)); k < velocities_.n_owned())
           for (unsigned int b = 0; b < point.n_velocity_nodes(); ++b)
           {
-            const NodeIndex m = point.velocity_node_at(b);
+            const unsigned int m = velocities_.place(point.velocity_node_at(b));
             entries.push_back({k, m, frames_[k].axes * of_point * transpose(frames_[m].axes)});
             system_.penalties_couple |= k != m || !is_nearly_diagonal(entries.back().tangent);
           }
@@ -260,12 +246,11 @@ namespace retroforge
   {
     for (const ContactEntries &of : contact)
     {
-      const unsigned int local    = velocities_.local(of.row);
-      const unsigned int position = system_.A->pattern().position(local, velocities_.number(of.column));
+      const unsigned int position = system_.A->pattern().position(of.row, velocities_.index_at(of.column));
+      const Vec3 &of_row = unknown_scale_.at_place(of.row), &of_column = unknown_scale_.at_place(of.column);
       for (unsigned int i = 0; i < 3; ++i)
         for (unsigned int j = 0; j < 3; ++j)
-          system_.A->entry(local, i, position)[j] +=
-            unknown_scale_[3 * of.row + i] * of.tangent[i][j] * unknown_scale_[3 * of.column + j];
+          system_.A->entry(of.row, i, position)[j] += of_row[i] * of.tangent[i][j] * of_column[j];
     }
   }
 } // namespace retroforge

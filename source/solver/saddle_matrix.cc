@@ -14,7 +14,9 @@ namespace retroforge
   } // namespace
 
   SaddleMatrix::SaddleMatrix(const Scene &scene)
-      : scene_(scene), velocities_(scene.velocities), pressures_(scene.partition.nodes())
+      : scene_(scene)
+      , velocities_(*scene.discretization.condensed_nodes())
+      , pressures_(*scene.discretization.pressure_nodes())
   {
     make_patterns();
     sums_ = std::make_unique<TangentSums>(scene, system_.A->pattern());
@@ -47,36 +49,36 @@ namespace retroforge
     for (const ContactEntries &of : contact)
       if (of.row == of.column)
         for (unsigned int i = 0; i < 3; ++i)
-          total[3 * velocities_.local(of.row) + i] += of.tangent[i][i];
-    scale_.assign(3 * frames_.size(), 1.);
+          total[3 * of.row + i] += of.tangent[i][i];
+    scale_ = NodeVector<3, double>(scene_.discretization.condensed_nodes());
     for (unsigned int row = 0; row < viscous.size(); ++row)
-      scale_[3 * velocities_.owned()[row / 3] + row % 3] = std::sqrt(viscous[row] / total[row]);
-    scene_.exchange.update_components(scale_);
+      scale_.at_place(row / 3)[row % 3] = std::sqrt(viscous[row] / total[row]);
+    scale_.update_ghosts();
     unknown_scale_ = scale_;
-    for (NodeIndex k = 0; k < frames_.size(); ++k)
-      std::fill_n(&unknown_scale_[3 * k], frames_[k].n_fixed, 0.);
+    for (unsigned int place = 0; place < frames_.size(); ++place)
+      for (unsigned int i = 0; i < frames_[place].n_fixed; ++i)
+        unknown_scale_.at_place(place)[i] = 0.;
   }
 
   void SaddleMatrix::put_diagonals_of_fixed(const std::vector<double> &viscous) const
   {
-    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
-      for (unsigned int i = 0; i < frames_[velocities_.owned()[local]].n_fixed; ++i)
+    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
+      for (unsigned int i = 0; i < frames_[local].n_fixed; ++i)
         system_.A->entry(local, i, diagonal_[local])[i] = viscous[3 * local + i];
   }
 
   void SaddleMatrix::describe_rows()
   {
-    const unsigned int n_rows = 3 * velocities_.range().n_owned();
+    const unsigned int n_rows = 3 * velocities_.n_owned();
     system_.penalised.clear();
     system_.translations.assign(3 * n_rows, 0.);
-    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
+    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
-      const NodeIndex  k     = velocities_.owned()[local];
-      const NodeFrame &frame = frames_[k];
+      const NodeFrame &frame = frames_[local];
       for (unsigned int i = frame.n_fixed; i < 3; ++i)
       {
         const unsigned int row   = 3 * local + i;
-        const double       scale = scale_[3 * k + i];
+        const double       scale = scale_.at_place(local)[i];
         if (scale < penalised)
           system_.penalised.push_back(row);
         else
@@ -92,24 +94,26 @@ namespace retroforge
   {
     // Of velocities it is the mean of an edge's ends; so of unknowns, that between frames and scales.
     system_.P->clear();
-    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
+    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
-      const NodeIndex k = velocities_.owned()[local];
-      if (k < scene_.mesh.n_nodes())
+      const NodeIndex k = velocities_.node_at(local);
+      if (k < scene_.discretization.n_vertices())
       {
         for (unsigned int i = 0; i < 3; ++i)
           system_.P->entry(local, i, 0)[i] = 1.;
         continue;
       }
-      for (const NodeIndex end : scene_.spaces.edges()->nodes[k - scene_.mesh.n_nodes()])
+      for (const NodeIndex vertex : scene_.discretization.middles()->ends_of(k))
       {
-        const unsigned int position = system_.P->pattern().position(local, pressures_.number(end));
-        const Tensor<2, 3> turn     = frames_[k].axes * transpose(frames_[end].axes);
-        for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
-          if (scale_[3 * k + i] >= penalised)
+        const unsigned int end = velocities_.place(vertex);
+        const unsigned int position =
+          system_.P->pattern().position(local, pressures_.index_at(pressures_.place(vertex)));
+        const Tensor<2, 3> turn    = frames_[local].axes * transpose(frames_[end].axes);
+        const Vec3        &scale_k = scale_.at_place(local), &scale_end = scale_.at_place(end);
+        for (unsigned int i = frames_[local].n_fixed; i < 3; ++i)
+          if (scale_k[i] >= penalised)
             for (unsigned int j = frames_[end].n_fixed; j < 3; ++j)
-              system_.P->entry(local, i, position)[j] =
-                0.5 * turn[i][j] * scale_[3 * end + j] / scale_[3 * k + i];
+              system_.P->entry(local, i, position)[j] = 0.5 * turn[i][j] * scale_end[j] / scale_k[i];
       }
     }
   }
@@ -117,39 +121,40 @@ namespace retroforge
   std::pair<double, double> SaddleMatrix::residual_norm(const Field<double> &r) const
   {
     double momentum2 = 0., continuity2 = 0.;
-    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
+    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
-      const NodeIndex k = velocities_.owned()[local];
-      const Vec3      v = frames_[k].to_frame(r.V[k]);
-      for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
-        momentum2 += std::pow(scale_[3 * k + i] * v[i], 2);
+      const Vec3 v = frames_[local].to_frame(r.V.at_place(local));
+      for (unsigned int i = frames_[local].n_fixed; i < 3; ++i)
+        momentum2 += std::pow(scale_.at_place(local)[i] * v[i], 2);
     }
-    for (const NodeIndex k : pressures_.owned())
-      continuity2 += r.P[k] * r.P[k];
-    return {std::sqrt(scene_.partition.sum(momentum2)), std::sqrt(scene_.partition.sum(continuity2))};
+    for (unsigned int local = 0; local < pressures_.n_owned(); ++local)
+      continuity2 += r.P.at_place(local) * r.P.at_place(local);
+    return {std::sqrt(scene_.discretization.sum(momentum2)),
+            std::sqrt(scene_.discretization.sum(continuity2))};
   }
 
   unsigned int SaddleMatrix::n_eliminated() const
   {
-    return sums_->eliminations().empty() ? 0 : scene_.partition.visited_cells.size();
+    return sums_->eliminations().empty() ? 0 : scene_.discretization.visited_cells().size();
   }
 
   la::BlockVector SaddleMatrix::vector() const
   {
-    return la::BlockVector({velocities_.range().dofs(3), pressures_.range().dofs(1)}, scene_.partition.comm);
+    return la::BlockVector({velocities_.range().dofs(3), pressures_.range().dofs(1)},
+                           scene_.discretization.comm());
   }
 
   Field<double> SaddleMatrix::condensed(const Field<double> &rhs) const
   {
-    const Partition &partition = scene_.partition;
-    Field<double>    result    = rhs;
+    const auto   &discretization = scene_.discretization;
+    Field<double> result         = rhs;
     for (unsigned int v = 0; v < n_eliminated(); ++v)
     {
-      const CellIndex    c    = partition.visited_cells[v];
+      const CellIndex    c    = discretization.visited_cells()[v];
       CellValues<double> cell = {};
-      cell.beta               = rhs.beta[scene_.spaces.bubble(c)];
+      cell.beta               = MiniPair::bubble(discretization, rhs, c);
       sums_->eliminations()[v].condense(cell);
-      MiniPair::add(scene_.spaces, cell, c, result);
+      MiniPair::add(discretization, cell, c, result);
     }
     return result;
   }
@@ -159,39 +164,38 @@ namespace retroforge
     const Field<double> from       = condensed(rhs);
     double             *momentum   = b.block(0).begin();
     double             *continuity = b.block(1).begin();
-    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
+    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
-      const NodeIndex k = velocities_.owned()[local];
-      const Vec3      v = frames_[k].to_frame(from.V[k]);
+      const Vec3 v = frames_[local].to_frame(from.V.at_place(local));
       for (unsigned int i = 0; i < 3; ++i)
-        momentum[3 * local + i] = i < frames_[k].n_fixed ? 0. : scale_[3 * k + i] * v[i];
+        momentum[3 * local + i] = i < frames_[local].n_fixed ? 0. : scale_.at_place(local)[i] * v[i];
     }
-    for (unsigned int local = 0; local < pressures_.range().n_owned(); ++local)
-      continuity[local] = pressure_scale_ * from.P[pressures_.owned()[local]];
+    for (unsigned int local = 0; local < pressures_.n_owned(); ++local)
+      continuity[local] = pressure_scale_ * from.P.at_place(local);
   }
 
   void SaddleMatrix::unload(const la::BlockVector &x, const Field<double> &rhs, Field<double> &solution) const
   {
-    solution               = Field<double>(scene_.spaces);
-    const double *velocity = x.block(0).begin();
-    const double *pressure = x.block(1).begin();
-    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
+    const auto &discretization = scene_.discretization;
+    solution                   = Field<double>(discretization);
+    const double *velocity     = x.block(0).begin();
+    const double *pressure     = x.block(1).begin();
+    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
-      const NodeIndex k = velocities_.owned()[local];
-      Vec3            v;
-      for (unsigned int i = frames_[k].n_fixed; i < 3; ++i)
-        v[i] = scale_[3 * k + i] * velocity[3 * local + i];
-      solution.V[k] = frames_[k].to_space(v);
+      Vec3 v;
+      for (unsigned int i = frames_[local].n_fixed; i < 3; ++i)
+        v[i] = scale_.at_place(local)[i] * velocity[3 * local + i];
+      solution.V.at_place(local) = frames_[local].to_space(v);
     }
-    for (unsigned int local = 0; local < pressures_.range().n_owned(); ++local)
-      solution.P[pressures_.owned()[local]] = pressure_scale_ * pressure[local];
-    scene_.exchange.update(solution);
+    for (unsigned int local = 0; local < pressures_.n_owned(); ++local)
+      solution.P.at_place(local) = pressure_scale_ * pressure[local];
+    solution.update_ghosts();
     for (unsigned int v = 0; v < n_eliminated(); ++v)
     {
-      const CellIndex          c      = scene_.partition.visited_cells[v];
-      const unsigned int       bubble = scene_.spaces.bubble(c);
-      const CellValues<double> w      = MiniPair::on_cell(scene_.spaces, solution, c);
-      solution.beta[bubble]           = sums_->eliminations()[v].recover_bubble(rhs.beta[bubble], w.V, w.P);
+      const CellIndex          c = discretization.visited_cells()[v];
+      const CellValues<double> w = MiniPair::on_cell(discretization, solution, c);
+      MiniPair::bubble(discretization, solution, c) =
+        sums_->eliminations()[v].recover_bubble(MiniPair::bubble(discretization, rhs, c), w.V, w.P);
     }
   }
 
@@ -199,14 +203,13 @@ namespace retroforge
   {
     double *velocity = x.block(0).begin();
     double *pressure = x.block(1).begin();
-    for (unsigned int local = 0; local < velocities_.range().n_owned(); ++local)
+    for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
-      const NodeIndex k = velocities_.owned()[local];
-      const Vec3      v = frames_[k].to_frame(guess.V[k]);
+      const Vec3 v = frames_[local].to_frame(guess.V.at_place(local));
       for (unsigned int i = 0; i < 3; ++i)
-        velocity[3 * local + i] = i < frames_[k].n_fixed ? 0. : v[i] / scale_[3 * k + i];
+        velocity[3 * local + i] = i < frames_[local].n_fixed ? 0. : v[i] / scale_.at_place(local)[i];
     }
-    for (unsigned int local = 0; local < pressures_.range().n_owned(); ++local)
-      pressure[local] = guess.P[pressures_.owned()[local]] / pressure_scale_;
+    for (unsigned int local = 0; local < pressures_.n_owned(); ++local)
+      pressure[local] = guess.P.at_place(local) / pressure_scale_;
   }
 } // namespace retroforge

@@ -49,19 +49,19 @@ namespace retroforge
   template <typename Number>
   Field<Number> Stage<Number>::residual(const Field<Number> &W, const ActiveSet &active) const
   {
-    const Partition &partition = scene.partition;
-    const ActiveSet  chosen    = active.empty() ? decide_active(W) : active;
-    Field<Number>    r(scene.spaces);
-    with_pair(scene.spaces, [&](const auto pair) {
-      for (const CellIndex c : partition.visited_cells)
-        pair.add(
-          scene.spaces,
-          cell_residual(geometry_of_cell(scene.mesh, X, c), pair.on_cell(scene.spaces, W, c), physics.law),
-          c,
-          r);
+    const Discretization<3> &discretization = scene.discretization;
+    const ActiveSet          chosen         = active.empty() ? decide_active(W) : active;
+    Field<Number>            r(discretization);
+    with_pair(discretization, [&](const auto pair) {
+      for (const CellIndex c : discretization.visited_cells())
+        pair.add(discretization,
+                 cell_residual(
+                   geometry_of_cell(discretization, X, c), pair.on_cell(discretization, W, c), physics.law),
+                 c,
+                 r);
     });
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-      if (partition.sees(contact.pairs[p].point.nodes))
+      if (discretization.sees(contact.pairs[p].point.nodes))
         contact.pairs[p].point.add_to_velocity(
           contact_force(contact_node(p, W, chosen), physics.law, physics.contact), r.V);
     return r;
@@ -70,15 +70,15 @@ namespace retroforge
   template <typename Number>
   std::pair<Number, Number> Stage<Number>::power(const Field<Number> &W, const ActiveSet &active) const
   {
-    const Partition          &partition = scene.partition;
+    const Discretization<3>  &discretization = scene.discretization;
     std::pair<Number, Number> power{Number(0.), Number(0.)};
-    with_pair(scene.spaces, [&](const auto pair) {
-      for (const CellIndex c : partition.cells().owned())
-        power.first +=
-          cell_dissipation(geometry_of_cell(scene.mesh, X, c), pair.on_cell(scene.spaces, W, c), physics.law);
+    with_pair(discretization, [&](const auto pair) {
+      for (const CellIndex c : discretization.cells().owned())
+        power.first += cell_dissipation(
+          geometry_of_cell(discretization, X, c), pair.on_cell(discretization, W, c), physics.law);
     });
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-      if (partition.owns(contact.pairs[p].point.nodes[0]))
+      if (discretization.owns(contact.pairs[p].point.nodes[0]))
         power.second += friction_power(contact_node(p, W, active), physics.law, physics.contact);
     return power;
   }
@@ -88,28 +88,30 @@ namespace retroforge
 
   std::pair<double, double> residual_scale(const Stage<double> &stage, const Field<double> &W)
   {
-    const Scene        &scene = stage.scene;
-    std::vector<double> force(scene.spaces.n_velocity_nodes(), 0.), flow(scene.mesh.n_nodes(), 0.);
-    with_pair(scene.spaces, [&](const auto pair) {
-      for (const CellIndex c : scene.partition.visited_cells)
+    const auto         &discretization = stage.scene.discretization;
+    const auto         &velocities     = *discretization.velocity_nodes();
+    const auto         &pressures      = *discretization.pressure_nodes();
+    std::vector<double> force(velocities.n_places(), 0.), flow(pressures.n_places(), 0.);
+    with_pair(discretization, [&](const auto pair) {
+      for (const CellIndex c : discretization.visited_cells())
       {
-        const auto   geometry = geometry_of_cell(scene.mesh, stage.X, c);
-        const auto   w        = pair.on_cell(scene.spaces, W, c);
+        const auto   geometry = geometry_of_cell(discretization, stage.X, c);
+        const auto   w        = pair.on_cell(discretization, W, c);
         const auto   r        = cell_residual(geometry, w, stage.physics.law);
         const auto   rates    = cell_strain_rates(geometry, w);
         const double flow_c   = 0.25 * geometry.volume * 0.25 * (rates[0] + rates[1] + rates[2] + rates[3]);
         for (unsigned int a = 0; a < r.V.size(); ++a)
-          force[scene.spaces.velocity_nodes(c)[a]] += r.V[a].norm();
-        for (const NodeIndex k : scene.mesh.cells[c])
-          flow[k] += flow_c;
+          force[discretization.velocity_places(c)[a]] += r.V[a].norm();
+        for (unsigned int a = 0; a < 4; ++a)
+          flow[discretization.pressure_places(c)[a]] += flow_c;
       }
     });
     double force2 = 0., flow2 = 0.;
-    for (const NodeIndex k : scene.velocities.owned())
-      force2 += std::pow(force[k], 2);
-    for (const NodeIndex k : scene.partition.nodes().owned())
-      flow2 += flow[k] * flow[k];
-    return {std::sqrt(scene.partition.sum(force2)), std::sqrt(scene.partition.sum(flow2))};
+    for (unsigned int i = 0; i < discretization.condensed_nodes()->n_owned(); ++i)
+      force2 += std::pow(force[i], 2);
+    for (unsigned int i = 0; i < pressures.n_owned(); ++i)
+      flow2 += flow[i] * flow[i];
+    return {std::sqrt(discretization.sum(force2)), std::sqrt(discretization.sum(flow2))};
   }
 
   std::vector<Vec3> die_forces(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
@@ -123,10 +125,10 @@ namespace retroforge
 
   void settle_bubbles(const Stage<double> &stage, Field<double> &W)
   {
-    const Scene &scene = stage.scene;
-    if (scene.spaces.n_bubbles() == 0)
+    const Discretization<3> &discretization = stage.scene.discretization;
+    if (!discretization.has_bubbles())
       return;
-    const auto                               &visited = scene.partition.visited_cells;
+    const auto                               &visited = discretization.visited_cells();
     std::array<CellGeometry<double>, n_lanes> geometry;
     std::array<CellValues<double>, n_lanes>   w;
     for (std::size_t begin = 0; begin < visited.size(); begin += n_lanes)
@@ -136,45 +138,45 @@ namespace retroforge
       {
         // Lanes without a cell repeat the last one.
         const CellIndex c = visited[begin + std::min(lane, n - 1)];
-        geometry[lane]    = geometry_of_cell(scene.mesh, stage.X, c);
-        w[lane]           = MiniPair::on_cell(scene.spaces, W, c);
+        geometry[lane]    = geometry_of_cell(discretization, stage.X, c);
+        w[lane]           = MiniPair::on_cell(discretization, W, c);
       }
       const auto beta = solve_bubbles(geometry, w, stage.physics.law);
       for (unsigned int lane = 0; lane < n; ++lane)
-        W.beta[scene.spaces.bubble(visited[begin + lane])] = beta[lane];
+        MiniPair::bubble(discretization, W, visited[begin + lane]) = beta[lane];
     }
   }
 
   void recover_bubbles(const Stage<double> &stage, Field<double> &W)
   {
-    if (W.beta.empty())
+    const Discretization<3> &discretization = stage.scene.discretization;
+    if (!discretization.has_bubbles())
       return;
-    std::fill(W.beta.begin(), W.beta.end(), Vec3());
+    for (const CellIndex c : discretization.visited_cells())
+      MiniPair::bubble(discretization, W, c) = Vec3();
     settle_bubbles(stage, W);
   }
 
   void reverse_residual(const StageView<double> &view, const Field<double> &lambda, StageBar &bar)
   {
-    const Stage<double> &stage     = view.stage;
-    const TetMesh       &mesh      = stage.scene.mesh;
-    const Partition     &partition = stage.scene.partition;
-    with_pair(stage.scene.spaces, [&](const auto pair) {
-      for (const CellIndex c : partition.cells().owned())
+    const Stage<double>     &stage          = view.stage;
+    const Discretization<3> &discretization = stage.scene.discretization;
+    with_pair(discretization, [&](const auto pair) {
+      for (const CellIndex c : discretization.cells().owned())
       {
-        const auto      X        = positions_of_cell(mesh, stage.X, c);
-        const auto      w        = pair.on_cell(stage.scene.spaces, view.W, c);
-        const auto      lambda_c = pair.on_cell(stage.scene.spaces, lambda, c);
+        const auto      X        = positions_of_cell(discretization, stage.X, c);
+        const auto      w        = pair.on_cell(discretization, view.W, c);
+        const auto      lambda_c = pair.on_cell(discretization, lambda, c);
         CellSensitivity s        = reverse_cell_residual(cell_geometry(X), w, lambda_c, stage.physics.law);
         if (bar.shape.method != ShapeDerivatives::Method::exact)
           s.X = difference_cell_residual(X, w, lambda_c, stage.physics.law, bar.shape);
-        for (unsigned int a = 0; a < 4; ++a)
-          bar.X[mesh.cells[c][a]] += s.X[a];
+        add_to_positions(discretization, s.X, c, bar.X);
         add_numbers(s.law, bar.physics.law);
       }
     });
     ContactPullback pullback(view, bar);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-      if (const ContactPoint &point = stage.contact.pairs[p].point; partition.owns(point.nodes[0]))
+      if (const ContactPoint &point = stage.contact.pairs[p].point; discretization.owns(point.nodes[0]))
         pullback.add_at_fixed_velocity(p,
                                        reverse_contact_force(stage.contact_node(p, view.W, view.active),
                                                              stage.physics.law,
@@ -186,28 +188,26 @@ namespace retroforge
   void
   reverse_power(const StageView<double> &view, const double deformation, const double friction, StageBar &bar)
   {
-    const Stage<double> &stage     = view.stage;
-    const TetMesh       &mesh      = stage.scene.mesh;
-    const Partition     &partition = stage.scene.partition;
-    with_pair(stage.scene.spaces, [&](const auto pair) {
-      for (const CellIndex c : partition.cells().owned())
+    const Stage<double>     &stage          = view.stage;
+    const Discretization<3> &discretization = stage.scene.discretization;
+    with_pair(discretization, [&](const auto pair) {
+      for (const CellIndex c : discretization.cells().owned())
       {
-        const auto                                       X     = positions_of_cell(mesh, stage.X, c);
-        const auto                                       w     = pair.on_cell(stage.scene.spaces, view.W, c);
+        const auto                                       X = positions_of_cell(discretization, stage.X, c);
+        const auto                                       w = pair.on_cell(discretization, view.W, c);
         typename decltype(pair)::template Values<double> w_bar = {};
         CellSensitivity                                  s =
           reverse_cell_dissipation(cell_geometry(X), w, stage.physics.law, deformation, w_bar);
         if (bar.shape.method != ShapeDerivatives::Method::exact)
           s.X = difference_cell_dissipation(X, w, stage.physics.law, deformation, bar.shape);
-        for (unsigned int a = 0; a < 4; ++a)
-          bar.X[mesh.cells[c][a]] += s.X[a];
-        pair.add(stage.scene.spaces, w_bar, c, bar.W);
+        add_to_positions(discretization, s.X, c, bar.X);
+        pair.add(discretization, w_bar, c, bar.W);
         add_numbers(s.law, bar.physics.law);
       }
     });
     ContactPullback pullback(view, bar);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-      if (partition.owns(stage.contact.pairs[p].point.nodes[0]))
+      if (discretization.owns(stage.contact.pairs[p].point.nodes[0]))
         pullback.add(
           p,
           reverse_friction_power(

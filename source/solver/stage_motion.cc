@@ -41,11 +41,13 @@ namespace retroforge
   template <typename Number>
   NodalVectors<Number> motion(const Stage<Number> &stage, const Field<Number> &W)
   {
-    const Scene &scene = stage.scene;
-    if (!scene.spaces.edges())
-      return W.V;
-    const std::vector<Number> c = freedom(stage);
-    return vertex_velocities<Number>({scene.mesh, scene.topology, *scene.spaces.edges(), stage.X, W.V, c});
+    const Scene &scene          = stage.scene;
+    const auto  &discretization = scene.discretization;
+    if (!discretization.middles())
+      return W.V.complete(*discretization.condensed_nodes());
+    const NodalVectors<Number> V = W.V.complete(*discretization.condensed_nodes());
+    const std::vector<Number>  c = freedom(stage);
+    return vertex_velocities<Number>({scene.mesh, scene.topology, *discretization.middles(), stage.X, V, c});
   }
 
   void reverse_motion(const Stage<double>        &stage,
@@ -53,22 +55,24 @@ namespace retroforge
                       const NodalVectors<double> &motion_bar,
                       StageBar                   &bar)
   {
-    const Scene &scene = stage.scene;
-    if (!scene.spaces.edges())
-    {
-      for (std::size_t k = 0; k < motion_bar.size(); ++k)
-        bar.W.V[k] += motion_bar[k];
-      return;
-    }
-    const std::vector<double> c = freedom(stage);
-    VertexMotionBar           motion_input_bar{NodalVectors<double>(stage.X.size()),
-                                     NodalVectors<double>(W.V.size()),
+    const Scene &scene          = stage.scene;
+    const auto  &discretization = scene.discretization;
+    const auto   add_to_W       = [&](const NodalVectors<double> &V_bar) {
+      for (unsigned int place = 0; place < bar.W.V.size(); ++place)
+        if (const NodeIndex k = bar.W.V.numbering()->node_at(place); k < V_bar.size())
+          bar.W.V.at_place(place) += V_bar[k];
+    };
+    if (!discretization.middles())
+      return add_to_W(motion_bar);
+    const NodalVectors<double> V = W.V.complete(*discretization.condensed_nodes());
+    const std::vector<double>  c = freedom(stage);
+    VertexMotionBar            motion_input_bar{NodalVectors<double>(stage.X.size()),
+                                     NodalVectors<double>(V.size()),
                                      std::vector<double>(c.size(), 0.)};
     reverse_vertex_velocities(
-      {scene.mesh, scene.topology, *scene.spaces.edges(), stage.X, W.V, c}, motion_bar, motion_input_bar);
-    for (std::size_t k = 0; k < W.V.size(); ++k)
-      bar.W.V[k] += motion_input_bar.V[k];
-    if (dealii::Utilities::MPI::this_mpi_process(scene.partition.comm) > 0)
+      {scene.mesh, scene.topology, *discretization.middles(), stage.X, V, c}, motion_bar, motion_input_bar);
+    add_to_W(motion_input_bar.V);
+    if (dealii::Utilities::MPI::this_mpi_process(discretization.comm()) > 0)
       return;
     for (std::size_t k = 0; k < stage.X.size(); ++k)
       bar.X[k] += motion_input_bar.X[k];

@@ -119,36 +119,37 @@ namespace retroforge
       add_tangents(t, pairs, blocks, schur);
     }
 
-    unsigned int n_packs(const Partition &partition)
+    unsigned int n_packs(const Discretization<3> &discretization)
     {
-      return (partition.visited_cells.size() + n_lanes - 1) / n_lanes;
+      return (discretization.visited_cells().size() + n_lanes - 1) / n_lanes;
     }
   } // namespace
 
   TangentSums::TangentSums(const Scene &scene, const NodePattern &met) : scene_(scene), begin_(1, 0)
   {
-    const Ownership   &velocities = scene.velocities;
-    const auto        &visited    = scene.partition.visited_cells;
-    const unsigned int n          = scene.spaces.n_nodes_per_cell();
-    for (unsigned int local = 0; local < velocities.range().n_owned(); ++local)
+    const auto          &discretization = scene.discretization;
+    const NodeNumbering &velocities     = *discretization.condensed_nodes();
+    const auto           index_at       = [&](const unsigned int place) {
+      return velocities.index_at(velocities.place(discretization.velocity_nodes()->node_at(place)));
+    };
+    const auto        &visited = discretization.visited_cells();
+    const unsigned int n       = discretization.n_nodes_per_cell();
+    for (unsigned int local = 0; local < velocities.n_owned(); ++local)
       begin_.push_back(begin_.back() + met.row(local).size());
     const unsigned int of_nobody = begin_.back();
     blocks_.resize(of_nobody + 1);
     schur_.resize(of_nobody + 1);
-    if (scene.spaces.n_bubbles() > 0)
-      eliminations_.resize(n_lanes * n_packs(scene.partition));
-    pairs_.assign(n * n * n_lanes * n_packs(scene.partition), of_nobody);
+    if (discretization.has_bubbles())
+      eliminations_.resize(n_lanes * n_packs(discretization));
+    pairs_.assign(n * n * n_lanes * n_packs(discretization), of_nobody);
     for (unsigned int v = 0; v < visited.size(); ++v)
     {
-      const NodeIndex *nodes = scene.spaces.velocity_nodes(visited[v]);
-      unsigned int    *pairs = &pairs_[n * n * n_lanes * (v / n_lanes) + v % n_lanes];
+      const unsigned int *places = discretization.velocity_places(visited[v]);
+      unsigned int       *pairs  = &pairs_[n * n * n_lanes * (v / n_lanes) + v % n_lanes];
       for (unsigned int a = 0; a < n; ++a)
-        if (velocities.owns(nodes[a]))
-        {
-          const unsigned int local = velocities.local(nodes[a]);
+        if (const unsigned int local = places[a]; local < velocities.n_owned())
           for (unsigned int b = 0; b < n; ++b)
-            pairs[n_lanes * (n * a + b)] = begin_[local] + met.position(local, velocities.number(nodes[b]));
-        }
+            pairs[n_lanes * (n * a + b)] = begin_[local] + met.position(local, index_at(places[b]));
     }
   }
 
@@ -157,24 +158,24 @@ namespace retroforge
                               const Field<double> &W,
                               const Linearisation  linearisation)
   {
-    using Pair                       = typename Tangents::Pair;
-    const Partition   &partition     = scene_.partition;
-    const auto        &visited       = partition.visited_cells;
-    const unsigned int pack_width    = Tangents::n_nodes * Tangents::n_nodes * n_lanes;
+    using Pair                        = typename Tangents::Pair;
+    const auto        &discretization = scene_.discretization;
+    const auto        &visited        = discretization.visited_cells();
+    const unsigned int pack_width     = Tangents::n_nodes * Tangents::n_nodes * n_lanes;
     double             log_viscosity = 0., volume = 0.;
 
     std::array<CellGeometry<double>, n_lanes>                   geometry;
     std::array<typename Pair::template Values<double>, n_lanes> w;
     Tangents                                                    tangents;
-    for (unsigned int pack = 0; pack < n_packs(partition); ++pack)
+    for (unsigned int pack = 0; pack < n_packs(discretization); ++pack)
     {
       const unsigned int begin = n_lanes * pack, n = std::min<unsigned int>(n_lanes, visited.size() - begin);
       for (unsigned int lane = 0; lane < n_lanes; ++lane)
       {
         // Lanes without a cell repeat the last one.
         const CellIndex c = visited[begin + std::min(lane, n - 1)];
-        geometry[lane]    = geometry_of_cell(scene_.mesh, stage.X, c);
-        w[lane]           = Pair::on_cell(scene_.spaces, W, c);
+        geometry[lane]    = geometry_of_cell(discretization, stage.X, c);
+        w[lane]           = Pair::on_cell(discretization, W, c);
       }
       tangents.compute(geometry,
                        w,
@@ -183,14 +184,14 @@ namespace retroforge
                        eliminations_.empty() ? nullptr : &eliminations_[begin]);
       add_pack(tangents, &pairs_[pack_width * pack], blocks_.data(), schur_.data());
       for (unsigned int lane = 0; lane < n; ++lane)
-        if (partition.cells().owns(visited[begin + lane]))
+        if (discretization.cells().owns(visited[begin + lane]))
         {
           log_viscosity += std::log(tangents.viscosity[lane]) * tangents.volume[lane];
           volume += tangents.volume[lane];
         }
     }
-    volume               = partition.sum(volume);
-    viscosity_over_edge_ = std::exp(partition.sum(log_viscosity) / volume) /
+    volume               = discretization.sum(volume);
+    viscosity_over_edge_ = std::exp(discretization.sum(log_viscosity) / volume) /
                            std::cbrt(regular_tetrahedra * volume / scene_.mesh.n_cells());
   }
 
@@ -199,7 +200,7 @@ namespace retroforge
   {
     std::fill(blocks_.begin(), blocks_.end(), Block{});
     std::fill(schur_.begin(), schur_.end(), 0.);
-    if (scene_.spaces.pair() == ElementPair::mini)
+    if (scene_.discretization.pair() == ElementPair::mini)
       add_cells<MiniTangents>(stage, W, linearisation);
     else
       add_cells<TaylorHoodTangents>(stage, W, linearisation);

@@ -26,7 +26,7 @@ namespace retroforge
     ForgingState state;
     state.X      = X_0;
     state.volume = volume(leg->scene.mesh.cells, X_0);
-    state.next.W = Field<double>(leg->scene.spaces);
+    state.next.W = Field<double>(leg->scene.discretization);
     state.strain = std::vector<double>(leg->scene.mesh.n_cells(), 0.);
     state.leg    = std::move(leg);
     return state;
@@ -50,8 +50,8 @@ namespace retroforge
     {
       return IncrementLimits::singular(state);
     }
-    guess.W.V         = record.solves.front().V;
-    guess.W.P         = record.solves.front().P;
+    guess.W.V.take(record.solves.front().V);
+    guess.W.P.take(record.solves.front().P);
     guess.known       = Start::near;
     guess.ahead       = 0.;
     const auto timing = timings_.scope("checks");
@@ -69,20 +69,28 @@ namespace retroforge
   void Forging::change_mesh(const RemeshRecord &remesh, ForgingState &state) const
   {
     state.repaired += remesh.repaired;
-    const TransferOperator &J           = remesh.transfer;
-    const auto              transferred = [&](const Spaces &spaces, const Field<double> &W) {
-      if (W.V.empty())
+    const TransferOperator    &J           = remesh.transfer;
+    const std::shared_ptr<Leg> before      = state.leg; // fields know its nodes
+    const auto                 transferred = [&](const Field<double> &W) {
+      if (W.empty())
         return W;
-      const NodalVectors<double> V(W.V.begin(), W.V.begin() + remesh.X_before.size());
-      return interpolated(spaces, J.apply(V), J.apply(W.P));
+      const auto          &old = before->scene.discretization;
+      NodalVectors<double> V   = W.V.complete(*old.condensed_nodes());
+      V.resize(old.n_vertices());
+      return interpolated(
+        state.leg->scene.discretization, J.apply(V), J.apply(W.P.complete(*old.pressure_nodes())));
     };
     auto strain = transfer_cells(state.leg->scene.mesh, state.X, J, remesh.mesh, state.strain);
     state.strains_before.push_back(std::exchange(state.strain, std::move(strain)));
-    state.X          = J.positions(state.X);
-    state.leg        = std::make_shared<Leg>(remesh.mesh, model_, timings_);
-    state.next.W     = transferred(state.leg->scene.spaces, state.next.W);
-    state.next.rate  = transferred(state.leg->scene.spaces, state.next.rate);
-    state.next.known = Start::far;
+    state.X         = J.positions(state.X);
+    state.leg       = std::make_shared<Leg>(remesh.mesh, model_, timings_);
+    state.next.W    = transferred(state.next.W);
+    state.next.rate = transferred(state.next.rate);
+    // Fields on the new mesh are shown, and measured, where an increment fails that began with it.
+    const auto &discretization = state.leg->scene.discretization;
+    state.solution             = {state.next.W.V.complete(*discretization.condensed_nodes()),
+                                  state.next.W.P.complete(*discretization.pressure_nodes())};
+    state.next.known           = Start::far;
     state.remeshed.push_back(state.increments);
   }
 
@@ -91,12 +99,15 @@ namespace retroforge
   {
     if (!remesher_.follows_errors() || state.increments == 0)
       return {};
-    const auto   timing = timings_.scope("error sizes");
-    const Scene &scene  = state.leg->scene;
+    const auto    timing = timings_.scope("error sizes");
+    const Scene  &scene  = state.leg->scene;
+    Field<double> W(scene.discretization);
+    W.V.take(state.solution.V);
+    W.P.take(state.solution.P);
     return optimal_sizes(scene.mesh,
                          state.X,
-                         indicated_errors(scene.mesh, scene.spaces, state.X, state.next.W, process.law),
-                         velocity_degree(scene.spaces),
+                         indicated_errors(scene.discretization, state.X, W, process.law),
+                         velocity_degree(scene.discretization),
                          remesher_.error_size_bounds());
   }
 
@@ -116,18 +127,12 @@ namespace retroforge
 
   void Forging::add_strain(const SolvedIncrement &solved, ForgingState &state) const
   {
-    const auto       timing = timings_.scope("checks");
-    const Scene     &scene  = state.leg->scene;
-    const Ownership &cells  = scene.partition.cells();
+    const auto   timing = timings_.scope("checks");
+    const Scene &scene  = state.leg->scene;
     for (const auto &stage : solved.stages)
-      state.strain = accumulate_strain(scene.mesh,
-                                       scene.spaces,
-                                       stage->X,
-                                       stage->W,
-                                       stage->weight * solved.start->dt,
-                                       state.strain,
-                                       cells.owned());
-    cells.gather(state.strain.data(), 1);
+      state.strain = accumulate_strain(
+        scene.discretization, stage->X, stage->W, stage->weight * solved.start->dt, state.strain);
+    scene.discretization.cells().complete(state.strain.data(), 1);
   }
 
   void Forging::finish_increment(const Process<double> &process,
@@ -138,8 +143,11 @@ namespace retroforge
   {
     const NodalVectors<double> X_before = std::exchange(state.X, solved.X);
     add_strain(solved, state);
-    state.next = state.leg->increment.guess_after(solved, record);
-    state.slip = limits_.slip(process, record, X_before, state.X) / record.step;
+    state.next                 = state.leg->increment.guess_after(solved, record);
+    const auto &discretization = state.leg->scene.discretization;
+    state.solution             = {solved.last().W.V.complete(*discretization.condensed_nodes()),
+                                  solved.last().W.P.complete(*discretization.pressure_nodes())};
+    state.slip                 = limits_.slip(process, record, X_before, state.X) / record.step;
     state.stroke += record.step;
     state.energy.deformation += record.deformation_energy;
     state.energy.friction += record.friction_energy;

@@ -61,15 +61,15 @@ namespace retroforge
     Field<Dual> make_dual(const Field<double> &value, const Field<double> &dot)
     {
       Field<Dual> W;
-      for (std::size_t k = 0; k < value.V.size(); ++k)
-        W.V.push_back(make_dual(value.V[k], dot.V[k]));
-      for (std::size_t k = 0; k < value.P.size(); ++k)
+      W.V = NodeVector<3, Dual>(value.V.numbering());
+      W.P = NodeVector<1, Dual>(value.P.numbering());
+      for (unsigned int i = 0; i < W.V.size(); ++i)
+        W.V.at_place(i) = make_dual(value.V.at_place(i), dot.V.at_place(i));
+      for (unsigned int i = 0; i < W.P.size(); ++i)
       {
-        W.P.push_back(Dual(value.P[k]));
-        W.P.back().fastAccessDx(0) = dot.P[k];
+        W.P.at_place(i)                 = Dual(value.P.at_place(i));
+        W.P.at_place(i).fastAccessDx(0) = dot.P.at_place(i);
       }
-      for (std::size_t c = 0; c < value.beta.size(); ++c)
-        W.beta.push_back(make_dual(value.beta[c], dot.beta[c]));
       return W;
     }
   } // namespace
@@ -95,17 +95,17 @@ namespace retroforge
                            NodalVectors<double>          positions,
                            const SolveRecord            &solve,
                            const double                  weight,
-                           std::vector<Vec3>             bubbles)
+                           const NodeVector<3, double>  &bubbles)
       : X(std::move(positions))
       , active(solve.active)
       , weight(weight)
       , stage(scene, start.physics, start.contact, X)
-      , W(scene.spaces)
+      , W(scene.discretization)
   {
-    W.V = solve.V;
-    W.P = solve.P;
     if (!bubbles.empty())
-      W.beta = std::move(bubbles);
+      W.V = bubbles;
+    W.V.take(solve.V);
+    W.P.take(solve.P);
     settle_bubbles(stage, W);
   }
 
@@ -121,13 +121,14 @@ namespace retroforge
   bool Increment::escaped(const Stage<double> &stage, const Field<double> &W) const
   {
     const auto                     timing = timings_.scope("checks");
-    std::vector<std::vector<bool>> watched(scene_.dies.size(), std::vector<bool>(W.V.size(), false));
+    const auto                    &nodes  = *scene_.discretization.condensed_nodes();
+    std::vector<std::vector<bool>> watched(scene_.dies.size(), std::vector<bool>(nodes.n(), false));
     for (const ContactPair &pair : stage.contact.pairs)
       if (pair.point.has_own_velocity())
         watched[pair.die][pair.point.velocity_node] = true;
     // A point that was not watched must not have run into a die. Each rank looks at its own.
     const auto runs_into = [&](const unsigned int d, const ContactPoint &point) {
-      if (!scene_.velocities.owns(point.velocity_node) || watched[d][point.velocity_node])
+      if (!nodes.owns(point.velocity_node) || watched[d][point.velocity_node])
         return false;
       const auto  &die = stage.physics.dies[d];
       const Vec3   u = point.velocity(W.V) - die.velocity, x = point.position(stage.X);
@@ -146,10 +147,10 @@ namespace retroforge
     for (NodeIndex k = 0; k < stage.X.size(); ++k)
       if (scene_.topology.is_on_surface(k))
         look(ContactPoint::node(k));
-    if (const MeshEdges *edges = scene_.spaces.edges())
+    if (const MiddleNodes *middles = scene_.discretization.middles())
       for (const auto &[a, b] : scene_.topology.surface_edges)
-        look(ContactPoint::middle(a, b, stage.X.size() + edges->find(a, b)));
-    return dealii::Utilities::MPI::max(found ? 1 : 0, scene_.partition.comm) > 0;
+        look(ContactPoint::middle(a, b, middles->between(a, b)));
+    return dealii::Utilities::MPI::max(found ? 1 : 0, scene_.discretization.comm()) > 0;
   }
 
   std::shared_ptr<const IncrementStart<double>> Increment::start_of(const Process<double>      &process,
@@ -188,8 +189,10 @@ namespace retroforge
         newton_.solve(stage, W, frozen, known, s == 0 ? ActiveSet() : solves.back().active);
       record.newton += statistics.iterations;
       record.krylov += statistics.krylov;
-      solves.push_back({W.V, W.P, replay ? frozen : stage.decide_active(W)});
-      if (scene_.spaces.edges())
+      solves.push_back({W.V.complete(*scene_.discretization.condensed_nodes()),
+                        W.P.complete(*scene_.discretization.pressure_nodes()),
+                        replay ? frozen : stage.decide_active(W)});
+      if (scene_.discretization.middles())
         solves.back().vertices = motion(stage, W);
       lost = !replay && !all_found && escaped(stage, W);
     }
@@ -207,8 +210,8 @@ namespace retroforge
     {
       const double time                  = stage->weight * solved.start->dt;
       const auto [deformation, friction] = stage->stage.power(stage->W, stage->active);
-      record.deformation_energy += time * scene_.partition.sum(deformation);
-      record.friction_energy += time * scene_.partition.sum(friction);
+      record.deformation_energy += time * scene_.discretization.sum(deformation);
+      record.friction_energy += time * scene_.discretization.sum(friction);
       const std::vector<Vec3> forces = die_forces(stage->stage, stage->W, stage->active);
       for (unsigned int d = 0; d < forces.size(); ++d)
         record.forces[d] += stage->weight * forces[d];
@@ -257,14 +260,14 @@ namespace retroforge
                                                                const NodalVectors<double>   &X,
                                                                const IncrementRecord        &record,
                                                                const unsigned int            s,
-                                                               std::vector<Vec3>             bubbles) const
+                                                               const NodeVector<3, double>  &bubbles) const
   {
     return std::make_shared<const SolvedStage>(scene_,
                                                start,
                                                advanced(X, start.dt, scheme_of(record).a[s], record.solves),
                                                record.solves[s],
                                                scheme_of(record).b[s],
-                                               std::move(bubbles));
+                                               bubbles);
   }
 
   SolvedIncrement Increment::recorded(std::shared_ptr<const IncrementStart<double>> start,
@@ -292,12 +295,18 @@ namespace retroforge
     const double  stroke = record.step * (scheme.node(scheme.n_stages() - 1) - scheme.node(0));
     if (stroke == 0.)
       return {};
-    Field<double>      rate(scene_.spaces);
+    Field<double>      rate(scene_.discretization);
     const SolveRecord &first = record.solves.front(), &last = record.solves.back();
-    for (std::size_t k = 0; k < rate.V.size(); ++k)
-      rate.V[k] = (last.V[k] - first.V[k]) / stroke;
-    for (std::size_t k = 0; k < rate.P.size(); ++k)
-      rate.P[k] = (last.P[k] - first.P[k]) / stroke;
+    rate.V.take(last.V);
+    rate.P.take(last.P);
+    Field<double> start(scene_.discretization);
+    start.V.take(first.V);
+    start.P.take(first.P);
+    rate.add(-1., start);
+    for (Vec3 &v : rate.V)
+      v /= stroke;
+    for (double &p : rate.P)
+      p /= stroke;
     return rate;
   }
 
@@ -310,9 +319,9 @@ namespace retroforge
 
   Guess Increment::recorded_guess(const IncrementRecord &record) const
   {
-    Field<double> W(scene_.spaces);
-    W.V = record.solves.front().V;
-    W.P = record.solves.front().P;
+    Field<double> W(scene_.discretization);
+    W.V.take(record.solves.front().V);
+    W.P.take(record.solves.front().P);
     return {std::move(W), Start::near, rate(record)};
   }
 
@@ -335,15 +344,6 @@ namespace retroforge
     /// Of the increments after, from which an adjoint system starts: each spares more iterations than it
     /// costs.
     constexpr std::size_t n_starts = 5;
-
-    /// A rank sums over its own cells: the others' strain has no weight there.
-    std::vector<double> owned_part(const std::vector<double> &strain, const Partition &partition)
-    {
-      std::vector<double> part(strain.size(), 0.);
-      for (const CellIndex c : partition.cells().owned())
-        part[c] = strain[c];
-      return part;
-    }
 
     /// Derivatives of one scalar that an increment collects from its stages.
     struct IncrementBar
@@ -369,7 +369,7 @@ namespace retroforge
                           const StageSource          &source,
                           std::vector<Costate>       &costates)
   {
-    const MPI_Comm                comm   = scene_.partition.comm;
+    const MPI_Comm                comm   = scene_.discretization.comm();
     const bool                    first  = dealii::Utilities::MPI::this_mpi_process(comm) == 0;
     const Scheme                 &scheme = scheme_of(record);
     const unsigned int            n      = scheme.n_stages();
@@ -385,9 +385,9 @@ namespace retroforge
     std::vector<double> largest(costates.size(), 0.);
     for (unsigned int s = n; s-- > 0;)
     {
-      const auto              at   = recorded_stage(start, X, record, s, std::move(earlier_bubbles_[s]));
+      const auto              at   = recorded_stage(start, X, record, s, earlier_bubbles_[s]);
       const StageView<double> view = at->view();
-      earlier_bubbles_[s]          = at->W.beta;
+      earlier_bubbles_[s]          = at->W.V;
       system_.assemble(at->stage, at->W, at->active);
       earlier_lambdas_[s].resize(costates.size());
       for (std::size_t j = 0; j < costates.size(); ++j)
@@ -395,7 +395,7 @@ namespace retroforge
         IncrementBar        &bar     = bars[j];
         Costate             &costate = costates[j];
         NodalVectors<double> position_bar(X.size());
-        Field<double>        rhs(scene_.spaces);
+        Field<double>        rhs(scene_.discretization);
         StageBar             stage_bar{rhs, position_bar, bar.contact, bar.physics, model_.shape_derivatives};
         // The velocity leads to X' = X + dt sum b_s V_s and to the Y_r = X + dt sum a_rs V_s that follow.
         std::vector<std::pair<double, const NodalVectors<double> *>> led_to;
@@ -411,23 +411,21 @@ namespace retroforge
         {
           source(j, view, stage_bar);
           if (!costate.strain.empty())
-            bar.physics.dt +=
-              scheme.b[s] * reverse_accumulate_strain(scene_.mesh,
-                                                      scene_.spaces,
-                                                      at->X,
-                                                      at->W,
-                                                      scheme.b[s] * start.dt,
-                                                      owned_part(costate.strain, scene_.partition),
-                                                      rhs,
-                                                      position_bar);
-          scene_.exchange.collect(rhs);
+            bar.physics.dt += scheme.b[s] * reverse_accumulate_strain(scene_.discretization,
+                                                                      at->X,
+                                                                      at->W,
+                                                                      scheme.b[s] * start.dt,
+                                                                      costate.strain,
+                                                                      rhs,
+                                                                      position_bar);
+          rhs.sum_ghosts();
         }
         NodalVectors<double> motion_bar(X.size());
         for (const auto &[weight, there] : led_to)
           for (std::size_t k = 0; k < X.size(); ++k)
             motion_bar[k] += weight * start.dt * (*there)[k];
         reverse_motion(at->stage, at->W, motion_bar, stage_bar);
-        Field<double> minus_rhs(scene_.spaces), lambda;
+        Field<double> minus_rhs(scene_.discretization), lambda;
         minus_rhs.add(-1., rhs);
         auto        &guesses = earlier_lambdas_[s][j];
         const double norm    = system_.norm_of_derivative(minus_rhs);
@@ -435,7 +433,6 @@ namespace retroforge
         system_.solve_derivative(
           minus_rhs, tolerance_of(norm, largest[j]), lambda, guesses, Transposition::transposed);
         reverse_residual(view, lambda, stage_bar);
-        lambda.beta = {}; // a start is of velocities and pressures
         guesses.insert(guesses.begin(), std::move(lambda));
         guesses.resize(std::min(guesses.size(), n_starts));
         if (s == 0)
@@ -461,18 +458,15 @@ namespace retroforge
 
   Field<Dual> Increment::tangent_field(const Stage<Dual> &stage, const SolvedStage &at)
   {
-    const Field<Dual> still = make_dual(at.W, Field<double>(scene_.spaces));
+    const Field<Dual> still = make_dual(at.W, Field<double>(scene_.discretization));
     const Field<Dual> R     = stage.residual(still, at.active);
-    Field<double>     minus_R_dot(scene_.spaces), W_dot;
-    for (std::size_t k = 0; k < R.V.size(); ++k)
-      minus_R_dot.V[k] = -dot_of(R.V[k]);
-    for (std::size_t k = 0; k < R.P.size(); ++k)
-      minus_R_dot.P[k] = -R.P[k].dx(0);
-    for (std::size_t c = 0; c < R.beta.size(); ++c)
-      minus_R_dot.beta[c] = -dot_of(R.beta[c]);
+    Field<double>     minus_R_dot(scene_.discretization), W_dot;
+    for (unsigned int i = 0; i < R.V.size(); ++i)
+      minus_R_dot.V.at_place(i) = -dot_of(R.V.at_place(i));
+    for (unsigned int i = 0; i < R.P.size(); ++i)
+      minus_R_dot.P.at_place(i) = -R.P.at_place(i).dx(0);
     system_.assemble(at.stage, at.W, at.active);
     system_.solve_derivative(minus_R_dot, model_.adjoint_tolerance, W_dot);
-    scene_.exchange.gather(W_dot);
     return make_dual(at.W, W_dot);
   }
 

@@ -136,7 +136,7 @@ namespace retroforge
                                         const NodalVectors<double> &X,
                                         const NodalVectors<double> &X_next) const
   {
-    const auto   before = positions_of_cell(mesh, X, c), after = positions_of_cell(mesh, X_next, c);
+    const auto   before = corners(mesh.cells[c], X), after = corners(mesh.cells[c], X_next);
     const double volume = cell_geometry(after).volume;
     if (!(volume > press_.smallest_volume * cell_geometry(before).volume))
       return (volume > 0. ? "an element would be crushed" : "an element would be inverted") + at(before[0]);
@@ -152,12 +152,12 @@ namespace retroforge
                                         const NodalVectors<double> &X,
                                         const NodalVectors<double> &X_next) const
   {
-    const auto &owned     = scene.partition.cells().owned();
+    const auto &owned     = scene.discretization.cells().owned();
     const auto  is_broken = [&](const CellIndex c) { return !too_much(scene.mesh, c, X, X_next).empty(); };
     const auto  found     = std::find_if(owned.begin(), owned.end(), is_broken);
     // All ranks tell of the same cell.
     const CellIndex first =
-      dealii::Utilities::MPI::min(found == owned.end() ? invalid_index : *found, scene.partition.comm);
+      dealii::Utilities::MPI::min(found == owned.end() ? invalid_index : *found, scene.discretization.comm());
     return first == invalid_index ? "" : too_much(scene.mesh, first, X, X_next);
   }
 
@@ -267,7 +267,7 @@ namespace retroforge
   void IncrementLimits::check_progress(const ForgingState &state) const
   {
     const Scene       &scene  = state.leg->scene;
-    const double       change = volume(scene.mesh, state.X, scene.partition.cells()) / state.volume - 1.;
+    const double       change = volume(scene.mesh, state.X, scene.discretization.cells()) / state.volume - 1.;
     std::ostringstream what;
     what.precision(4);
     if (!(std::abs(change) <= press_.largest_loss))

@@ -4,6 +4,7 @@
 
 #include <retroforge/contact/contact_point.h>
 #include <retroforge/contact/friction.h>
+#include <retroforge/discretization/middle_nodes.h>
 #include <retroforge/geometry/die.h>
 
 #include <algorithm>
@@ -157,7 +158,7 @@ namespace retroforge
     const std::vector<Die>              &dies;
     const std::vector<DieState<Number>> &states; ///< of each die
     const NodalVectors<Number>          &X;
-    const MeshEdges                     *edges = nullptr;       ///< null where velocities are linear
+    const MiddleNodes                   *edges = nullptr;       ///< null where velocities are linear
     MPI_Comm                             comm  = MPI_COMM_SELF; ///< ranks that look for contacts together
   };
 

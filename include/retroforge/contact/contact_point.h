@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/discretization/node_vector.h>
 #include <retroforge/mesh/topology.h>
 
 namespace retroforge
@@ -58,20 +59,23 @@ namespace retroforge
           X[k] += at_point * Number(0.5);
     }
 
+    /// @param V  velocities by node
     template <typename Number>
-    Vector3<Number> velocity(const NodalVectors<Number> &V) const
+    Vector3<Number> velocity(const NodeVector<3, Number> &V) const
     {
-      return has_own_velocity() ? V[velocity_node] : position(V);
+      return has_own_velocity() ? V[velocity_node]
+                                : Vector3<Number>((V[nodes[0]] + V[nodes[1]]) * Number(0.5));
     }
 
     /// The transpose of velocity(): what acts on the point, acts on nodes.
     template <typename Number>
-    void add_to_velocity(const Vector3<Number> &at_point, NodalVectors<Number> &V) const
+    void add_to_velocity(const Vector3<Number> &at_point, NodeVector<3, Number> &V) const
     {
       if (has_own_velocity())
         V[velocity_node] += at_point;
       else
-        add_to_position(at_point, V);
+        for (const NodeIndex k : nodes)
+          V[k] += at_point * Number(0.5);
     }
 
     /// The surface faces all its nodes are of, as TetMesh::faces numbers them: `use(face)` for each.

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/discretization/spaces.h>
+#include <retroforge/discretization/discretization.h>
 
 #include <deal.II/base/parameter_handler.h>
 
@@ -10,9 +10,10 @@ namespace retroforge
 {
   struct DiscretizationParameters
   {
-    std::string element = "mini";
+    std::string element       = "mini";
+    std::string triangulation = "shared";
 
-    void        add_parameters(dealii::ParameterHandler &prm);
-    ElementPair pair() const;
+    void                 add_parameters(dealii::ParameterHandler &prm);
+    DiscretizationChoice choice() const;
   };
 } // namespace retroforge

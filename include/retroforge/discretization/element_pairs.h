@@ -8,10 +8,10 @@
 
 /// @file
 /// Cells of fields. What is done cell by cell is written once, as a function of a pair,
-///   with_pair(spaces, [&](const auto pair) { ... cell_residual(geometry, pair.on_cell(spaces, W, c), law)
-///   ...
+///   with_pair(discretization, [&](const auto pair) {
+///     ... cell_residual(geometry, pair.on_cell(discretization, W, c), law) ...
 ///   });
-/// for the kernels of all pairs have the same names.
+/// for the kernels of all pairs have the same names. A rank does so with the cells that it visits.
 namespace retroforge
 {
   struct MiniPair
@@ -19,40 +19,53 @@ namespace retroforge
     template <typename Number>
     using Values = CellValues<Number>;
 
-    /// Without the bubble, which is zero: of any cell where V and P are complete.
+    /// Of a cell, its bubble left out: zero.
     template <typename Number>
-    static CellValues<Number> at_nodes(const Spaces &spaces, const Field<Number> &W, const CellIndex c)
+    static CellValues<Number>
+    at_nodes(const Discretization<3> &discretization, const Field<Number> &W, const CellIndex c)
     {
-      const NodeIndex   *nodes = spaces.velocity_nodes(c);
+      const unsigned int *velocities = discretization.velocity_places(c),
+                         *pressures  = discretization.pressure_places(c);
       CellValues<Number> w;
       for (unsigned int a = 0; a < 4; ++a)
       {
-        w.V[a] = W.V[nodes[a]];
-        w.P[a] = W.P[nodes[a]];
+        w.V[a] = W.V.at_place(velocities[a]);
+        w.P[a] = W.P.at_place(pressures[a]);
       }
       return w;
     }
 
-    /// Of a visited cell.
     template <typename Number>
-    static CellValues<Number> on_cell(const Spaces &spaces, const Field<Number> &W, const CellIndex c)
+    static CellValues<Number>
+    on_cell(const Discretization<3> &discretization, const Field<Number> &W, const CellIndex c)
     {
-      CellValues<Number> w = at_nodes(spaces, W, c);
-      w.beta               = W.beta[spaces.bubble(c)];
+      CellValues<Number> w = at_nodes(discretization, W, c);
+      w.beta               = bubble(discretization, W, c);
       return w;
+    }
+
+    /// The bubble of a cell.
+    template <typename Fields>
+    static auto &bubble(const Discretization<3> &discretization, Fields &W, const CellIndex c)
+    {
+      return W.V.at_place(discretization.velocity_places(c)[4]);
     }
 
     /// The transpose of on_cell.
     template <typename Number>
-    static void add(const Spaces &spaces, const CellValues<Number> &w, const CellIndex c, Field<Number> &W)
+    static void add(const Discretization<3>  &discretization,
+                    const CellValues<Number> &w,
+                    const CellIndex           c,
+                    Field<Number>            &W)
     {
-      const NodeIndex *nodes = spaces.velocity_nodes(c);
+      const unsigned int *velocities = discretization.velocity_places(c),
+                         *pressures  = discretization.pressure_places(c);
       for (unsigned int a = 0; a < 4; ++a)
       {
-        W.V[nodes[a]] += w.V[a];
-        W.P[nodes[a]] += w.P[a];
+        W.V.at_place(velocities[a]) += w.V[a];
+        W.P.at_place(pressures[a]) += w.P[a];
       }
-      W.beta[spaces.bubble(c)] += w.beta;
+      W.V.at_place(velocities[4]) += w.beta;
     }
   };
 
@@ -62,54 +75,73 @@ namespace retroforge
     using Values = TaylorHoodValues<Number>;
 
     template <typename Number>
-    static TaylorHoodValues<Number> at_nodes(const Spaces &spaces, const Field<Number> &W, const CellIndex c)
+    static TaylorHoodValues<Number>
+    at_nodes(const Discretization<3> &discretization, const Field<Number> &W, const CellIndex c)
     {
-      return on_cell(spaces, W, c);
+      return on_cell(discretization, W, c);
     }
 
     template <typename Number>
-    static TaylorHoodValues<Number> on_cell(const Spaces &spaces, const Field<Number> &W, const CellIndex c)
+    static TaylorHoodValues<Number>
+    on_cell(const Discretization<3> &discretization, const Field<Number> &W, const CellIndex c)
     {
-      const NodeIndex         *nodes = spaces.velocity_nodes(c);
+      const unsigned int *velocities = discretization.velocity_places(c),
+                         *pressures  = discretization.pressure_places(c);
       TaylorHoodValues<Number> w;
       for (unsigned int a = 0; a < 10; ++a)
-        w.V[a] = W.V[nodes[a]];
+        w.V[a] = W.V.at_place(velocities[a]);
       for (unsigned int a = 0; a < 4; ++a)
-        w.P[a] = W.P[nodes[a]];
+        w.P[a] = W.P.at_place(pressures[a]);
       return w;
     }
 
     /// The transpose of on_cell.
     template <typename Number>
-    static void
-    add(const Spaces &spaces, const TaylorHoodValues<Number> &w, const CellIndex c, Field<Number> &W)
+    static void add(const Discretization<3>        &discretization,
+                    const TaylorHoodValues<Number> &w,
+                    const CellIndex                 c,
+                    Field<Number>                  &W)
     {
-      const NodeIndex *nodes = spaces.velocity_nodes(c);
+      const unsigned int *velocities = discretization.velocity_places(c),
+                         *pressures  = discretization.pressure_places(c);
       for (unsigned int a = 0; a < 10; ++a)
-        W.V[nodes[a]] += w.V[a];
+        W.V.at_place(velocities[a]) += w.V[a];
       for (unsigned int a = 0; a < 4; ++a)
-        W.P[nodes[a]] += w.P[a];
+        W.P.at_place(pressures[a]) += w.P[a];
     }
   };
 
   /// f(MiniPair()) or f(TaylorHoodPair()).
   template <typename F>
-  decltype(auto) with_pair(const Spaces &spaces, const F &f)
+  decltype(auto) with_pair(const Discretization<3> &discretization, const F &f)
   {
-    return spaces.pair() == ElementPair::mini ? f(MiniPair()) : f(TaylorHoodPair());
+    return discretization.pair() == ElementPair::mini ? f(MiniPair()) : f(TaylorHoodPair());
   }
 
+  /// Where the geometry nodes of a visited cell are.
   template <typename Number>
   Four<Vector3<Number>>
-  positions_of_cell(const TetMesh &mesh, const NodalVectors<Number> &X, const CellIndex c)
+  positions_of_cell(const Discretization<3> &discretization, const NodalVectors<Number> &X, const CellIndex c)
   {
-    const auto &nodes = mesh.cells[c];
+    const NodeIndex *nodes = discretization.geometry_nodes(c);
     return {{X[nodes[0]], X[nodes[1]], X[nodes[2]], X[nodes[3]]}};
   }
 
   template <typename Number>
-  CellGeometry<Number> geometry_of_cell(const TetMesh &mesh, const NodalVectors<Number> &X, const CellIndex c)
+  CellGeometry<Number>
+  geometry_of_cell(const Discretization<3> &discretization, const NodalVectors<Number> &X, const CellIndex c)
   {
-    return cell_geometry(positions_of_cell(mesh, X, c));
+    return cell_geometry(positions_of_cell(discretization, X, c));
+  }
+
+  /// The transpose of positions_of_cell.
+  inline void add_to_positions(const Discretization<3> &discretization,
+                               const Four<Vec3>        &of_cell,
+                               const CellIndex          c,
+                               NodalVectors<double>    &X)
+  {
+    const NodeIndex *nodes = discretization.geometry_nodes(c);
+    for (unsigned int a = 0; a < 4; ++a)
+      X[nodes[a]] += of_cell[a];
   }
 } // namespace retroforge

@@ -7,9 +7,9 @@
 namespace retroforge
 {
   /// Degree p of the velocities without bubbles: a cell's indicated error falls as its size to the power 2 p.
-  inline unsigned int velocity_degree(const Spaces &spaces)
+  inline unsigned int velocity_degree(const Discretization<3> &discretization)
   {
-    return spaces.pair() == ElementPair::mini ? 1 : 2;
+    return discretization.pair() == ElementPair::mini ? 1 : 2;
   }
 
   /// What each cell adds to the error of the power, as far as it shows in jumps of the strain rate [mJ/s]:
@@ -20,9 +20,9 @@ namespace retroforge
   /// around it, by their volumes, and linear between. The power functional is convex with the stress s as its
   /// gradient, so that this is twice its error to second order if eps* were exact.
   /// @param X, W  positions [mm] and velocities [mm/s]
+  /// @return of all cells, on every rank. Collective.
   /// Cells that are inverted count as flat: nothing. @cite Zienkiewicz1987
-  std::vector<double> indicated_errors(const TetMesh              &mesh,
-                                       const Spaces               &spaces,
+  std::vector<double> indicated_errors(const Discretization<3>    &discretization,
                                        const NodalVectors<double> &X,
                                        const Field<double>        &W,
                                        const MaterialLaw<double>  &law);

@@ -2,37 +2,60 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/discretization/spaces.h>
+#include <retroforge/discretization/discretization.h>
+#include <retroforge/discretization/node_vector.h>
 
 namespace retroforge
 {
-  /// The unknowns W = (V, beta, P) of a pair's spaces, or anything dual to them. Every rank has room for
-  /// all nodes and for the bubbles of the cells it visits, and is right where it works (FieldExchange).
-  template <typename Number>
-  struct Field
+  /// The unknowns W = (V, P) of a discretisation's spaces, or anything dual to them. Velocities stand at the
+  /// nodes of their space, which include the bubbles of the cells. A rank has what it works with: its own
+  /// nodes and those it reads.
+  template <int dim, typename Number>
+  struct FlowField
   {
-    NodalVectors<Number>         V;    ///< one per velocity node
-    std::vector<Vector3<Number>> beta; ///< one per bubble kept, see Spaces::bubble
-    std::vector<Number>          P;    ///< one per pressure node
+    NodeVector<dim, Number> V; ///< [mm/s]
+    NodeVector<1, Number>   P; ///< [MPa]
 
-    Field() = default;
-    explicit Field(const Spaces &spaces)
-        : V(spaces.n_velocity_nodes()), beta(spaces.n_bubbles()), P(spaces.n_pressure_nodes(), Number(0.))
+    FlowField() = default;
+    explicit FlowField(const Discretization<dim> &discretization)
+        : V(discretization.velocity_nodes()), P(discretization.pressure_nodes())
     {
     }
 
+    bool empty() const { return V.empty(); }
+
     /// this += scale * other
-    void add(const Number &scale, const Field &other)
+    void add(const Number &scale, const FlowField &other)
     {
-      for (std::size_t k = 0; k < V.size(); ++k)
-        V[k] += other.V[k] * scale;
-      for (std::size_t k = 0; k < P.size(); ++k)
-        P[k] += other.P[k] * scale;
-      for (std::size_t c = 0; c < beta.size(); ++c)
-        beta[c] += other.beta[c] * scale;
+      for (unsigned int i = 0; i < V.size(); ++i)
+        V.at_place(i) += other.V.at_place(i) * scale;
+      for (unsigned int i = 0; i < P.size(); ++i)
+        P.at_place(i) += other.P.at_place(i) * scale;
+    }
+
+    /// Values of other ranks that this one reads. Collective.
+    void update_ghosts()
+    {
+      V.update_ghosts();
+      P.update_ghosts();
+    }
+
+    /// Whole sums, of what each rank has summed over its own cells and contacts, wherever this rank reads
+    /// them. Collective.
+    void sum_ghosts()
+    {
+      V.sum_ghosts();
+      P.sum_ghosts();
+      update_ghosts();
     }
   };
 
-  /// A field without bubbles from values at the nodes of the mesh: linear along edges.
-  Field<double> interpolated(const Spaces &spaces, NodalVectors<double> V, std::vector<double> P);
+  template <typename Number>
+  using Field = FlowField<3, Number>;
+
+  /// A field without bubbles from values at the vertices: linear along edges.
+  template <int dim>
+  FlowField<dim, double> interpolated(const Discretization<dim>                 &discretization,
+                                      const std::vector<dealii::Tensor<1, dim>> &V,
+                                      const std::vector<double>                 &P);
 } // namespace retroforge

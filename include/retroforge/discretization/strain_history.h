@@ -18,32 +18,21 @@
 /// material at rest accumulates nothing.
 namespace retroforge
 {
-  /// q_np1 = q_n + dt ebar(X, W),  one value per cell, dimensionless.
+  /// q_np1 = q_n + dt ebar(X, W)  of the cells this rank owns, one value per cell, dimensionless; the others'
+  /// stays.
   /// @param X, W   positions [mm] and velocities [mm/s] of the increment's last stage
-  /// @param cells  those whose strain grows; the others' stays
   template <typename Number>
-  std::vector<Number> accumulate_strain(const TetMesh                &mesh,
-                                        const Spaces                 &spaces,
-                                        const NodalVectors<Number>   &X,
-                                        const Field<Number>          &W,
-                                        const Number                 &dt,
-                                        const std::vector<Number>    &q_n,
-                                        const std::vector<CellIndex> &cells);
-
-  /// The same of all cells.
-  template <typename Number>
-  std::vector<Number> accumulate_strain(const TetMesh              &mesh,
-                                        const Spaces               &spaces,
+  std::vector<Number> accumulate_strain(const Discretization<3>    &discretization,
                                         const NodalVectors<Number> &X,
                                         const Field<Number>        &W,
                                         const Number               &dt,
                                         const std::vector<Number>  &q_n);
 
-  /// Pull-back of accumulate_strain: adds dt q_bar_T debar_T to W_bar (V and beta) and X_bar.
+  /// Pull-back of accumulate_strain: adds dt q_bar_T debar_T of the cells this rank owns to W_bar (V) and
+  /// X_bar.
   /// @param q_bar  adjoint of q_np1, and as it is that of q_n
   /// @return derivative in dt,  sum_T q_bar_T ebar_T
-  double reverse_accumulate_strain(const TetMesh              &mesh,
-                                   const Spaces               &spaces,
+  double reverse_accumulate_strain(const Discretization<3>    &discretization,
                                    const NodalVectors<double> &X,
                                    const Field<double>        &W,
                                    double                      dt,

@@ -7,8 +7,17 @@
 #include <retroforge/geometry/triangle_surface.h>
 #include <retroforge/mesh/tet_mesh.h>
 
+#include <memory>
+
 namespace retroforge
 {
+  /// How the cells of a mesh lie on the ranks.
+  enum class TriangulationKind
+  {
+    shared,           ///< every rank has the whole triangulation
+    fully_distributed ///< every rank has its own cells and those around them
+  };
+
   /// A triangulation that all ranks know; its cells belong to them in their order, as many to each.
   class SharedTriangulation : public dealii::parallel::shared::Triangulation<3>
   {
@@ -20,10 +29,17 @@ namespace retroforge
   /// vertices with the numbers of the nodes, the index of its patch as the boundary id of each face.
   /// deal.II accepts cells that are turned inside out and surfaces that are none: check the mesh before.
   /// @param X  positions of the nodes [mm]
-  void make_triangulation(const TetMesh              &mesh,
-                          const NodalVectors<double> &X,
-                          dealii::Triangulation<3>   &triangulation);
+  template <int dim>
+  void make_triangulation(const SimplexMesh<dim>                    &mesh,
+                          const std::vector<dealii::Tensor<1, dim>> &X,
+                          dealii::Triangulation<dim>                &triangulation);
 
   /// The same with a surface: its triangles in their order, vertices with their numbers.
   void make_triangulation(const TriangleSurface &surface, dealii::Triangulation<2, 3> &triangulation);
+
+  /// A mesh on all ranks of `comm`, whose cells METIS gives to them. The index of a cell in the mesh is its
+  /// coarse cell's. Collective.
+  template <int dim>
+  std::unique_ptr<dealii::Triangulation<dim>>
+  distributed_triangulation(const SimplexMesh<dim> &mesh, TriangulationKind kind, MPI_Comm comm);
 } // namespace retroforge

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/mesh/edges.h>
+#include <retroforge/discretization/middle_nodes.h>
 #include <retroforge/mesh/topology.h>
 
 /// @file
@@ -49,7 +49,7 @@ namespace retroforge
   {
     const TetMesh              &mesh;
     const Topology             &topology;
-    const MeshEdges            &edges;
+    const MiddleNodes          &middles;
     const NodalVectors<Number> &X;       ///< positions of the vertices [mm]
     const NodalVectors<Number> &V;       ///< at the vertices, then in the middles of the edges [mm/s]
     const std::vector<Number>  &freedom; ///< c_k in [0, 1] of each vertex; counts on the surface only

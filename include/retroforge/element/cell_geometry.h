@@ -12,6 +12,9 @@ namespace retroforge
   template <typename Number>
   using Four = std::array<Number, 4>;
 
+  /// Corners of the six edges of a tetrahedron, in the order of deal.II's lines.
+  inline constexpr unsigned int tet_edge_corners[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+
   /// Volume [mm^3] and gradients g_a = grad lambda_a [1/mm] of a tetrahedron.
   template <typename Number>
   struct CellGeometry

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/mesh/ownership.h>
+#include <retroforge/core/replicated_entries.h>
 #include <retroforge/mesh/tet_mesh.h>
 
 /// @file
@@ -10,8 +10,8 @@
 namespace retroforge
 {
   /// Sum of the signed volumes of the cells [mm^3].
-  double volume(const TetMesh &mesh, const NodalVectors<double> &X, const Ownership &cells);
+  double volume(const TetMesh &mesh, const NodalVectors<double> &X, const ReplicatedEntries &cells);
 
   /// Smallest quality of all cells, see tet_quality().
-  double minimum_quality(const TetMesh &mesh, const NodalVectors<double> &X, const Ownership &cells);
+  double minimum_quality(const TetMesh &mesh, const NodalVectors<double> &X, const ReplicatedEntries &cells);
 } // namespace retroforge

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <retroforge/core/rows.h>
-#include <retroforge/mesh/edges.h>
+#include <retroforge/mesh/tet_mesh.h>
 
 #include <array>
 
@@ -33,7 +33,4 @@ namespace retroforge
 
     bool is_on_surface(const NodeIndex node) const { return surface_faces[node].size() > 0; }
   };
-
-  /// As Topology::fixed_directions, of the middles of edges.
-  Rows<Vec3> fixed_directions_of_edges(const TetMesh &mesh, const MeshEdges &edges);
 } // namespace retroforge

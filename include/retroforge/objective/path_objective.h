@@ -80,7 +80,7 @@ namespace retroforge
   template <typename Number>
   void add_integrals(const PathObjective &objective, const StageView<Number> &view, PathRow<Number> &row)
   {
-    const auto whole = sum_over_ranks(objective.integrals(view), view.stage.scene.partition.comm);
+    const auto whole = sum_over_ranks(objective.integrals(view), view.stage.scene.discretization.comm());
     row.integrals.resize(whole.size(), Number(0.));
     for (std::size_t k = 0; k < whole.size(); ++k)
       row.integrals[k] += view.weight * whole[k];

@@ -2,7 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/adjoint/check.h>
+#include <retroforge/adjoint/objective_sensitivity.h>
+#include <retroforge/design/design.h>
 #include <retroforge/mesh/whole_part.h>
 #include <retroforge/output/history.h>
 #include <retroforge/output/summary.h>
@@ -26,21 +27,6 @@ namespace retroforge
 
   /// The parameters by what one per cent of each does: what a forger would turn first.
   void print_gradient(const Judged &objective, const Design &design, const std::vector<double> &mu);
-
-  /// What a check is about to do.
-  /// @param n_directions  to be checked, by n_runs forgings each
-  /// @param n_done        directions that an earlier check has done
-  /// @param seconds       of one forging; 0 when unknown
-  void print_check_begin(unsigned int n_directions, unsigned int n_done, unsigned int n_runs, double seconds);
-
-  /// Of the direction checked last, and the time left as those so far took it.
-  /// @param rows    of all objectives along the directions so far
-  /// @param before  of the directions done, those that an earlier check has done
-  void print_check_progress(const std::vector<CheckRow> &rows,
-                            unsigned int                 before,
-                            unsigned int                 done,
-                            unsigned int                 all,
-                            double                       seconds);
 
   /// The objectives, and the warnings.
   void print_results(const Summary &summary, const std::string &directory);

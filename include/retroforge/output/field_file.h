@@ -5,7 +5,8 @@
 #include <deal.II/base/data_out_base.h>
 #include <deal.II/grid/tria.h>
 
-#include <retroforge/discretization/spaces.h>
+#include <retroforge/core/types.h>
+#include <retroforge/discretization/middle_nodes.h>
 #include <retroforge/element/cell_stress.h>
 
 #include <array>
@@ -41,12 +42,13 @@ namespace retroforge
     void add_linear(const std::string &name, const std::string &unit, const std::vector<double> &values);
     void add_linear(const std::string &name, const std::string &unit, const NodalVectors<double> &values);
 
-    /// A velocity of these spaces, linear or quadratic as they are; bubbles are not shown.
-    /// @param values  at the velocity nodes
+    /// A velocity that is linear, or quadratic with nodes in the middles of edges; bubbles are not shown.
+    /// @param values   at the velocity nodes
+    /// @param middles  null where it is linear
     void add_velocity(const std::string          &name,
                       const std::string          &unit,
                       const NodalVectors<double> &values,
-                      const Spaces               &spaces);
+                      const MiddleNodes          *middles);
 
     /// Fields that are constant in each cell. Tensors get nine components, row by row.
     void add_constant(const std::string &name, const std::string &unit, const std::vector<double> &values);

@@ -2,7 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/adjoint/check.h>
+#include <retroforge/adjoint/objective_sensitivity.h>
+#include <retroforge/design/design.h>
 
 namespace retroforge
 {

@@ -20,7 +20,7 @@ namespace retroforge
 
     /// Solution of the uncondensed system, or of the transposed one, for the right-hand side rhs (owned
     /// entries), to `tolerance` relative to the scaled right-hand side. Returns the number of Krylov
-    /// iterations (0 for a direct solve). A rank gets what it works with (FieldExchange).
+    /// iterations (0 for a direct solve). A rank gets its own entries and those it reads.
     /// @param guesses  fields, like the solutions of earlier systems, the best combination of which is the
     /// start
     unsigned int solve(const Field<double>              &rhs,

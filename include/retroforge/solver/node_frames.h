@@ -18,9 +18,9 @@ namespace retroforge
     Vec3 to_space(const Vec3 &v) const { return identity ? v : v * axes; }
   };
 
-  /// Frames of all nodes: symmetry planes fix their normals, a die's normal becomes an axis of its own, so
-  /// that the penalty stands on one diagonal entry whatever the die's orientation. Between two dies the first
-  /// axis is that of the one which holds.
+  /// Frames of the nodes of Discretization::condensed_nodes(), by place: symmetry planes fix their normals, a
+  /// die's normal becomes an axis of its own, so that the penalty stands on one diagonal entry whatever the
+  /// die's orientation. Between two dies the first axis is that of the one which holds.
   /// @param active  contacts that hold
   std::vector<NodeFrame>
   make_frames(const Scene &scene, const ContactSet<double> &contact, const ActiveSet &active);

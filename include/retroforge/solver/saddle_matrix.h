@@ -51,7 +51,7 @@ namespace retroforge
     /// Velocities and pressures as unknowns.
     void load_guess(const Field<double> &guess, la::BlockVector &x) const;
     /// The solution of the uncondensed system from that of the condensed one: what this rank works with
-    /// (FieldExchange).
+    /// and ghosts.
     void unload(const la::BlockVector &x, const Field<double> &rhs, Field<double> &solution) const;
 
     /// The scaled norm of a residual's momentum rows, and of its continuity rows.
@@ -61,12 +61,12 @@ namespace retroforge
     /// What contact adds to the entries of a pair of velocities, in their frames.
     struct ContactEntries
     {
-      NodeIndex            row, column;
+      unsigned int         row, column; ///< places of nodes
       dealii::Tensor<2, 3> tangent;
     };
 
     void make_patterns();
-    void make_interpolation_pattern(const MeshEdges &edges);
+    void make_interpolation_pattern(const MiddleNodes &middles);
     /// Of A's local rows, from cells alone.
     std::vector<double> viscous_diagonal() const;
     /// Of owned rows; says whether penalties couple.
@@ -87,14 +87,14 @@ namespace retroforge
     Field<double> condensed(const Field<double> &rhs) const;
 
     const Scene                 &scene_;
-    const Ownership             &velocities_, &pressures_;
+    const NodeNumbering         &velocities_, &pressures_; ///< those of matrices
     SaddleSystem                 system_;
-    std::vector<NodeFrame>       frames_;        ///< of each velocity node
-    std::vector<double>          scale_;         ///< of each velocity component in its frame
-    std::vector<double>          unknown_scale_; ///< the same, zero where it is fixed
+    std::vector<NodeFrame>       frames_;        ///< of each velocity node, by place
+    NodeVector<3, double>        scale_;         ///< of each velocity component in its frame
+    NodeVector<3, double>        unknown_scale_; ///< the same, zero where it is fixed
     double                       pressure_scale_ = 1.;
     std::unique_ptr<TangentSums> sums_;
-    std::vector<NodeIndex>       column_nodes_; ///< of A, by local number
-    std::vector<unsigned int>    diagonal_;     ///< where an owned node stands in its own row
+    std::vector<unsigned int>    column_places_; ///< of the nodes of A's columns, as A numbers them
+    std::vector<unsigned int>    diagonal_;      ///< where an owned node stands in its own row
   };
 } // namespace retroforge

@@ -4,50 +4,32 @@
 
 #include <retroforge/contact/contact.h>
 #include <retroforge/discretization/field.h>
-#include <retroforge/discretization/field_exchange.h>
 #include <retroforge/element/semi_analytic.h>
 
 namespace retroforge
 {
-  /// For which bubbles a rank has room in fields: those of the cells it visits, or all of them.
-  enum class Bubbles
-  {
-    visited,
-    all
-  };
-
-  /// What does not move: the mesh, the spaces on it, who works on what of it, and the shapes of the dies.
+  /// What does not move: the mesh, the spaces on it, and the shapes of the dies.
   struct Scene
   {
-    TetMesh          mesh;
-    Topology         topology;
-    Partition        partition;
-    Spaces           spaces;
-    Ownership        velocities;
-    FieldExchange    exchange;
-    std::vector<Die> dies;
+    TetMesh           mesh;
+    Topology          topology;
+    Discretization<3> discretization;
+    std::vector<Die>  dies;
 
-    Scene(TetMesh           made_mesh,
-          const ElementPair pair,
-          std::vector<Die>  dies,
-          MPI_Comm          comm,
-          const Bubbles     bubbles = Bubbles::visited)
+    Scene(TetMesh made_mesh, const DiscretizationChoice &choice, std::vector<Die> dies, MPI_Comm comm)
         : mesh(std::move(made_mesh))
         , topology(mesh)
-        , partition(mesh, topology, comm)
-        , spaces(mesh, topology, pair, bubbles == Bubbles::visited ? &partition.visited_cells : nullptr)
-        , velocities(velocity_ownership(spaces, partition))
-        , exchange(mesh, topology, spaces, partition, velocities)
+        , discretization(mesh, choice, comm)
         , dies(std::move(dies))
     {
     }
-    Scene(const Scene &) = delete; // its members refer to each other
+    Scene(const Scene &) = delete; // a discretisation is not copied
 
     /// With dies and nodes there. What is passed must live as long.
     template <typename Number>
     ContactView<Number> view(const std::vector<DieState<Number>> &states, const NodalVectors<Number> &X) const
     {
-      return {mesh, topology, dies, states, X, spaces.edges(), partition.comm};
+      return {mesh, topology, dies, states, X, discretization.middles(), discretization.comm()};
     }
   };
 
@@ -83,7 +65,7 @@ namespace retroforge
 
   /// Equilibrium at given positions: the sums over cells and contact nodes of value, residual, tangent data,
   /// and their reverse. Entries of results are right on owned nodes and in visited cells;
-  /// FieldExchange completes them.
+  /// Field::update_ghosts completes them.
   template <typename Number>
   class Stage
   {
@@ -118,10 +100,11 @@ namespace retroforge
   /// Force of each die on the workpiece [N], contact and friction.
   std::vector<Vec3> die_forces(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
 
-  /// The equilibrium of bubbles at given V and P, in the cells this rank visits; W.beta is where each starts.
+  /// The equilibrium of bubbles at given velocities of the nodes and P, in the cells this rank visits; they
+  /// start where they are.
   void settle_bubbles(const Stage<double> &stage, Field<double> &W);
 
-  /// The same from V and P alone (Field::beta is overwritten).
+  /// The same from the velocities at nodes and P alone: bubbles start from nothing.
   void recover_bubbles(const Stage<double> &stage, Field<double> &W);
 
   /// A stage and its solution.

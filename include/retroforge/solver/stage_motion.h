@@ -8,7 +8,8 @@ namespace retroforge
 {
   /// The velocities with which the nodes of the mesh move: their own where velocities are linear; where they
   /// are quadratic, those that carry the volume along (discretization/vertex_motion.h). A node is as free as
-  /// it does not touch a die: c_k = product over the dies of 1 - w(delta).
+  /// it does not touch a die: c_k = product over the dies of 1 - w(delta). The same on every rank.
+  /// Collective.
   template <typename Number>
   NodalVectors<Number> motion(const Stage<Number> &stage, const Field<Number> &W);
 

@@ -6,13 +6,21 @@
 
 namespace retroforge
 {
+  /// Velocities and pressures of the last stage of an increment, on all ranks; empty before the first.
+  struct LastSolution
+  {
+    NodalVectors<double> V; ///< of velocity nodes but bubbles [mm/s]
+    std::vector<double>  P; ///< [MPa]
+  };
+
   /// Where a run stands between two increments.
   struct ForgingState
   {
     std::shared_ptr<Leg> leg;
     NodalVectors<double> X;
     std::vector<double>  strain; ///< accumulated equivalent strain of each cell
-    Guess                next;   ///< where the next increment starts: at the last one's solution
+    LastSolution         solution;
+    Guess                next; ///< where the next increment starts
     double               stroke   = 0.;
     double               volume   = 0.; ///< at the start of the run [mm^3]
     double               repaired = 0.; ///< metal thinner than an element taken away [mm^3]

@@ -75,7 +75,7 @@ namespace retroforge
                 NodalVectors<double>          X,
                 const SolveRecord            &solve,
                 double                        weight,
-                std::vector<Vec3>             bubbles = {});
+                const NodeVector<3, double>  &bubbles = {});
     SolvedStage(const SolvedStage &) = delete; // its members refer to each other
 
     StageView<double> view() const { return {stage, W, active, weight}; }
@@ -169,7 +169,7 @@ namespace retroforge
                                                       const NodalVectors<double>   &X,
                                                       const IncrementRecord        &record,
                                                       unsigned int                  s,
-                                                      std::vector<Vec3>             bubbles = {}) const;
+                                                      const NodeVector<3, double>  &bubbles = {}) const;
     /// Of an adjoint system, relative to its right-hand side.
     /// @param norm, largest  of that, and of the largest one of the increment's stages so far
     double      tolerance_of(double norm, double largest) const;
@@ -184,6 +184,6 @@ namespace retroforge
     /// Of each stage and costate, from the increments reversed last: where the next adjoint system starts.
     std::vector<std::vector<std::vector<Field<double>>>> earlier_lambdas_;
     /// Of each stage of the increment reversed last.
-    std::vector<std::vector<Vec3>> earlier_bubbles_;
+    std::vector<NodeVector<3, double>> earlier_bubbles_;
   };
 } // namespace retroforge

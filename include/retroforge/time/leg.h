@@ -9,7 +9,7 @@ namespace retroforge
   /// What all meshes of a run have in common.
   struct ForgingModel
   {
-    ElementPair            element = ElementPair::mini;
+    DiscretizationChoice   discretization;
     std::vector<Die>       dies;
     StepModel              step;
     NewtonParameters       newton;
@@ -25,7 +25,7 @@ namespace retroforge
     Increment    increment;
 
     Leg(TetMesh mesh, const ForgingModel &model, Timings &timings)
-        : scene(std::move(mesh), model.element, model.dies, model.comm)
+        : scene(std::move(mesh), model.discretization, model.dies, model.comm)
         , system(scene, model.linear_solver, timings)
         , increment(scene, model.step, model.newton, system, timings)
     {

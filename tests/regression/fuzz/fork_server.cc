@@ -5,8 +5,8 @@
 //     FOLDER 0x1f FILE FOR OUTPUT 0x1f FILE FOR ERRORS 0x1f ARGUMENT 0x1f ARGUMENT ...
 // and answers each with the number of the process that runs there, and when that has ended with `exit STATUS`
 // or `signal NUMBER`. Usage: fork_server BYTES, the memory that a run may ask for
-#include <retroforge/program.h>
-#include <retroforge/scan.h>
+#include <retroforge/app/program.h>
+#include <retroforge/scan/scan.h>
 
 #include <fcntl.h>
 #include <sys/resource.h>

@@ -4,7 +4,7 @@
 // parameters from which process and steps follow, and an input that reads back to itself.
 #include "mutate.h"
 
-#include <retroforge/parameters.h>
+#include <retroforge/case/parameters.h>
 
 #include <filesystem>
 

@@ -15,7 +15,7 @@
 
 #include "directions.h"
 
-#include <retroforge/parameters.h>
+#include <retroforge/case/parameters.h>
 
 #include <algorithm>
 #include <iostream>

@@ -13,7 +13,7 @@
 #include "directions.h"
 #include "sweep_with_omissions.h"
 
-#include <retroforge/parameters.h>
+#include <retroforge/case/parameters.h>
 
 #include <iostream>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <retroforge/adjoint/sweep.h>
-#include <retroforge/parameters.h>
+#include <retroforge/case/parameters.h>
 
 #include <optional>
 
@@ -45,7 +45,7 @@ namespace retroforge
                 const std::optional<Scheme> &scheme = {})
         : parameters(settled(all))
         , process(parameters.process({all.billet.size[2], all.billet.size[2]}))
-        , model{parameters.discretization.pair(),
+        , model{parameters.discretization.choice(),
                 std::move(dies),
                 step_model(parameters, scheme),
                 all.newton,

@@ -5,8 +5,8 @@
 // hand: over the nine points t = -1, -3/4, ..., 1 the fourth differences (1, -4, 6, -4, 1) of points next to
 // one another are orthogonal to cubics. With an amplitude of 1e-3 at five of nine points, the squares sum to
 // 70e-6: noise rms = sqrt(70/9) 1e-3 = 2.789e-3 and noise max = 6e-3 over the mean of the values.
+#include <retroforge/case/scan_parameters.h>
 #include <retroforge/scan/line_statistics.h>
-#include <retroforge/scan/scan_parameters.h>
 
 #include <cmath>
 #include <cstdio>

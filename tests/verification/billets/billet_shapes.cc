@@ -8,9 +8,9 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <retroforge/case/parameters.h>
 #include <retroforge/design/billet_map.h>
 #include <retroforge/mesh/mesh_quality.h>
-#include <retroforge/parameters.h>
 
 #include <iostream>
 

@@ -14,9 +14,9 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <retroforge/case/parameters.h>
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/element/mini_element.templates.h>
-#include <retroforge/parameters.h>
 
 #include <chrono>
 #include <cstdio>

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/core/types.h>
+
+#include <string>
+#include <vector>
+
+namespace retroforge
+{
+  /// What a design without parameters moves: every node of the billet, every vertex of the dies [mm].
+  struct FreeForm
+  {
+    NodalVectors<double>              X_0;
+    std::vector<NodalVectors<double>> dies; ///< of each die; empty: at rest
+  };
+
+  /// An objective's value, and its gradient as the backward sweep has it.
+  struct Judged
+  {
+    std::string         name, unit;
+    double              value;
+    std::vector<double> gradient; ///< one per parameter
+    FreeForm            shape;    ///< derivatives in nodes and vertices
+  };
+} // namespace retroforge

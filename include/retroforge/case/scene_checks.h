@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/case/parameters.h>
+#include <retroforge/contact/die_approach.h>
+
+namespace retroforge
+{
+  /// What lies nearer than this touches [mm]: 1e-3 of the cube root of the whole part's volume, whatever
+  /// symmetry leaves of it.
+  double touching_distance(const Scene &scene, const NodalVectors<double> &X);
+
+  /// Way of a die over the stroke [mm].
+  Vec3 path(const Parameters &parameters, const Process<double> &process, unsigned int die);
+
+  /// A place as messages have it: (x, y, z).
+  std::string in_brackets(const Vec3 &x);
+
+  /// How each die stands to the billet at the start, and what becomes of it: of the billet as its measures
+  /// give it, whatever its mesh.
+  /// @param X  positions of the billet's nodes
+  std::vector<DieApproach> find_approaches(const Parameters           &parameters,
+                                           const Scene                &scene,
+                                           const Process<double>      &process,
+                                           const NodalVectors<double> &X);
+
+  /// Whether a forging can come of billet and dies as they stand, before the first increment: sizes that fit
+  /// each other, a billet outside of all dies, a die that comes against it, a stroke that ends before planes
+  /// meet, and no rigid motion left free.
+  /// @param X  positions of the billet's nodes
+  /// @return a sentence on each thing that is doubtful     @throws Error
+  std::vector<std::string> check_scene(const Parameters           &parameters,
+                                       const Scene                &scene,
+                                       const Process<double>      &process,
+                                       const NodalVectors<double> &X);
+} // namespace retroforge

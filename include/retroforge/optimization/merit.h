@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/case/optimization_parameters.h>
+#include <retroforge/objective/objectives.h>
+
+namespace retroforge
+{
+  /// A limit of an objective, as a number without unit that may not be positive:
+  /// c = (value - bound) / size,  or (bound - value) / size where the value may not be smaller.
+  struct Limit
+  {
+    unsigned int objective;
+    double       bound;
+    bool         at_least;
+    double       size = 1.; ///< the bound's, or the value's at the start where the bound is 0
+
+    double excess(const std::vector<double> &values) const
+    {
+      return (at_least ? bound - values[objective] : values[objective] - bound) / size;
+    }
+    /// dc/d(value).
+    double slope() const { return (at_least ? -1. : 1.) / size; }
+  };
+
+  /// A measured value of an objective, and its standard deviation.
+  struct Datum
+  {
+    unsigned int objective;
+    double       value, deviation;
+
+    /// Of the forging from it, in deviations.
+    double misfit(const std::vector<double> &values) const { return (values[objective] - value) / deviation; }
+  };
+
+  /// What is made small, and the limits, of all objectives of a case: a weighted sum of some, or the misfit
+  /// of data,  sum_i ((v_i - d_i) / s_i)^2 / 2.
+  struct Criteria
+  {
+    Combination        objective; ///< without weights where there are data
+    std::vector<Datum> data;
+    std::vector<Limit> limits;
+
+    /// @throws Error  for a name that is not among the objectives; nothing to make small; a limit twice
+    Criteria(const Objectives &objectives, const OptimizationParameters &parameters);
+    /// A value that is told behind those of all objectives, with limits where these are finite.
+    void add_value(double least, double most);
+    /// Sizes of limits that are 0.
+    void set_sizes(const std::vector<double> &start);
+
+    double value(const std::vector<double> &values) const;
+    /// Derivative by the values of all objectives.
+    std::vector<double> slopes(const std::vector<double> &values) const;
+
+    /// As a limit or as data.
+    bool   uses(unsigned int o) const;
+    double largest_excess(const std::vector<double> &values) const;
+  };
+
+  /// The augmented Lagrangian  (f - f_0) / size + sum_i ([lambda_i + rho c_i]_+^2 - lambda_i^2) / (2 rho).
+  struct Merit
+  {
+    const Criteria     *criteria;
+    double              origin = 0., size = 1.;
+    std::vector<double> multipliers; ///< one per limit, not negative
+    double              penalty = 0.;
+
+    double value(const std::vector<double> &values) const;
+    /// Derivative of the merit by a parameter, from those of all objectives.
+    /// @param gradients  of each objective
+    std::vector<double> gradient(const std::vector<double>              &values,
+                                 const std::vector<std::vector<double>> &gradients) const;
+  };
+
+  /// lambda >= 0 with the least  |g + sum_i lambda_i c_i|,  g and c_i over variables that no bound holds.
+  /// @param columns  c_i; those of limits that are far from their bounds are left out by the caller
+  std::vector<double> least_squares_multipliers(const std::vector<double>              &g,
+                                                const std::vector<std::vector<double>> &columns);
+} // namespace retroforge

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/optimization/confidence.h>
+#include <retroforge/optimization/search.h>
+
+#include <iosfwd>
+#include <map>
+#include <optional>
+
+namespace retroforge
+{
+  /// A design that an optimisation tried, and what it made of it.
+  struct TrialRow
+  {
+    enum class Decision
+    {
+      start,
+      noise, ///< forged to measure the noise
+      accepted,
+      refused,
+      renewed ///< forged again, on a new mesh
+    };
+
+    Decision     decision;
+    Evaluation   evaluation;
+    double       merit  = 0.; ///< what the optimiser compares; infinite where the forging failed
+    double       radius = 0.; ///< of the trust region it was taken from, in scales
+    unsigned int mesh   = 0;  ///< that it was forged on, the first one 0
+
+    bool becomes_the_next() const { return decision != Decision::noise && decision != Decision::refused; }
+  };
+
+  /// A mesh of the billet made anew at a design, which was forged on the one before and on this one.
+  struct NewMesh
+  {
+    std::size_t         row = 0; ///< of the second forging
+    std::string         made_at; ///< as in Design/meshed at
+    unsigned int        n_nodes        = 0;
+    double              quality_before = 0., quality_after = 0.; ///< of the worst cell: tet_quality()
+    double              volume_before = 0., volume_after = 0.;   ///< of the billet [mm^3]
+    std::vector<double> before, after;                           ///< values of the objectives
+  };
+
+  /// Start and optimum forged with smaller elements and increments.
+  struct Confirmation
+  {
+    Evaluation   start, best;
+    unsigned int n_nodes = 0, n_increments = 0;
+  };
+
+  /// What an optimisation found.
+  struct OptimizationResults
+  {
+    const DesignSpace &space;
+    const Criteria    &criteria;
+    /// Names of all of the case, and behind them that of the parameter that follows from the volume, if any.
+    const std::vector<std::string> objectives;
+    const std::vector<std::string> units; ///< theirs
+
+    std::map<std::string, std::vector<std::string>> operations =
+      {}; ///< others: parameters of the design they have
+
+    double limit_tolerance = 0.; ///< part of a limit by which it may be exceeded
+
+    /// What values of objectives are where each design is forged several times; empty where it is once.
+    std::string counted_as = {};
+
+    std::vector<TrialRow>       rows   = {};
+    std::vector<NewMesh>        meshes = {}; ///< after the first
+    double                      noise  = 0.; ///< of the objective, in its unit
+    SearchStop                  stop   = SearchStop::running;
+    Evaluation                  start = {}, best = {};   ///< with gradients
+    std::vector<double>         multipliers        = {}; ///< of the limits, per unit of the limit's excess
+    std::vector<double>         by_moving_relation = {}; ///< objective per unit of each relation's bound
+    std::optional<Confidence>   confidence         = {}; ///< where there are data
+    std::optional<Confirmation> confirmation       = {};
+    /// Told beside values of the best design's forging, as the true maximum beside a smooth one: of each
+    /// objective of the case itself, in its unit unless their names say other.
+    std::vector<std::map<std::string, double>> details = {};
+    unsigned int n_simulations = 0, n_sweeps = 0, n_failed = 0; ///< forgings, sweeps, designs
+
+    double value(const Evaluation &evaluation) const { return criteria.value(evaluation.values); }
+    /// What the objective would change by, per unit by which a limit is relaxed; NaN where the search did not
+    /// come to its end within all limits.
+    double by_relaxing(std::size_t limit) const;
+    /// By how much the best design misses a limit, in its unit; 0 where it keeps it, to the tolerance.
+    double missed_by(std::size_t limit) const;
+    bool   limits_are_kept() const { return criteria.largest_excess(best.values) <= limit_tolerance; }
+    /// How many designs were tried in vain since the last one that was taken, if all of them failed.
+    std::size_t n_failed_at_the_end() const;
+    /// Whether steps became too short because designs around the last one failed.
+    bool ended_among_failures() const;
+    /// Whether intervals and multipliers mean something: the search came to an end by itself.
+    bool has_converged() const;
+    /// Whether no design but the first could be forged.
+    bool found_nothing() const;
+
+    /// Of the program: 0, or 2 where no design keeps the limits or none but the first could be forged.
+    int exit_status() const { return limits_are_kept() && !found_nothing() ? 0 : 2; }
+
+    /// What new meshes changed of the objective, in all.
+    double by_meshes() const;
+
+    void write_csv(const std::string &file) const;
+    void write_json(const std::string &file) const;
+    void print(std::ostream &out) const;
+    /// A line on a new mesh.
+    void print(const NewMesh &mesh, std::ostream &out) const;
+
+  private:
+    /// What makes the result one that cannot be used, before all numbers of it.
+    void print_warning(std::ostream &out) const;
+    void print_limits(std::ostream &out) const;
+  };
+
+  std::string in_words(SearchStop stop);
+  std::string in_words(TrialRow::Decision decision, bool failed);
+} // namespace retroforge

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/optimization/design_space.h>
+#include <retroforge/optimization/journal.h>
+#include <retroforge/optimization/merit.h>
+#include <retroforge/optimization/minimize.h>
+
+#include <optional>
+
+namespace retroforge
+{
+  /// Why a search ended, or that it goes on.
+  enum class SearchStop
+  {
+    running,
+    gradient,
+    noise,
+    step,
+    limits, ///< which are not met, and no penalty makes the design meet them
+    iterations,
+    simulations,
+    mesh ///< which is to be made anew before the search goes on
+  };
+
+  /// What a search asks for, and whom it tells.
+  struct SearchTask
+  {
+    using Forging = std::function<Evaluation(const std::vector<double> &mu)>;
+
+    Forging                       evaluate;      ///< values, or why there are none
+    Forging                       differentiate; ///< of a design whose values are finite: with gradients
+    std::function<unsigned int()> n_evaluated;   ///< designs so far, however often each was asked for
+    /// Of each design that was tried, after its values.
+    std::function<void(const Evaluation &evaluation, bool accepted)> decided;
+    /// Multipliers are renewed, and a round begins. @param excess  the largest one of the limits
+    std::function<void(double excess)> renewed;
+    /// Whether forgings should go on with another mesh, asked after each step at the design accepted last;
+    /// null: never.
+    std::function<bool(const Evaluation &now)> mesh_is_bad = {};
+    /// Changes to that mesh. @return the same design on it, with gradients; nothing where it stays as it was,
+    /// of which mesh_is_bad() then says no more at this design
+    std::function<std::optional<Evaluation>(const Evaluation &now)> renew_mesh = {};
+  };
+
+  /// The design with the least objective within bounds, relations and limits. Limits are kept by an augmented
+  /// Lagrangian, minimized between bounds again and again, with multipliers that fit the gradients best at
+  /// the end of each minimisation.
+  class Search
+  {
+  public:
+    /// What is passed by reference must live as long.
+    Search(const DesignSpace            &space,
+           const Criteria               &criteria,
+           const OptimizationParameters &parameters,
+           SearchTask                    task);
+
+    /// Takes the sizes of the merit and of the penalty from the start. @param start  with gradients
+    void begin(const Evaluation &start);
+
+    /// The merit's gradient along a direction that is free both ways, against central differences.
+    std::vector<DifferenceCheck> check();
+
+    /// @param noise  of the objective, in its unit
+    /// @return whether limits are kept by the design accepted last, and no multiplier would change it
+    bool run(double noise);
+
+    SearchStop        stop() const { return stop_; }
+    const Evaluation &now() const { return now_; } ///< the design accepted last, with gradients
+    double            radius() const { return radius_; }
+    unsigned int      n_iterations() const { return iterations_; }
+    /// What designs are compared by; infinite where the forging failed.
+    double merit_of(const Evaluation &evaluation) const;
+    /// Of the limits, in the objective's unit per unit of their excess.
+    std::vector<double> multipliers() const;
+
+  private:
+    /// The merit over scaled variables, from the present design.
+    BoundedProblem problem();
+    /// Of a gradient over scaled variables, without parameters that the search does not vary.
+    double varied_length(const std::vector<double> &by_mu) const;
+    /// The penalty that curves the merit by ten times as much as its first guess, across the limit that is
+    /// felt most at the present design; none where none is felt.
+    std::optional<double> curving_penalty() const;
+    /// One minimisation with the multipliers there are; from the present design, to the last accepted one.
+    /// Where the mesh is made anew it begins again there: with values of the new mesh, and all that was
+    /// learned of the Hessian, which other chords of the same shape change little.
+    void minimize_merit();
+    void minimize_on_one_mesh();
+    bool go_on(const MinimizerState &state);
+    /// J^T J v: of the misfit of data, its Hessian where they agree with the forging; of the penalty of
+    /// limits, what does not come from their curvature.
+    std::vector<double> known_hessian(const std::vector<double> &v) const;
+    /// Limits whose penalty is felt at the present design.
+    std::vector<unsigned int> pressing() const;
+    /// Multipliers that fit the gradients at the present design.
+    std::vector<double> fitted_multipliers() const;
+    bool                limits_are_settled(const std::vector<double> &multipliers) const;
+
+    const DesignSpace            &space_;
+    const Criteria               &criteria_;
+    const OptimizationParameters &parameters_;
+    const SearchTask              task_;
+
+    Merit                  merit_;
+    Minimizer              minimizer_;
+    Evaluation             now_;
+    BoundedProblem::Vector x_; ///< of the present design, as it was tried: its values come back bit for bit
+    double                 noise_      = 0.; ///< of the merit
+    double                 radius_     = 0.;
+    double                 begun_with_ = 0.; ///< the merit's gradient where the present round began
+    unsigned int           iterations_ = 0;  ///< designs tried, without those known before
+    unsigned int           begun_at_   = 0;  ///< how many there were then
+    unsigned int           n_designs_  = 0;  ///< evaluated, as of the last iteration
+    SearchStop             stop_       = SearchStop::running;
+  };
+} // namespace retroforge

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/adjoint/objective_sensitivity.h>
+#include <retroforge/case/case.h>
+#include <retroforge/output/summary.h>
+#include <retroforge/time/objective_trace.h>
+
+namespace retroforge
+{
+  /// Volume of the billet that the mesh stands for, whose round sides are no chords: that of the mesh, X_0,
+  /// times the shape's over the mesh's where it was made. NaN for a billet that has no measures. To be called
+  /// on one rank only.  Units: mm^3.
+  double shape_volume(const Case &at);
+
+  /// What a summary says of the forging: counts, volumes, restarts.
+  void summarise_run(const Case &at, const ForgingState &forged, Summary &summary);
+
+  /// Of the objectives.
+  /// @param values  of each
+  void summarise_objectives(const Case                &at,
+                            const ObjectiveTrace      &trace,
+                            const ForgingState        &forged,
+                            const std::vector<double> &values,
+                            Summary                   &summary);
+
+  /// Of the design parameters, with the gradients.
+  void summarise_gradients(const Case &at, const std::vector<Judged> &judged, Summary &summary);
+} // namespace retroforge

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/adjoint/objective_sensitivity.h>
+#include <retroforge/case/check_parameters.h>
+#include <retroforge/design/design.h>
+
+#include <functional>
+
+namespace retroforge
+{
+  /// The objectives at parameters mu, with billet and dies moved by `shift` from there: one number each.
+  struct ObjectiveOracle
+  {
+    using Values = std::vector<double>;
+
+    /// Decides everything anew.
+    std::function<Values(const std::vector<double> &mu, const FreeForm &shift)> free;
+    /// Obeys the recorded decisions.
+    std::function<Values(const std::vector<double> &mu, const FreeForm &shift)> replayed;
+    /// The direct method, along (mu_dot, shift_dot).
+    std::function<Values(const std::vector<double> &mu_dot, const FreeForm &shift_dot)> tangent;
+  };
+
+  /// Differences at one step (relative to the parameter's scale).
+  struct DifferenceRow
+  {
+    double step;
+    double replayed_central, replayed_forward, replayed_backward, free_central;
+  };
+
+  /// One derivative seen from all sides.
+  struct CheckRow
+  {
+    std::string                objective, parameter, unit;
+    double                     adjoint, tangent;
+    std::vector<DifferenceRow> steps;
+    std::vector<double>        taylor_orders; ///< of the replayed remainder, one per halving
+    bool                       passed;
+    double                     magnitude        = 0.; ///< of the derivative but for cancellation, or 0
+    double                     least_difference = 0.; ///< that differences are asked to resolve to the bar
+    bool                       is_zero = false; ///< the objective does not depend on it, but for rounding
+
+    /// Against the larger of the derivative and its magnitude: in a direction along which the derivative
+    /// cancels, rounding does not.
+    double tangent_error() const;
+    /// Smallest error of the replayed central differences, and the decades of step over which it stays below
+    /// the bar.
+    double best_replayed_error() const;
+    double best_free_error() const;
+    /// Of the replayed central differences: no derivative is zero for which all of them are not.
+    double smallest_difference() const;
+  };
+
+  /// Told before the first direction that is to be checked and after each: the rows so far, how many
+  /// directions are done, and how many there are.
+  using CheckWatch =
+    std::function<void(const std::vector<CheckRow> &rows, unsigned int done, unsigned int all)>;
+
+  /// Checks the derivative of each objective in each design parameter, along one random direction of all X_0,
+  /// and along one of all vertices of each die that has some. Objectives share the runs. Rows are ordered by
+  /// objective.
+  /// @param done  rows of an earlier check of the same record, which stopped: their directions are not
+  /// repeated
+  std::vector<CheckRow> check_gradient(const CheckParameters       &parameters,
+                                       const Design                &design,
+                                       const std::vector<double>   &mu,
+                                       const std::vector<Judged>   &judged,
+                                       double                       length,
+                                       const ObjectiveOracle       &oracle,
+                                       const std::vector<CheckRow> &done,
+                                       const CheckWatch            &watch);
+
+  /// The table a user reads.
+  void print(const std::vector<CheckRow> &rows, std::ostream &out);
+} // namespace retroforge

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/billet/fineness.h>
+#include <retroforge/case/case_messages.h>
+#include <retroforge/core/text.h>
+#include <retroforge/geometry/surface_rims.h>
+#include <retroforge/mesh/mesh_quality.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+namespace retroforge
+{
+  namespace
+  {
+    constexpr double many_cells = 1e6;
+
+    /// Nothing where it makes no millions.
+    std::vector<std::string>
+    note_on_fineness(const std::string &parameter, const double element_size, const double n_cells)
+    {
+      if (!(n_cells > many_cells))
+        return {};
+      return {parameter + " = " + as_text(element_size) + " makes about " + as_text(n_cells) +
+              " tetrahedra; expect hours, and gigabytes of memory"};
+    }
+
+    /// Whether what is missing is small beside the surface: what closes it has the area vector  -sum_f A_f
+    /// n_f.
+    bool is_nearly_closed(const TriangleSurface &surface)
+    {
+      constexpr double small = 0.05;
+      Vec3             sum;
+      double           area = 0.;
+      for (const Triangle &t : surface.triangles())
+      {
+        const auto &x = surface.vertices();
+        const Vec3  v = facet_vector(x[t[0]], x[t[1]], x[t[2]]);
+        sum += v;
+        area += v.norm();
+      }
+      return sum.norm() < small * area;
+    }
+
+    /// An outer rim is what open dies have; another one, or that of a body, may be that of a facet that an
+    /// export lost.
+    std::vector<std::string> notes_on_holes(const Die &die)
+    {
+      std::vector<std::string> notes;
+      if (!die.surface())
+        return notes;
+      const std::vector<SurfaceRim> rims = find_rims(*die.surface());
+      for (std::size_t i = is_nearly_closed(*die.surface()) ? 0 : 1; i < rims.size(); ++i)
+        notes.push_back("the surface of die " + die.name + " has " + (i == 0 ? "a" : "another") + " rim, " +
+                        as_text(rims[i].length) + " mm around, at (" + as_text(rims[i].centre[0]) + ", " +
+                        as_text(rims[i].centre[1]) + ", " + as_text(rims[i].centre[2]) +
+                        "): a hole or a separate part; if that is not intended, repair the file");
+      return notes;
+    }
+
+    /// Equations of flat and slender tetrahedra are nearly dependent, and multigrid does not see it.
+    std::vector<std::string> notes_on_slender_cells(const Case &at)
+    {
+      constexpr double slender = 10., poor = 15.; // degrees
+      double           least  = 180.;
+      unsigned int     n_poor = 0;
+      for (const auto &cell : at.billet.cells)
+      {
+        const double angle = minimum_dihedral_angle(corners(cell, at.X_0));
+        least              = std::min(least, angle);
+        n_poor += angle < poor;
+      }
+      if (!(least < slender))
+        return {};
+      return {"faces of the billet's mesh meet at " + as_text(least) + " degrees, and " +
+              std::to_string(n_poor) + " of " + std::to_string(at.billet.n_cells()) +
+              " tetrahedra have less than " + as_text(poor) + ": linear systems take longer" +
+              (at.parameters.remeshing.first_mesh
+                 ? ""
+                 : "; `Remeshing/first mesh = true' makes a better mesh before the run begins")};
+    }
+  } // namespace
+
+  void print_meshing(const Parameters &parameters)
+  {
+    print_notes(note_on_fineness(
+      "Billet/element size", parameters.billet.element_size, expected_cells(parameters.billet)));
+  }
+
+  std::vector<std::string> notes_on(const Case &at)
+  {
+    std::vector<std::string> notes = at.parameters.without_effect;
+    const auto               add   = [&](const std::vector<std::string> &more) {
+      notes.insert(notes.end(), more.begin(), more.end());
+    };
+    const auto remark = [&](const std::string &what, const std::vector<std::string> &remarks) {
+      for (const std::string &sentence : remarks)
+        notes.push_back(what + ": " + sentence);
+    };
+    remark("the file of the billet", at.nominal_billet.remarks);
+    for (const Die &die : at.model.dies)
+      if (die.surface())
+        remark("the file of die " + die.name, die.surface()->remarks);
+    add(notes_on_slender_cells(at));
+    for (const Die &die : at.model.dies)
+      add(notes_on_holes(die));
+    if (const double size = at.parameters.remeshing.element_size;
+        size > 0. && at.parameters.remeshing.when != "never")
+      add(
+        note_on_fineness("Remeshing/element size", size, expected_cells(std::pow(at.size().side, 3), size)));
+    if (at.process.stretch != 1.)
+      notes.push_back("die " + at.parameters.dies[at.process.leading_die].name +
+                      " follows the billet: its path is " +
+                      as_text(at.process.stretch * at.parameters.press.stroke) +
+                      " mm long; strokes are given as the nominal design's, " +
+                      as_text(at.parameters.press.stroke) + " mm");
+    return notes;
+  }
+
+  void print_notes(const std::vector<std::string> &notes)
+  {
+    for (const std::string &note : notes)
+      std::cout << "  note: " << note << '\n';
+    std::cout << std::flush;
+  }
+
+  void print_warnings(const std::vector<std::string> &warnings)
+  {
+    for (const std::string &sentence : warnings)
+      std::cout << "  warning: " << sentence << '\n';
+    std::cout << std::flush;
+  }
+} // namespace retroforge

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/case/scene_estimate.h>
+#include <retroforge/core/text.h>
+#include <retroforge/geometry/triangle_surface.h>
+#include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/mesh/whole_part.h>
+#include <retroforge/time/closing_speed.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace retroforge
+{
+  namespace
+  {
+    /// What metals are forged at, with a decade to spare on either side: of soft lead or a model material at
+    /// creep, and of cold steel under a hammer.
+    constexpr double least_stress = 1e-2, largest_stress = 5e3;
+    constexpr double least_rate = 1e-2, largest_rate = 3e3, largest_speed = 2e4;
+    constexpr double least_extent = 1., largest_extent = 1e4;
+
+    /// Times the traction that shears the metal. A sticking die has 1; some users set a few for that.
+    constexpr double largest_friction = 3.;
+
+    /// Extents of an STL die or one by measures over that of the billet.
+    constexpr double small_die = 0.2, large_die = 20.;
+
+    /// Over the height of the billet.
+    constexpr double least_path = 1e-3, largest_step = 0.1;
+
+    /// Regularising strain rate over that of the scene: the stress is 4 % off where m is small.
+    constexpr double largest_regularisation = 0.3;
+
+    /// What a scene looks like as a whole.
+    struct View
+    {
+      const Parameters           &parameters;
+      const Scene                &scene;
+      const Process<double>      &process;
+      const NodalVectors<double> &X;
+      Vec3                        low, high;   ///< corners of the billet's box
+      Vec3                        way;         ///< unit vector of the leading die's path
+      double                      path   = 0.; ///< by which the dies close over the stroke [mm]
+      double                      gap    = 0.; ///< from the leading die to the billet [mm]
+      double                      volume = 0.; ///< of the model [mm^3]
+
+      double               extent() const { return (high - low).norm(); }
+      double               closing() const { return std::max(0., path - gap); }
+      const Die           &leading() const { return scene.dies[process.leading_die]; }
+      std::string          name(const unsigned int d) const { return "Die " + scene.dies[d].name; }
+      const DieParameters &given(const unsigned int d) const { return parameters.dies[d]; }
+    };
+
+    View view_of(const Parameters           &parameters,
+                 const Scene                &scene,
+                 const Process<double>      &process,
+                 const NodalVectors<double> &X)
+    {
+      View               view{parameters, scene, process, X, {}, {}, {}};
+      const unsigned int lead       = process.leading_die;
+      std::tie(view.low, view.high) = bounding_box(X);
+      view.way                      = process.dies[lead].velocity / process.speed();
+      view.path = process.stretch * parameters.press.stroke * (closing_speed(process.dies) / process.speed());
+      view.volume    = volume(scene.mesh.cells, X);
+      double nearest = std::numeric_limits<double>::max();
+      for (NodeIndex k = 0; k < X.size(); ++k)
+        if (scene.topology.is_on_surface(k))
+          nearest = std::min(nearest, view.leading().signed_distance(X[k], process.dies[lead].displacement));
+      view.gap = std::max(0., nearest);
+      return view;
+    }
+
+    double height_along(const NodalVectors<double> &X, const Vec3 &way)
+    {
+      const auto [low, high] = std::minmax_element(
+        X.begin(), X.end(), [&](const Vec3 &a, const Vec3 &b) { return a * way < b * way; });
+      return (*high - *low) * way;
+    }
+
+    /// Equivalent stress at an equivalent strain rate.
+    double flow_stress(const MaterialLaw<double> &law, const double rate)
+    {
+      return law(1.5 * rate * rate) * 1.5 * rate;
+    }
+
+    /// Traction of friction at the rim of a disc that is upset, which sticking does not bound yet.
+    double
+    rim_friction(const double alpha, const MaterialLaw<double> &law, const double rate, const double radius)
+    {
+      return alpha * law.K * std::pow(0.5 * rate * radius, law.m);
+    }
+
+    /// Radius of the disc of the whole part.
+    double radius_of(const View &view, const double height)
+    {
+      const double copies = whole_part(view.scene.mesh, view.way).force;
+      return std::sqrt((std::isfinite(copies) ? copies : 1.) * view.volume / height / dealii::numbers::PI);
+    }
+
+    double slab_force(const View &view, const double height)
+    {
+      const Process<double> &process = view.process;
+      const double           rate = closing_speed(process.dies) / height, radius = radius_of(view, height),
+                   stress = flow_stress(process.law, rate), most = stress / std::sqrt(3.);
+      const auto tau = [&](const double alpha) {
+        return std::min(most, rim_friction(alpha, process.law, rate, radius));
+      };
+      const bool halved =
+        std::any_of(view.scene.mesh.patches.begin(), view.scene.mesh.patches.end(), [&](const Patch &patch) {
+          return patch.symmetry && std::abs(patch.symmetry->normal * view.way) > 1. - 1e-6;
+        });
+      double other = 0.;
+      for (unsigned int d = 0; d < process.dies.size() && !halved; ++d)
+        if (d != process.leading_die)
+          other = std::max(other, tau(process.dies[d].friction));
+      const double friction =
+        (tau(process.dies[process.leading_die].friction) + other) * radius / ((process.law.m + 3.) * height);
+      return dealii::numbers::PI * radius * radius * (stress + friction);
+    }
+
+    using Warnings = std::vector<std::string>;
+
+    void warn_of_sizes(const View &view, Warnings &warnings)
+    {
+      const BilletParameters &billet = view.parameters.billet;
+      if (const double extent = view.extent(); !(extent >= least_extent && extent <= largest_extent))
+        warnings.push_back((billet.shape == "file" ? "Billet/scale" : "Billet") +
+                           std::string(": the billet's extent is ") + as_text(extent) +
+                           " mm; lengths are in mm: is it in metres?");
+      const Vec3   size     = view.high - view.low;
+      const double smallest = std::min({size[0], size[1], size[2]});
+      const auto   coarse   = [&](const std::string &setting, const double element_size) {
+        if (element_size > 1.01 * smallest)
+          warnings.push_back(
+            setting + " = " + as_text(element_size) + ": the billet is " + as_text(smallest) +
+            " mm across where it is thinnest, less than an element; several are wanted there");
+      };
+      if (billet.shape != "file")
+        coarse("Billet/element size", billet.element_size);
+      if (view.parameters.remeshing.when != "never")
+        coarse("Remeshing/element size", view.parameters.remeshing.element_size);
+      for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
+        if (const TriangleSurface *surface = view.scene.dies[d].surface())
+          if (const double ratio = surface->diagonal() / view.extent();
+              !(ratio >= small_die && ratio <= large_die))
+            warnings.push_back(
+              view.name(d) +
+              (view.given(d).shape.name == "stl" ? "/scale"
+                                                 : std::string("/shape = ") + view.given(d).shape.name) +
+              ": the die's extent is " + as_text(surface->diagonal()) + " mm, that of the billet " +
+              as_text(view.extent()) + " mm; a file in inches wants scale = 25.4, in metres 1000");
+    }
+
+    void warn_of_press(const View &view, const SceneEstimate &estimate, Warnings &warnings)
+    {
+      const Parameters &given = view.parameters;
+      if (estimate.speed > largest_speed || estimate.strain_rate < least_rate ||
+          estimate.strain_rate > largest_rate)
+        warnings.push_back(view.name(view.process.leading_die) + "/velocity: the dies close at " +
+                           as_text(estimate.speed) + " mm/s, which strains the billet at " +
+                           as_text(estimate.strain_rate) +
+                           " /s; forging has 0.01 to 3000 /s, and velocities are in mm/s: 0.2 m/s are 200");
+      if (view.closing() < least_path * estimate.height)
+        warnings.push_back("Press/stroke = " + as_text(given.press.stroke) + ": the dies close by " +
+                           as_text(view.closing()) + " mm on a billet of " + as_text(estimate.height) +
+                           " mm; the stroke is in mm");
+      else if (const double step = view.path / given.press.increments; step > largest_step * estimate.height)
+        warnings.push_back("Press/increments = " + std::to_string(given.press.increments) + ": each takes " +
+                           as_text(100. * step / estimate.height) +
+                           " % of the billet's height; 0 takes as many as are wanted");
+    }
+
+    void warn_of_material(const View &view, const SceneEstimate &estimate, Warnings &warnings)
+    {
+      const MaterialLaw<double> &law = view.process.law;
+      if (!(estimate.flow_stress >= least_stress && estimate.flow_stress <= largest_stress))
+        warnings.push_back("Material/consistency = " + as_text(law.K) + ": the flow stress is " +
+                           as_text(estimate.flow_stress) + " MPa at " + as_text(estimate.strain_rate) +
+                           " /s, the press force about " + as_text(estimate.first_force) +
+                           " N; the consistency is in MPa s^m: divide one in Pa by 1e6");
+      if (!law.is_linear() && law.e0 > largest_regularisation * estimate.strain_rate)
+        warnings.push_back(
+          "Material/regularising strain rate = " + as_text(law.e0) + ": the scene's strain rate is " +
+          as_text(estimate.strain_rate) +
+          " /s, where the metal would flow at a lower stress than the law's; 0 chooses a rate "
+          "that does not matter");
+    }
+
+    void warn_of_friction(const View &view, const SceneEstimate &estimate, Warnings &warnings)
+    {
+      const double radius = radius_of(view, estimate.height), shear = estimate.flow_stress / std::sqrt(3.);
+      for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
+        if (const double part =
+              rim_friction(view.process.dies[d].friction, view.process.law, estimate.strain_rate, radius) /
+              shear;
+            part > largest_friction)
+          warnings.push_back(
+            view.name(d) + "/friction = " + as_text(view.process.dies[d].friction) + ": its traction is " +
+            as_text(part) +
+            " times the stress that shears the metal, and 1 sticks; it is no percentage, and 0.1 "
+            "to 1 is usual");
+    }
+
+    /// Mean normal of an open surface, short where its facets look to all sides.
+    Vec3 mean_normal(const TriangleSurface &surface)
+    {
+      Vec3   sum;
+      double areas = 0.;
+      for (const Triangle &facet : surface.triangles())
+      {
+        const auto &x      = surface.vertices();
+        const Vec3  vector = facet_vector(x[facet[0]], x[facet[1]], x[facet[2]]);
+        sum += vector;
+        areas += vector.norm();
+      }
+      return sum / areas;
+    }
+
+    void warn_of_ways(const View &view, Warnings &warnings)
+    {
+      for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
+      {
+        const Vec3  &velocity = view.process.dies[d].velocity;
+        const bool   is_free  = view.given(d).shape.name == "stl"; // what such a die faces, its facets tell
+        const Vec3   normal   = is_free ? mean_normal(*view.scene.dies[d].surface()) : view.given(d).facing;
+        const double along    = velocity * normal;
+        if (normal.norm() > 0.5 && along < std::sqrt(0.5) * velocity.norm() * normal.norm())
+          warnings.push_back(view.name(d) + "/velocity: the die moves at " +
+                             as_text(std::acos(std::max(-1., along / (velocity.norm() * normal.norm()))) *
+                                     180. / dealii::numbers::PI) +
+                             " degrees to the direction it faces: it shears the billet, or leaves it");
+      }
+    }
+
+    /// How far a surface and its mirror image are apart at the billet; 0 where it stands on one side of the
+    /// plane only, so that its image is another die.
+    struct Asymmetry
+    {
+      bool   spans    = false; ///< whether the die stands on both sides
+      double distance = 0.;
+      Vec3   place;
+    };
+
+    Asymmetry asymmetry(const View &view, const unsigned int d, const Plane &plane)
+    {
+      const Die             &die     = view.scene.dies[d];
+      const TriangleSurface *surface = die.surface();
+      if (!surface)
+        return {std::abs(view.given(d).facing * plane.normal) < 1e-6, 0., {}};
+      constexpr std::size_t most_samples = 5000;
+      const Vec3           &displacement = view.process.dies[d].displacement;
+      const double          size = view.extent(), near = 1e-2 * size;
+      const Vec3            middle = (view.low + view.high) / 2.;
+      const auto           &x      = surface->vertices();
+      const std::size_t     stride = x.size() / most_samples + 1;
+      Asymmetry             found;
+      bool                  inside = false, outside = false;
+      for (std::size_t v = 0; v < x.size(); v += stride)
+      {
+        const Vec3   at     = x[v] + displacement;
+        const double beyond = (at - plane.point) * plane.normal;
+        inside |= beyond < -near;
+        outside |= beyond > near;
+        const Vec3 image = at - 2. * beyond * plane.normal, from = image - middle;
+        if (!(beyond > near) || (from - (from * view.way) * view.way).norm() > 0.5 * size)
+          continue;
+        if (const double distance = std::abs(die.signed_distance(image, displacement));
+            distance > found.distance)
+        {
+          found.distance = distance;
+          found.place    = at;
+        }
+      }
+      found.spans = inside && outside;
+      return found;
+    }
+
+    void warn_of_symmetry(const View &view, Warnings &warnings)
+    {
+      const std::vector<Plane> planes = symmetry_planes(view.scene.mesh);
+      for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
+        for (const Plane &plane : planes)
+        {
+          const Vec3       &velocity = view.process.dies[d].velocity;
+          const Asymmetry   found    = asymmetry(view, d, plane);
+          const auto       &n        = plane.normal;
+          const std::string where =
+            "the symmetry plane of normal " + as_text(n[0]) + ", " + as_text(n[1]) + ", " + as_text(n[2]);
+          if (!found.spans)
+            continue;
+          if (std::abs(velocity * n) > 1e-6 * velocity.norm())
+            warnings.push_back(view.name(d) + "/velocity: the die lies across " + where +
+                               " and moves through it: whole part and model differ");
+          else if (found.distance > 2e-2 * view.extent())
+            warnings.push_back(
+              view.name(d) + "/point: the die is not its own mirror image in " + where + ": at (" +
+              as_text(found.place[0]) + ", " + as_text(found.place[1]) + ", " + as_text(found.place[2]) +
+              ") they are " +
+              (std::isfinite(found.distance) ? as_text(found.distance) + " mm apart"
+                                             : "without a counterpart") +
+              ", so the whole part is not what is told; move the die, or leave the plane out");
+        }
+    }
+  } // namespace
+
+  SceneEstimate estimate_scene(const Parameters           &parameters,
+                               const Scene                &scene,
+                               const Process<double>      &process,
+                               const NodalVectors<double> &X)
+  {
+    constexpr double thinnest = 0.1; // of the height: dies of a cavity meet where flat ones would not
+    const View       view     = view_of(parameters, scene, process, X);
+    SceneEstimate    estimate;
+    estimate.speed       = closing_speed(process.dies);
+    estimate.height      = height_along(X, view.way);
+    estimate.strain_rate = estimate.speed / estimate.height;
+    estimate.flow_stress = flow_stress(process.law, estimate.strain_rate);
+    estimate.first_force = slab_force(view, estimate.height);
+    estimate.final_force =
+      slab_force(view, std::max(thinnest * estimate.height, estimate.height - view.closing()));
+    warn_of_sizes(view, estimate.warnings);
+    warn_of_material(view, estimate, estimate.warnings);
+    warn_of_press(view, estimate, estimate.warnings);
+    warn_of_friction(view, estimate, estimate.warnings);
+    warn_of_ways(view, estimate.warnings);
+    warn_of_symmetry(view, estimate.warnings);
+    return estimate;
+  }
+
+  SceneEstimate estimate_scene(const Case &at)
+  {
+    const Scene scene(at.billet, at.model.discretization, at.model.dies, at.comm);
+    return estimate_scene(at.parameters, scene, at.process, at.X_0);
+  }
+} // namespace retroforge

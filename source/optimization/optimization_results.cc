@@ -1,0 +1,487 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/csv.h>
+#include <retroforge/core/text.h>
+#include <retroforge/core/version.h>
+#include <retroforge/optimization/optimization_results.h>
+#include <retroforge/output/safe_file.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <ostream>
+#include <sstream>
+
+namespace retroforge
+{
+  namespace
+  {
+    using Json = nlohmann::ordered_json;
+    using At   = DesignSpace::At;
+
+    Json number(const double x)
+    {
+      return std::isfinite(x) ? Json(x) : Json();
+    }
+
+    const char *in_words(const At at)
+    {
+      switch (at)
+      {
+        case At::fixed:
+          return "not varied";
+        case At::lower:
+          return "at its lower bound";
+        case At::upper:
+          return "at its upper bound";
+        default:
+          return "";
+      }
+    }
+
+    Json as_json(const OptimizationResults &results)
+    {
+      const Confidence &confidence = *results.confidence;
+      Json              data = Json::array(), names = Json::array(), deviations = Json::array();
+      for (const Datum &datum : results.criteria.data)
+        data.push_back({{"objective", results.objectives[datum.objective]},
+                        {"unit", results.units[datum.objective]},
+                        {"measured", number(datum.value)},
+                        {"deviation", number(datum.deviation)},
+                        {"best", number(results.best.values[datum.objective])}});
+      for (const unsigned int j : confidence.parameters)
+        names.push_back(results.space.parameters()[j].name);
+      for (const double deviation : confidence.deviations)
+        deviations.push_back(number(deviation));
+      return {{"data", data},
+              {"misfit", number(confidence.misfit)},
+              {"freedom", confidence.freedom},
+              {"parameters", names},
+              {"deviations", deviations},
+              {"correlations", confidence.correlations},
+              {"unseen", confidence.unseen},
+              {"converged", results.has_converged()},
+              {"disagrees", confidence.disagrees()}};
+    }
+
+    void print_confidence(const OptimizationResults &results, std::ostream &out)
+    {
+      const Confidence &confidence = *results.confidence;
+      out << "\n  " << std::left << std::setw(28) << "data" << std::right << std::setw(14) << "measured"
+          << std::setw(14) << "deviation" << std::setw(14) << "best" << '\n';
+      for (const Datum &datum : results.criteria.data)
+        out << "  " << std::left << std::setw(28) << results.objectives[datum.objective] << std::right
+            << std::setw(14) << datum.value << std::setw(14) << datum.deviation << std::setw(14)
+            << results.best.values[datum.objective] << ' ' << results.units[datum.objective] << '\n';
+      out << "  sum of squares in deviations: " << std::setprecision(4) << confidence.misfit;
+      if (confidence.freedom > 0)
+        out << ", about " << confidence.freedom << " where model and deviations are right\n";
+      else
+        out << "; with no more data than parameters it says nothing of the model\n";
+      if (!confidence.unseen.empty())
+      {
+        out << "  the data do not see this change of the parameters:";
+        for (std::size_t a = 0; a < confidence.unseen.size(); ++a)
+          out << (a == 0 ? " " : ", ") << results.space.parameters()[confidence.parameters[a]].name << ' '
+              << std::showpos << confidence.unseen[a] * results.space.scales()[confidence.parameters[a]]
+              << std::noshowpos;
+        out << '\n';
+        return;
+      }
+      if (!results.has_converged())
+      {
+        out
+          << "  no intervals: the search has not come to an end by itself, and these are not the parameters "
+             "that agree best\n";
+        return;
+      }
+      if (confidence.disagrees())
+        out << "  note: data and model do not agree within the deviations, and intervals are not to be "
+               "trusted\n";
+      for (std::size_t a = 0; a < confidence.deviations.size(); ++a)
+      {
+        const unsigned int j = confidence.parameters[a];
+        out << "  " << results.space.parameters()[j].name << " = " << std::setprecision(6)
+            << results.best.mu[j] << " +- " << std::setprecision(3)
+            << Confidence::half_width_95 * confidence.deviations[a] << ' '
+            << results.space.parameters()[j].unit << " (95 %)\n";
+      }
+      for (std::size_t a = 0; a < confidence.deviations.size(); ++a)
+        for (std::size_t b = 0; b < a; ++b)
+          out << "  correlation of " << results.space.parameters()[confidence.parameters[b]].name << " and "
+              << results.space.parameters()[confidence.parameters[a]].name << ": " << std::setprecision(3)
+              << confidence.correlations[a][b] << '\n';
+    }
+
+    Json values_by_name(const std::vector<std::string> &names, const std::vector<double> &values)
+    {
+      Json json = Json::object();
+      for (std::size_t i = 0; i < values.size(); ++i)
+        json[names[i]] = number(values[i]);
+      return json;
+    }
+  } // namespace
+
+  std::string in_words(const SearchStop stop)
+  {
+    switch (stop)
+    {
+      case SearchStop::gradient:
+        return "the gradient has vanished, but for what bounds and limits hold";
+      case SearchStop::noise:
+        return "no step promises more than the noise";
+      case SearchStop::step:
+        return "steps have become too short to matter";
+      case SearchStop::limits:
+        return "limits are not met, and no design near by comes closer to them";
+      case SearchStop::iterations:
+        return "as many steps were tried as Optimisation/iterations allows";
+      case SearchStop::simulations:
+        return "as many designs were forged as Optimisation/simulations allows";
+      default:
+        return "it is not finished";
+    }
+  }
+
+  std::string in_words(const TrialRow::Decision decision, const bool failed)
+  {
+    switch (decision)
+    {
+      case TrialRow::Decision::start:
+        return "start";
+      case TrialRow::Decision::noise:
+        return failed ? "failed" : "noise";
+      case TrialRow::Decision::accepted:
+        return "accepted";
+      case TrialRow::Decision::renewed:
+        return "new mesh";
+      default:
+        return failed ? "failed" : "refused";
+    }
+  }
+
+  double OptimizationResults::by_relaxing(const std::size_t limit) const
+  {
+    if (!has_converged() || !limits_are_kept())
+      return NAN;
+    const double multiplier = limit < multipliers.size() ? multipliers[limit] : 0.;
+    return multiplier == 0. ? 0. : -multiplier / criteria.limits[limit].size;
+  }
+
+  double OptimizationResults::missed_by(const std::size_t limit) const
+  {
+    const Limit &of    = criteria.limits[limit];
+    const double value = best.values[of.objective];
+    if (of.excess(best.values) <= limit_tolerance)
+      return 0.;
+    return of.at_least ? of.bound - value : value - of.bound;
+  }
+
+  std::size_t OptimizationResults::n_failed_at_the_end() const
+  {
+    std::size_t n = 0;
+    for (auto row = rows.rbegin(); row != rows.rend() && row->decision == TrialRow::Decision::refused; ++row)
+    {
+      if (!row->evaluation.failed())
+        return 0;
+      ++n;
+    }
+    return n;
+  }
+
+  bool OptimizationResults::ended_among_failures() const
+  {
+    return (stop == SearchStop::noise || stop == SearchStop::step) && n_failed_at_the_end() > 0;
+  }
+
+  bool OptimizationResults::has_converged() const
+  {
+    return (stop == SearchStop::gradient || stop == SearchStop::noise || stop == SearchStop::step) &&
+           !ended_among_failures();
+  }
+
+  bool OptimizationResults::found_nothing() const
+  {
+    const auto was_forged = [](const TrialRow &row) {
+      return (row.decision == TrialRow::Decision::accepted || row.decision == TrialRow::Decision::refused) &&
+             !row.evaluation.failed();
+    };
+    return n_failed_at_the_end() > 0 && std::none_of(rows.begin(), rows.end(), was_forged);
+  }
+
+  double OptimizationResults::by_meshes() const
+  {
+    double sum = 0.;
+    for (const NewMesh &mesh : meshes)
+      sum += criteria.value(mesh.after) - criteria.value(mesh.before);
+    return sum;
+  }
+
+  void OptimizationResults::print(const NewMesh &mesh, std::ostream &out) const
+  {
+    out << std::setprecision(3) << "  mesh made anew, of " << mesh.n_nodes << " nodes: worst cell "
+        << mesh.quality_before << " -> " << mesh.quality_after << ", volume " << std::setprecision(6)
+        << mesh.volume_before << " -> " << mesh.volume_after << " mm^3, " << criteria.objective.name << ' '
+        << std::setprecision(7) << criteria.value(mesh.before) << " -> " << criteria.value(mesh.after)
+        << (criteria.objective.unit.empty() ? "" : " ") << criteria.objective.unit << std::endl;
+  }
+
+  void OptimizationResults::write_csv(const std::string &file) const
+  {
+    std::ostringstream out;
+    out << std::setprecision(17) << "trial,decision,merit,radius";
+    for (std::size_t o = 0; o < objectives.size(); ++o)
+      out << ',' << csv_quoted(objectives[o] + " [" + units[o] + "]");
+    for (const DesignParameter &parameter : space.parameters())
+      out << ',' << csv_quoted(parameter.name + " [" + parameter.unit + "]");
+    out << ",mesh,increments,seconds,failure\n";
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+      const TrialRow   &row        = rows[i];
+      const Evaluation &evaluation = row.evaluation;
+      out << i << ',' << in_words(row.decision, evaluation.failed()) << ',';
+      if (std::isfinite(row.merit))
+        out << row.merit;
+      out << ',' << row.radius;
+      for (std::size_t o = 0; o < objectives.size(); ++o)
+      {
+        out << ',';
+        if (!evaluation.failed())
+          out << evaluation.values[o];
+      }
+      for (const double x : evaluation.mu)
+        out << ',' << x;
+      out << ',' << row.mesh << ',' << evaluation.increments << ',' << evaluation.seconds << ','
+          << (evaluation.failed() ? csv_quoted(evaluation.failure) : "") << '\n';
+    }
+    write_file(file, out.str());
+  }
+
+  void OptimizationResults::write_json(const std::string &file) const
+  {
+    Json                      parameters = Json::array(), limits = Json::array(), trials = Json::array();
+    const std::vector<double> gradient =
+      best.gradients.empty() ? std::vector<double>(space.size(), NAN) : [&] {
+        const std::vector<double> slopes = criteria.slopes(best.values);
+        std::vector<double>       sum(space.size(), 0.);
+        for (std::size_t o = 0; o < best.gradients.size(); ++o)
+          for (std::size_t j = 0; j < sum.size(); ++j)
+            sum[j] += slopes[o] * best.gradients[o][j];
+        return sum;
+      }();
+    for (std::size_t j = 0; j < space.size(); ++j)
+      parameters.push_back({{"name", space.parameters()[j].name},
+                            {"unit", space.parameters()[j].unit},
+                            {"start", number(start.mu[j])},
+                            {"best", number(best.mu[j])},
+                            {"lower", number(space.lower()[j])},
+                            {"upper", number(space.upper()[j])},
+                            {"scale", number(space.scales()[j])},
+                            {"at", in_words(space.at(best.mu, j))},
+                            {"gradient", number(gradient[j])}});
+    for (std::size_t i = 0; i < criteria.limits.size(); ++i)
+    {
+      const Limit &limit = criteria.limits[i];
+      limits.push_back({{"objective", objectives[limit.objective]},
+                        {"kind", limit.at_least ? "at least" : "at most"},
+                        {"bound", number(limit.bound)},
+                        {"start", number(start.values[limit.objective])},
+                        {"best", number(best.values[limit.objective])},
+                        {"missed_by", number(missed_by(i))},
+                        {"by_relaxing", number(by_relaxing(i))}});
+    }
+    Json relations = Json::array();
+    for (std::size_t r = 0; r < space.relations().size(); ++r)
+      relations.push_back(
+        {{"relation", space.relations()[r].text},
+         {"active", space.holds_as_equation(best.mu, r)},
+         {"excess", number(space.relations()[r].excess(best.mu))},
+         {"by_moving", r < by_moving_relation.size() ? number(by_moving_relation[r]) : Json()}});
+    for (const TrialRow &row : rows)
+      trials.push_back({{"decision", in_words(row.decision, row.evaluation.failed())},
+                        {"merit", number(row.merit)},
+                        {"radius", number(row.radius)},
+                        {"mesh", row.mesh},
+                        {"values", values_by_name(objectives, row.evaluation.values)},
+                        {"failure", row.evaluation.failure},
+                        {"increments", row.evaluation.increments},
+                        {"seconds", row.evaluation.seconds}});
+    Json made = Json::array();
+    for (const NewMesh &mesh : meshes)
+      made.push_back({{"trial", mesh.row},
+                      {"meshed_at", mesh.made_at},
+                      {"nodes", mesh.n_nodes},
+                      {"quality_before", number(mesh.quality_before)},
+                      {"quality", number(mesh.quality_after)},
+                      {"volume_before", number(mesh.volume_before)},
+                      {"volume", number(mesh.volume_after)},
+                      {"objective_before", number(criteria.value(mesh.before))},
+                      {"objective", number(criteria.value(mesh.after))},
+                      {"values_before", values_by_name(objectives, mesh.before)},
+                      {"values", values_by_name(objectives, mesh.after)}});
+    Json json = {{"schema", 1},
+                 {"command", "optimize"},
+                 {"version", version},
+                 {"commit", commit},
+                 {"objective",
+                  {{"name", criteria.objective.name},
+                   {"unit", criteria.objective.unit},
+                   {"start", number(value(start))},
+                   {"best", number(value(best))},
+                   {"noise", number(noise)},
+                   {"counted_as", counted_as}}},
+                 {"limits", limits},
+                 {"relations", relations},
+                 {"parameters", parameters},
+                 {"stop", in_words(stop)},
+                 {"finished", stop != SearchStop::running},
+                 {"converged", has_converged()},
+                 {"limits_kept", limits_are_kept()},
+                 {"simulations", n_simulations},
+                 {"sweeps", n_sweeps},
+                 {"failed", n_failed},
+                 {"new_meshes", made},
+                 {"trials", trials}};
+    for (const auto &[name, of_design] : operations)
+      json["operations"].push_back({{"name", name}, {"parameters", of_design}});
+    if (const auto &held = space.held())
+      json["follows"] = {{"name", held->name},
+                         {"unit", held->unit},
+                         {"start", number(start.values.back())},
+                         {"best", number(best.values.back())},
+                         {"lower", number(held->lower)},
+                         {"upper", number(held->upper)}};
+    for (std::size_t o = 0; o < details.size(); ++o)
+      if (!details[o].empty())
+        json["details"][objectives[o]] = details[o];
+    if (confidence)
+      json["identification"] = as_json(*this);
+    if (confirmation)
+      json["confirmation"] = {
+        {"nodes", confirmation->n_nodes},
+        {"increments", confirmation->n_increments},
+        {"start", confirmation->start.failed() ? Json() : number(value(confirmation->start))},
+        {"best", confirmation->best.failed() ? Json() : number(value(confirmation->best))},
+        {"values_start", values_by_name(objectives, confirmation->start.values)},
+        {"values", values_by_name(objectives, confirmation->best.values)},
+        {"failure", confirmation->start.failure + confirmation->best.failure}};
+    write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  }
+
+  void OptimizationResults::print_warning(std::ostream &out) const
+  {
+    if (!limits_are_kept())
+      out << "\n  NOT FEASIBLE: no design that was forged keeps all limits; this one comes closest\n";
+    for (std::size_t i = 0; i < criteria.limits.size(); ++i)
+      if (const double missed = missed_by(i); missed > 0.)
+      {
+        const Limit      &limit = criteria.limits[i];
+        const std::string unit  = units[limit.objective].empty() ? "" : " " + units[limit.objective];
+        out << std::setprecision(7) << "    " << objectives[limit.objective] << ": "
+            << best.values[limit.objective] << unit << ", " << (limit.at_least ? "at least " : "at most ")
+            << limit.bound << unit << ": " << std::setprecision(4) << missed << unit;
+        if (limit.bound != 0.)
+          out << std::setprecision(3) << " (" << 100. * missed / std::abs(limit.bound) << " %)";
+        out << (limit.at_least ? " too little\n" : " too much\n");
+      }
+    if (found_nothing())
+      out << "\n  NOTHING FOUND: no design around the start could be forged, " << n_failed_at_the_end()
+          << " tried; the last one failed:\n    " << rows.back().evaluation.failure << '\n';
+  }
+
+  void OptimizationResults::print_limits(std::ostream &out) const
+  {
+    if (!criteria.limits.empty())
+      out << "\n  " << std::left << std::setw(28) << "limit" << std::right << std::setw(14) << "bound"
+          << std::setw(14) << "start" << std::setw(14) << "best"
+          << "  objective by relaxing it by 1\n";
+    for (std::size_t i = 0; i < criteria.limits.size(); ++i)
+    {
+      const Limit &limit = criteria.limits[i];
+      out << "  " << std::left << std::setw(28)
+          << objectives[limit.objective] + (limit.at_least ? " at least" : " at most") << std::right
+          << std::setprecision(7) << std::setw(14) << limit.bound << std::setw(14)
+          << start.values[limit.objective] << std::setw(14) << best.values[limit.objective] << "  "
+          << (missed_by(i) > 0.      ? "not kept"
+              : !limits_are_kept()   ? "unknown, as another limit is not kept"
+              : !has_converged()     ? "unknown, as the search did not come to its end"
+              : by_relaxing(i) == 0. ? "not felt"
+                                     : as_text(by_relaxing(i)))
+          << '\n';
+    }
+  }
+
+  void OptimizationResults::print(std::ostream &out) const
+  {
+    const std::string unit = criteria.objective.unit.empty() ? "" : " " + criteria.objective.unit;
+    print_warning(out);
+    out << std::setprecision(7) << "\n  " << criteria.objective.name << ": " << value(start) << unit << " -> "
+        << value(best) << unit;
+    if (value(start) != 0.)
+      out << std::setprecision(4) << " (" << std::showpos << 100. * (value(best) / value(start) - 1.)
+          << std::noshowpos << " %)";
+    if (!counted_as.empty())
+      out << "\n  all values are " << counted_as;
+    if (!meshes.empty())
+      out << std::setprecision(3)
+          << "\n  start and best are forged on meshes of their own: the mesh was made anew "
+          << (meshes.size() == 1 ? "once" : std::to_string(meshes.size()) + " times")
+          << ", which\n  changed the objective by " << std::showpos << by_meshes() << std::noshowpos << unit
+          << (meshes.size() == 1 ? "" : " in all") << "; the rest is by the design";
+    out << "\n  stopped: " << in_words(stop);
+    if (ended_among_failures())
+      out << "; the last " << n_failed_at_the_end() << " failed: it is at the edge of what can be forged";
+    out << "\n  " << n_simulations << " forgings; " << n_failed << " of " << rows.size()
+        << " designs failed; " << n_sweeps << " swept back\n";
+    if (noise > 0.)
+      out << std::setprecision(3) << "  noise of the objective: " << noise << unit << '\n';
+    out << "\n  " << std::left << std::setw(28) << "parameter" << std::right << std::setw(14) << "start"
+        << std::setw(14) << "best" << '\n';
+    for (std::size_t j = 0; j < space.size(); ++j)
+      out << "  " << std::left << std::setw(28) << space.parameters()[j].name << std::right
+          << std::setprecision(7) << std::setw(14) << start.mu[j] << std::setw(14) << best.mu[j] << ' '
+          << std::left << std::setw(8) << space.parameters()[j].unit << std::right
+          << in_words(space.at(best.mu, j)) << '\n';
+    if (const auto &held = space.held())
+      out << "  " << std::left << std::setw(28) << held->name << std::right << std::setprecision(7)
+          << std::setw(14) << start.values.back() << std::setw(14) << best.values.back() << ' ' << std::left
+          << std::setw(8) << held->unit << std::right << "follows from the volume\n";
+    print_limits(out);
+    for (std::size_t o = 0; o < details.size(); ++o)
+      for (const auto &[what, detail] : details[o])
+        out << "  " << what << " of " << objectives[o] << " at the best design: " << detail << '\n';
+    for (std::size_t r = 0; r < by_moving_relation.size(); ++r)
+      out << (r == 0 ? "\n" : "") << "  " << space.relations()[r].text << ": "
+          << (space.holds_as_equation(best.mu, r)
+                ? "felt, objective by moving its bound by 1: " + as_text(by_moving_relation[r])
+                : "not felt")
+          << '\n';
+    const auto accepted = std::find_if(rows.rbegin(), rows.rend(), [](const TrialRow &row) {
+      return row.decision == TrialRow::Decision::accepted || row.decision == TrialRow::Decision::renewed;
+    });
+    if (stop != SearchStop::running && accepted != rows.rend() && accepted->evaluation.mu != best.mu)
+      out << "  the search ended at another design, of " << std::setprecision(10)
+          << value(accepted->evaluation) << unit
+          << (value(accepted->evaluation) < value(best) ? "; the one that keeps the limits best is shown\n"
+                                                        : "; the least is shown\n");
+    if (confidence)
+      print_confidence(*this, out);
+    if (confirmation)
+    {
+      out << "\n  on a mesh of " << confirmation->n_nodes << " nodes, in " << confirmation->n_increments
+          << " increments: ";
+      if (confirmation->start.failed() || confirmation->best.failed())
+        out << "failed: " << confirmation->start.failure + confirmation->best.failure << '\n';
+      else
+        out << value(confirmation->start) << unit << " -> " << value(confirmation->best) << unit << '\n';
+      if (!confirmation->best.failed())
+        for (const Limit &limit : criteria.limits)
+          out << "    " << objectives[limit.objective] << ' ' << confirmation->best.values[limit.objective]
+              << ", " << (limit.at_least ? "at least " : "at most ") << limit.bound
+              << (limit.excess(confirmation->best.values) > limit_tolerance ? ": not kept there\n"
+                                                                            : ": kept\n");
+    }
+  }
+} // namespace retroforge

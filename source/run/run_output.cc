@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/level_gaps.h>
+#include <retroforge/contact/penetration.h>
+#include <retroforge/mesh/parts_quality.h>
+#include <retroforge/output/console.h>
+#include <retroforge/run/run_output.h>
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace retroforge
+{
+  RunOutput::RunOutput(const Case &at, const WholePart &whole, const ObjectiveTrace &trace, Timings &timings)
+      : case_(at)
+      , whole_(whole)
+      , trace_(trace)
+      , timings_(timings)
+      , time_left_(at.parameters.press.stroke)
+      , fields_(at.comm, at.command.output_directory, at.model, at.process, at.billet, at.X_0)
+  {
+    if (at.parameters.output.every != 0u)
+    {
+      const auto timing = timings_.scope("output");
+      fields_.add_billet();
+    }
+    const std::string &folder = at.command.output_directory;
+    if (dealii::Utilities::MPI::this_mpi_process(at.comm) != 0)
+      return;
+    history_    = std::make_unique<History>(folder + "/history.csv");
+    objectives_ = std::make_unique<ObjectiveHistory>(folder + "/objectives.csv");
+    print_head(whole);
+  }
+
+  void RunOutput::begin()
+  {
+    seconds_ = timings_.seconds("total");
+  }
+
+  bool RunOutput::is_due(const ForgingState &state, const unsigned int every) const
+  {
+    const bool at_end = state.stroke >= case_.parameters.press.stroke * (1. - 1e-9);
+    return every > 0 && (state.increments % every == 0 || at_end);
+  }
+
+  bool RunOutput::shows(const IncrementEvent &event) const
+  {
+    if (case_.parameters.output.every)
+      return is_due(event.state, *case_.parameters.output.every);
+    constexpr double n_pictures = 20.;
+    const auto       interval   = [&](const double stroke) {
+      return std::floor(n_pictures * stroke / case_.parameters.press.stroke + 1e-6);
+    };
+    return interval(event.state.stroke) > interval(event.record.stroke);
+  }
+
+  void RunOutput::add(const IncrementEvent &event)
+  {
+    for (std::size_t p = 0; p < event.record.pairs.size(); ++p)
+      if (event.record.solves.back().active[p])
+        touched_.insert(event.record.pairs[p].die);
+    watch_edges(event);
+    if (is_due(event.state, case_.parameters.objectives.every))
+      add_objectives(event.state);
+    const auto       timing = timings_.scope("output");
+    const HistoryRow row    = row_of(event);
+    if (history_)
+    {
+      history_->add(row);
+      print(event, row);
+    }
+    fields_.follow(event);
+    if (shows(event))
+      fields_.add(event);
+  }
+
+  void RunOutput::add_objectives(const ForgingState &state)
+  {
+    const auto              timing     = timings_.scope("objectives");
+    const Objectives       &objectives = case_.objectives;
+    const auto              values     = trace_.values(state, true, false);
+    const auto              beside     = trace_.beside(state);
+    std::vector<NamedValue> columns;
+    for (std::size_t j = 0; j < objectives.size(); ++j)
+    {
+      const std::string unit = " [" + objectives[j].unit() + "]";
+      columns.emplace_back(objectives[j].name + unit, values[j]);
+      for (const auto *numbers : {&beside[j].parts, &beside[j].details})
+        for (const auto &[name, value] : *numbers)
+          columns.emplace_back(objectives[j].name + ": " + name + unit, value);
+    }
+    if (objectives_)
+      objectives_->add(state.stroke, columns);
+  }
+
+  void RunOutput::watch_edges(const IncrementEvent &event)
+  {
+    const EdgeFit fit = edge_fit(event.X_before, event.record.contact.ramp, event.solved.start->contact);
+    if (fit.spanning > spanned_.spanning)
+      spanned_ = {fit.touching,
+                  fit.spanning,
+                  fit.largest,
+                  event.state.stroke,
+                  {{fit.place[0], fit.place[1], fit.place[2]}},
+                  case_.model.dies[fit.die].name};
+  }
+
+  HistoryRow RunOutput::row_of(const IncrementEvent &event)
+  {
+    const ForgingState      &state  = event.state;
+    const Scene             &scene  = state.leg->scene;
+    const ReplicatedEntries &cells  = scene.discretization.cells();
+    const std::vector<Die>  &dies   = case_.model.dies;
+    const double             size   = volume(scene.mesh, state.X, cells);
+    const auto               states = case_.process.at_stroke(state.stroke).dies;
+    const Penetration deepest = deepest_point(scene.mesh, scene.topology, dies, states, state.X, case_.comm);
+    if (!(deepest.depth <= deepest_.depth))
+      deepest_ = {deepest.depth,
+                  deepest.depth / case_.edge_length(),
+                  state.stroke,
+                  {{deepest.place[0], deepest.place[1], deepest.place[2]}},
+                  deepest.die == invalid_index ? "" : dies[deepest.die].name};
+    const unsigned int leading  = case_.nominal.leading_die;
+    const Vec3        &velocity = case_.nominal.dies[leading].velocity;
+    const double       force    = event.record.forces[leading] * velocity / velocity.norm();
+    const double       energy   = state.energy.total();
+    return {state.increments,
+            event.time,
+            state.stroke,
+            force,
+            energy,
+            size,
+            minimum_quality(scene.mesh, state.X, cells),
+            deepest.depth,
+            event.record.newton,
+            event.record.krylov,
+            whole_.force * force,
+            whole_.copies * energy,
+            whole_.copies * size};
+  }
+
+  void RunOutput::print(const IncrementEvent &event, const HistoryRow &row)
+  {
+    const TetMesh &mesh = event.state.leg->scene.mesh;
+    if (event.record.remesh)
+      std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());
+    if (!std::isnan(seconds_)) // solved, not restored
+    {
+      const double now = timings_.seconds("total");
+      time_left_.add(event.record.step, now - std::exchange(seconds_, now));
+    }
+    print_increment(row, time_left_.seconds(row.stroke));
+  }
+
+  void RunOutput::add_failed(const ForgingState &state)
+  {
+    fields_.add_failed(state);
+  }
+
+  std::vector<std::string> RunOutput::untouched_dies() const
+  {
+    std::vector<std::string> names;
+    for (unsigned int d = 0; d < case_.model.dies.size(); ++d)
+      if (touched_.count(d) == 0)
+        names.push_back(case_.model.dies[d].name);
+    return names;
+  }
+} // namespace retroforge

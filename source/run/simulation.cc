@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/case/case_messages.h>
+#include <retroforge/case/scene_checks.h>
+#include <retroforge/case/scene_estimate.h>
+#include <retroforge/core/error.h>
+#include <retroforge/core/exception_message.h>
+#include <retroforge/core/stop_notice.h>
+#include <retroforge/core/version.h>
+#include <retroforge/geometry/stl_file.h>
+#include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/output/console.h>
+#include <retroforge/output/mesh_files.h>
+#include <retroforge/output/nodal_gradients.h>
+#include <retroforge/output/results_folder.h>
+#include <retroforge/output/safe_file.h>
+#include <retroforge/output/sensitivity.h>
+#include <retroforge/output/warnings.h>
+#include <retroforge/run/perturbed_design.h>
+#include <retroforge/run/run_messages.h>
+#include <retroforge/run/run_summary.h>
+#include <retroforge/run/simulation.h>
+
+#include <algorithm>
+#include <iostream>
+#include <numeric>
+#include <utility>
+
+namespace retroforge
+{
+  namespace
+  {
+    void require_finite(const double x, const std::string &where, const std::string &what)
+    {
+      if (!std::isfinite(x))
+        throw Error(where,
+                    what + " is " + as_text(x),
+                    "results must be finite numbers",
+                    "use values of the usual size, of exponents and sharpness in particular");
+    }
+
+    void check_finite(const Objectives &objectives, const std::vector<double> &values)
+    {
+      for (std::size_t j = 0; j < objectives.size(); ++j)
+        require_finite(values[j], "Objective " + objectives[j].name, "its value");
+    }
+
+    void check_finite(const Judged &objective, const Design &design)
+    {
+      for (std::size_t j = 0; j < objective.gradient.size(); ++j)
+        require_finite(objective.gradient[j],
+                       "Objective " + objective.name,
+                       "its derivative by " + design.parameters()[j].name);
+      const auto size = [](const NodalVectors<double> &x) {
+        return std::accumulate(
+          x.begin(), x.end(), 0., [](const double sum, const Vec3 &v) { return sum + v.norm(); });
+      };
+      require_finite(size(objective.shape.X_0),
+                     "Objective " + objective.name,
+                     "its derivative by the nodes of the billet");
+      for (const NodalVectors<double> &vertices : objective.shape.dies)
+        require_finite(
+          size(vertices), "Objective " + objective.name, "its derivative by the vertices of a die");
+    }
+
+    /// A check reads the increments many times over; a gradient once, from the record.
+    bool kept_in_memory(const Case &at)
+    {
+      return at.command.command == "check" ||
+             (at.command.command == "gradient" && !at.parameters.output.record);
+    }
+  } // namespace
+
+  Simulation::Simulation(const CommandLine &command, MPI_Comm comm)
+      : case_(command, timings_, comm)
+      , root_(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
+      , first_leg_(std::make_shared<Leg>(case_.billet, case_.model, timings_))
+      , remesher_(case_.remesher(case_.parameters, case_.model.dies))
+      , forging_(case_.model, case_.parameters.press, remesher_, timings_)
+      , trace_(case_.objectives, case_.model, case_.process)
+      , recording_(command.output_directory, kept_in_memory(case_))
+      , warnings_(check_scene(case_.parameters, first_leg_->scene, case_.process, case_.X_0))
+  {
+  }
+
+  int Simulation::run()
+  {
+    const auto total = timings_.scope("total");
+    prepare_folder();
+    if (root_)
+    {
+      check_outputs();
+      write_inputs();
+      print_begin(case_);
+      print_warnings(warnings_);
+      print_warnings(estimate_scene(case_.parameters, first_leg_->scene, case_.process, case_.X_0).warnings);
+      summary_.volume_of_shape = shape_volume(case_);
+      print_chords(case_, summary_.volume_of_shape);
+    }
+    try
+    {
+      return forge_and_judge() ? 0 : 1;
+    }
+    catch (...)
+    {
+      keep_failure();
+      throw;
+    }
+  }
+
+  void Simulation::prepare_folder() const
+  {
+    const CommandLine &command = case_.command;
+    if (case_.resumption)
+      case_.resumption->check_start(case_.billet, case_.X_0, case_.model.dies);
+    if (case_.resumption && root_)
+      case_.resumption->check_increments();
+    MPI_Barrier(case_.comm); // all have read before anything changes
+    if (root_ && command.resume)
+      remove_all_but_record(command.output_directory, command.command == "check");
+    else if (root_)
+      make_results_folder(command.output_directory, command.overwrite, case_.echo);
+  }
+
+  void Simulation::check_outputs() const
+  {
+    std::vector<std::string> files          = {"parameters.prm",
+                                               "history.csv",
+                                               "objectives.csv",
+                                               "fields.pvd",
+                                               "summary.json",
+                                               "billet.msh",
+                                               "forged.msh",
+                                               "forged.stl"};
+    const bool               differentiates = case_.command.command != "simulate";
+    if (differentiates)
+      files.insert(files.end(), {"sensitivity.vtu", "sensitivity_nodes.csv"});
+    if (case_.command.command == "check")
+      files.push_back("check.json");
+    if (case_.parameters.output.record)
+      files.push_back("record.h5");
+    for (const Die &die : case_.model.dies)
+      if (die.surface())
+      {
+        files.push_back("die_" + die.name + ".stl");
+        if (differentiates)
+          for (const char *kind : {".vtu", "_nodes.csv"})
+            files.push_back("sensitivity_die_" + die.name + kind);
+      }
+    for (const std::string &file : files)
+      check_writable(path_of(file));
+  }
+
+  void Simulation::write_inputs() const
+  {
+    write_file(path_of("parameters.prm"), case_.echo);
+    write_msh(path_of("billet.msh"), case_.billet, case_.X_0);
+    for (const Die &die : case_.model.dies)
+      if (die.surface())
+        write_stl(path_of("die_" + die.name + ".stl"), *die.surface(), StlFormat::binary);
+  }
+
+  bool Simulation::forge_and_judge()
+  {
+    const double       begin   = timings_.seconds("total");
+    const std::string &command = case_.command.command;
+    summary_.whole = whole_part(case_.billet, case_.nominal.dies[case_.nominal.leading_die].velocity);
+    forge();
+    if (!case_.command.resume)
+      forging_seconds_ = timings_.seconds("total") - begin;
+    if (command != "simulate")
+      differentiate();
+    summarise_run(case_, forged_, summary_);
+    summarise_objectives(case_, trace_, forged_, values_, summary_);
+    summarise_gradients(case_, judged_, summary_);
+    summary_.deepest      = output_->deepest();
+    summary_.spanned      = output_->spanned();
+    summary_.record_bytes = recording_.bytes();
+    summary_.warnings =
+      warnings_of(summary_, case_.parameters.contact.largest_depth, output_->untouched_dies());
+    const bool passed = verify();
+    write_summary();
+    if (root_)
+      write_forged();
+    if (root_)
+      print_results(summary_, case_.command.output_directory);
+    return passed;
+  }
+
+  void Simulation::write_forged() const
+  {
+    const TetMesh &mesh = forged_.leg->scene.mesh;
+    write_msh(path_of("forged.msh"), mesh, forged_.X);
+    write_boundary_stl(path_of("forged.stl"), mesh, forged_.X);
+  }
+
+  void Simulation::keep_failure()
+  {
+    if (!root_)
+      return;
+    const std::string message = message_of(std::current_exception());
+    try
+    {
+      write_file(path_of("failure.txt"), message + "\n");
+      if (output_ && values_.empty())
+        output_->add_failed(forged_);
+    }
+    catch (const Error &)
+    {
+      // What failed first is what the user must know.
+    }
+  }
+
+  void Simulation::forge()
+  {
+    forged_ = forging_.start(first_leg_, case_.X_0);
+    output_ = std::make_unique<RunOutput>(case_, summary_.whole, trace_, timings_);
+    if (case_.command.resume)
+      resume();
+    else if (root_ && case_.parameters.output.record)
+      recording_.write_to(RecordWriter(case_.command.output_directory,
+                                       {version,
+                                        commit,
+                                        case_.echo,
+                                        facets(case_.model.dies),
+                                        case_.billet,
+                                        case_.X_0,
+                                        fingerprints(case_.model.dies)}));
+    if (root_)
+      say_when_stopped(way_on(case_));
+    forge_on();
+    values_ = trace_.values(forged_, true);
+    {
+      const auto timing = timings_.scope("record");
+      recording_.finish();
+    }
+    MPI_Barrier(case_.comm); // the record is complete before any rank reads it
+    check_finite(case_.objectives, values_);
+    require_finite(forged_.energy.total(), "Workpiece", "its energy");
+    require_finite(volume(forged_.leg->scene.mesh.cells, forged_.X), "Workpiece", "its volume");
+  }
+
+  void Simulation::forge_on()
+  {
+    bool writes = false;
+    output_->begin();
+    try
+    {
+      forging_.run(case_.process, forged_, [&](const IncrementEvent &event) {
+        writes = true;
+        {
+          const auto timing = timings_.scope("record");
+          recording_.write(event.record);
+        }
+        follow(event);
+        writes = false;
+      });
+    }
+    catch (const NoRoom &)
+    {
+      throw;
+    }
+    catch (const Error &error)
+    {
+      // Other numerics do not cure a full disk.
+      if (writes || forged_.increments == 0 || !case_.has_record())
+        throw;
+      throw error.or_else(way_on_after_failure(case_, forged_.stroke, remesher_.enabled()));
+    }
+  }
+
+  void Simulation::follow(const IncrementEvent &event)
+  {
+    recording_.keep(event.record);
+    {
+      const auto timing = timings_.scope("objectives");
+      trace_.add(event);
+    }
+    output_->add(event);
+  }
+
+  void Simulation::resume()
+  {
+    const std::string &folder  = case_.command.output_directory;
+    const auto        &changes = case_.resumption->changes;
+    const RecordReader record(folder);
+    IncrementRecord    increment;
+    forging_.restore(
+      case_.process,
+      record.n_increments(),
+      [&](const unsigned int i) -> const IncrementRecord & {
+        increment = record.read(i);
+        return increment;
+      },
+      forged_,
+      [&](const IncrementEvent &event) { follow(event); });
+    MPI_Barrier(case_.comm); // all have read before the writer removes what is torn
+    const bool is_left = forging_.is_left(forged_);
+    if (is_left && !changes.empty())
+    {
+      Forging::change_numerics(case_.echo, forged_);
+      case_.stretches.push_back({{forged_.increments, forged_.stroke, case_.echo}, case_.parameters});
+    }
+    if (!root_)
+      return;
+    if (record.finished() && is_left)
+      RecordWriter::reopen(folder);
+    if (record.finished() && !is_left)
+      RecordWriter::tidy(folder);
+    else
+      recording_.write_to(RecordWriter::resume(folder));
+    print_resumed(forged_.increments, is_left, changes);
+  }
+
+  RecordedForging Simulation::recorded()
+  {
+    return {case_.model,
+            first_leg_,
+            case_.process,
+            recording_.source(),
+            forged_.increments,
+            case_.objectives,
+            timings_};
+  }
+
+  void Simulation::differentiate()
+  {
+    const auto timing = timings_.scope("adjoint");
+    const auto values = case_.combine(values_);
+    for (std::size_t j = 0; j < case_.combinations.size(); ++j)
+      judged_.push_back({case_.combinations[j].name,
+                         case_.combinations[j].unit,
+                         values[j],
+                         std::vector<double>(case_.mu.size()),
+                         {}});
+    // A check compares the two methods.
+    if (case_.parameters.adjoint.method == "direct" && case_.command.command == "gradient")
+      differentiate_directly();
+    else
+      sweep_back();
+    for (const Judged &objective : judged_)
+    {
+      check_finite(objective, case_.design);
+      if (root_)
+        print_gradient(objective, case_.design, case_.mu);
+    }
+  }
+
+  void Simulation::sweep_back()
+  {
+    const AdjointSweep sweep       = adjoint_sweep(recorded(), trace_.rows(), forged_, case_.combinations);
+    summary_.linear_solves_adjoint = sweep.linear_solves;
+    for (std::size_t j = 0; j < judged_.size(); ++j)
+    {
+      const auto timing   = timings_.scope("design");
+      judged_[j].gradient = case_.design.pull_back(case_.mu, sweep.of[j].X_0, sweep.of[j].process);
+      judged_[j].shape    = {sweep.of[j].X_0, {}};
+      for (const auto &die : sweep.of[j].process.dies)
+        judged_[j].shape.dies.push_back(die.vertices);
+    }
+    const auto timing = timings_.scope("sensitivity");
+    if (root_)
+    {
+      const std::string &folder = case_.command.output_directory;
+      write_sensitivity(folder, case_.billet, case_.X_0, case_.model.dies, judged_);
+      write_nodal_gradients(folder, case_.billet, case_.X_0, case_.model.dies, case_.process, judged_);
+    }
+  }
+
+  void Simulation::differentiate_directly()
+  {
+    for (std::size_t i = 0; i < case_.mu.size(); ++i)
+    {
+      std::vector<double> mu_dot(case_.mu.size(), 0.);
+      mu_dot[i] = 1.;
+      const auto derivatives =
+        directional_derivatives(case_, recorded(), mu_dot, {NodalVectors<double>(case_.X_0.size()), {}});
+      for (std::size_t j = 0; j < judged_.size(); ++j)
+        judged_[j].gradient[i] = derivatives[j];
+    }
+  }
+
+  void Simulation::write_summary()
+  {
+    summary_.wall_seconds = timings_.all();
+    if (root_)
+      summary_.write(path_of("summary.json"));
+  }
+} // namespace retroforge

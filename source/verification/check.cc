@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/verification/check.h>
+
+#include <iomanip>
+#include <iostream>
+#include <random>
+
+namespace retroforge
+{
+  namespace
+  {
+    double relative(const double a, const double b)
+    {
+      return std::abs(a - b) / std::max({std::abs(a), std::abs(b), 1e-300});
+    }
+
+    FreeForm times(const double s, FreeForm x)
+    {
+      for (Vec3 &v : x.X_0)
+        v *= s;
+      for (NodalVectors<double> &die : x.dies)
+        for (Vec3 &v : die)
+          v *= s;
+      return x;
+    }
+
+    using Values = ObjectiveOracle::Values;
+
+    /// The objectives along one direction: t -> Phi(mu + t mu_dot, shift_dot t).
+    struct Line
+    {
+      const std::vector<double> &mu;
+      std::vector<double>        mu_dot;
+      FreeForm                   shift_dot;
+
+      Values operator()(const decltype(ObjectiveOracle::free) &objectives, const double t) const
+      {
+        std::vector<double> at = mu;
+        for (std::size_t j = 0; j < mu.size(); ++j)
+          at[j] += t * mu_dot[j];
+        return objectives(at, times(t, shift_dot));
+      }
+    };
+
+    /// A run that decides everything anew may also fail anew: then there is no difference, and the rest of
+    /// the check goes on.
+    Values
+    free_differences(const Line &line, const ObjectiveOracle &oracle, const double h, const std::size_t n)
+    {
+      Values differences(n, NAN);
+      try
+      {
+        const Values plus = line(oracle.free, h), minus = line(oracle.free, -h);
+        for (std::size_t o = 0; o < n; ++o)
+          differences[o] = (plus[o] - minus[o]) / (2. * h);
+      }
+      catch (const Error &error)
+      {
+        std::cerr << "  free difference of step " << h << ": " << error.what() << std::endl;
+      }
+      return differences;
+    }
+
+    /// Completes the rows of one line, one per objective.
+    void check_line(const CheckParameters     &parameters,
+                    const Line                &line,
+                    const std::vector<Judged> &judged,
+                    const double               scale,
+                    const ObjectiveOracle     &oracle,
+                    std::vector<CheckRow>     &rows)
+    {
+      const Values tangents = oracle.tangent(line.mu_dot, line.shift_dot);
+      for (std::size_t o = 0; o < rows.size(); ++o)
+        rows[o].tangent = tangents[o];
+      for (const double step : parameters.steps)
+      {
+        const double h    = step * scale;
+        const Values plus = line(oracle.replayed, h), minus = line(oracle.replayed, -h);
+        Values       free(rows.size(), NAN);
+        if (parameters.free)
+          free = free_differences(line, oracle, h, rows.size());
+        for (std::size_t o = 0; o < rows.size(); ++o)
+        {
+          const double value = judged[o].value;
+          rows[o].steps.push_back(
+            {step, (plus[o] - minus[o]) / (2. * h), (plus[o] - value) / h, (value - minus[o]) / h, free[o]});
+        }
+      }
+      std::vector<double> last(rows.size(), 0.);
+      for (unsigned int i = 0; i <= parameters.taylor_halvings; ++i)
+      {
+        const double h  = parameters.taylor_start * scale * std::pow(0.5, i);
+        const Values at = line(oracle.replayed, h);
+        for (std::size_t o = 0; o < rows.size(); ++o)
+        {
+          const double remainder = std::abs(at[o] - judged[o].value - h * rows[o].adjoint);
+          if (i > 0)
+            rows[o].taylor_orders.push_back(std::log2(last[o] / remainder));
+          last[o] = remainder;
+        }
+      }
+      for (std::size_t o = 0; o < rows.size(); ++o)
+      {
+        CheckRow &row = rows[o];
+        // What moves the objective by less than 1e-7 of itself while the parameter moves by all of its size
+        // is rounding. So is 1e-13 of that in a derivative, 1e-11 of it in a difference, and 1e-10 of the
+        // value in a remainder.
+        const double whole = std::abs(judged[o].value) / scale;
+        row.is_zero        = std::max(std::abs(row.adjoint), std::abs(row.tangent)) <= 1e-7 * whole &&
+                      row.smallest_difference() <= 2e-7 * whole;
+        row.least_difference = 1e-5 * whole;
+        if (row.is_zero)
+        {
+          row.passed = true;
+          continue;
+        }
+        // A remainder at rounding has no order: the objective is linear in this parameter.
+        const bool linear =
+          last[o] <= std::max(1e-9 * std::abs(parameters.taylor_start * scale * row.adjoint),
+                              1e-10 * std::abs(judged[o].value));
+        const bool same = row.tangent_error() <= parameters.tangent_bar ||
+                          std::abs(row.adjoint - row.tangent) <= 1e-13 * whole;
+        row.passed = same && row.best_replayed_error() <= parameters.replayed_bar &&
+                     (linear || row.taylor_orders.back() >= parameters.taylor_bar);
+      }
+    }
+  } // namespace
+
+  double CheckRow::tangent_error() const
+  {
+    return std::abs(adjoint - tangent) / std::max({std::abs(adjoint), std::abs(tangent), magnitude, 1e-300});
+  }
+
+  double CheckRow::smallest_difference() const
+  {
+    double smallest = std::numeric_limits<double>::max();
+    for (const auto &step : steps)
+      smallest = std::min(smallest, std::abs(step.replayed_central));
+    return smallest;
+  }
+
+  double CheckRow::best_replayed_error() const
+  {
+    double best = std::numeric_limits<double>::max();
+    for (const auto &step : steps)
+      best =
+        std::min(best,
+                 std::abs(step.replayed_central - adjoint) /
+                   std::max({std::abs(step.replayed_central), std::abs(adjoint), least_difference, 1e-300}));
+    return best;
+  }
+
+  double CheckRow::best_free_error() const
+  {
+    double best = std::numeric_limits<double>::max();
+    for (const auto &step : steps)
+      if (!std::isnan(step.free_central))
+        best = std::min(best, relative(step.free_central, adjoint));
+    return best;
+  }
+
+  namespace
+  {
+    NodalVectors<double> random_vectors(const std::size_t n, std::mt19937 &generator)
+    {
+      std::uniform_real_distribution<double> uniform(-1., 1.);
+      NodalVectors<double>                   vectors(n);
+      for (Vec3 &v : vectors)
+        for (unsigned int i = 0; i < 3; ++i)
+          v[i] = uniform(generator);
+      return vectors;
+    }
+
+    /// The derivative along a direction, and the root of the squares of its terms.
+    std::pair<double, double> along(const FreeForm &direction, const FreeForm &derivative)
+    {
+      double     slope = 0., slope2 = 0.;
+      const auto add = [&](const NodalVectors<double> &a, const NodalVectors<double> &b) {
+        for (std::size_t k = 0; k < a.size(); ++k)
+          for (unsigned int i = 0; i < 3; ++i)
+          {
+            const double term = a[k][i] * b[k][i];
+            slope += term;
+            slope2 += term * term;
+          }
+      };
+      add(direction.X_0, derivative.X_0);
+      for (std::size_t d = 0; d < direction.dies.size(); ++d)
+        add(direction.dies[d], derivative.dies[d]);
+      return {slope, std::sqrt(slope2)};
+    }
+
+    /// A line in the space of designs along which derivatives are checked.
+    struct Direction
+    {
+      std::string         name, unit;
+      std::vector<double> mu_dot;
+      FreeForm            shift_dot;
+      double              scale;       ///< of the steps, in its unit
+      bool                is_of_shape; ///< all nodes move at once: steps are ten times smaller
+    };
+
+    std::vector<Direction> directions(const Design &design, const FreeForm &shape, const double length)
+    {
+      const std::size_t      n_nodes = shape.X_0.size(), n = design.parameters().size();
+      std::vector<Direction> directions;
+      for (std::size_t j = 0; j < n; ++j)
+      {
+        const auto &parameter = design.parameters()[j];
+        directions.push_back({parameter.name,
+                              parameter.unit,
+                              std::vector<double>(n, 0.),
+                              {NodalVectors<double>(n_nodes), {}},
+                              parameter.scale,
+                              false});
+        directions.back().mu_dot[j] = 1.;
+      }
+      std::mt19937 generator(1);
+      FreeForm     moved;
+      const auto   append = [&](const std::string &name) {
+        directions.push_back(
+          {name + " (random direction)", "mm", std::vector<double>(n, 0.), moved, length, true});
+      };
+      moved.X_0 = random_vectors(n_nodes, generator);
+      moved.dies.resize(shape.dies.size());
+      append("X_0");
+      moved.X_0 = NodalVectors<double>(n_nodes);
+      for (unsigned int d = 0; d < moved.dies.size(); ++d)
+        if (const std::size_t n_vertices = shape.dies[d].size(); n_vertices > 0)
+        {
+          moved.dies[d] = random_vectors(n_vertices, generator);
+          append(design.die_name(d));
+          moved.dies[d].clear();
+        }
+      return directions;
+    }
+
+    /// Rows of a direction before the runs: what the backward sweep says.
+    std::vector<CheckRow> rows_of(const Direction &direction, const std::vector<Judged> &judged)
+    {
+      std::vector<CheckRow> rows;
+      for (const Judged &objective : judged)
+      {
+        auto [slope, magnitude] = along(direction.shift_dot, objective.shape);
+        for (std::size_t j = 0; j < direction.mu_dot.size(); ++j)
+          slope += direction.mu_dot[j] * objective.gradient[j];
+        rows.push_back({objective.name, direction.name, direction.unit, slope, 0., {}, {}, false, magnitude});
+      }
+      return rows;
+    }
+
+    /// Rows of a direction that an earlier check has done, or none.
+    std::vector<CheckRow> done_rows(const Direction             &direction,
+                                    const std::vector<Judged>   &judged,
+                                    const std::vector<CheckRow> &done)
+    {
+      std::vector<CheckRow> rows;
+      for (const Judged &objective : judged)
+        for (const CheckRow &row : done)
+          if (row.objective == objective.name && row.parameter == direction.name)
+            rows.push_back(row);
+      return rows.size() == judged.size() ? rows : std::vector<CheckRow>();
+    }
+
+    std::vector<CheckRow> by_objective(const std::vector<std::vector<CheckRow>> &of_directions)
+    {
+      std::vector<CheckRow> rows;
+      for (std::size_t o = 0; !of_directions.empty() && o < of_directions[0].size(); ++o)
+        for (const auto &direction : of_directions)
+          rows.push_back(direction[o]);
+      return rows;
+    }
+  } // namespace
+
+  std::vector<CheckRow> check_gradient(const CheckParameters       &parameters,
+                                       const Design                &design,
+                                       const std::vector<double>   &mu,
+                                       const std::vector<Judged>   &judged,
+                                       const double                 length,
+                                       const ObjectiveOracle       &oracle,
+                                       const std::vector<CheckRow> &done,
+                                       const CheckWatch            &watch)
+  {
+    CheckParameters small = parameters;
+    for (double &step : small.steps)
+      step *= 0.1;
+    small.taylor_start *= 0.1;
+    std::vector<std::vector<CheckRow>> of_directions;
+    const auto                         all = directions(design, judged[0].shape, length);
+    for (const Direction &direction : all)
+      if (const auto rows = done_rows(direction, judged, done); rows.empty())
+        break;
+      else
+        of_directions.push_back(rows);
+    watch(by_objective(of_directions), of_directions.size(), all.size());
+    for (std::size_t i = of_directions.size(); i < all.size(); ++i)
+    {
+      const Direction &direction = all[i];
+      of_directions.push_back(rows_of(direction, judged));
+      check_line(direction.is_of_shape ? small : parameters,
+                 {mu, direction.mu_dot, direction.shift_dot},
+                 judged,
+                 direction.scale,
+                 oracle,
+                 of_directions.back());
+      watch(by_objective(of_directions), of_directions.size(), all.size());
+    }
+    return by_objective(of_directions);
+  }
+
+  void print(const std::vector<CheckRow> &rows, std::ostream &out)
+  {
+    out << std::scientific;
+    std::string objective;
+    for (const CheckRow &row : rows)
+    {
+      if (row.objective != objective)
+        out << "\n  " << std::left << std::setw(31) << "derivative of " + row.objective
+            << "   adjoint        adjoint/tangent-1  step     replayed   forward    free       "
+               "Taylor orders\n";
+      objective = row.objective;
+      for (std::size_t i = 0; i < std::max<std::size_t>(1, row.steps.size()); ++i)
+      {
+        if (i == 0)
+          out << "  " << std::left << std::setw(28) << row.parameter << std::right << std::setprecision(9)
+              << std::setw(17) << row.adjoint << std::setprecision(1) << std::setw(15) << row.tangent_error()
+              << "    ";
+        else
+          out << std::string(66, ' ');
+        if (i < row.steps.size())
+        {
+          const auto &d = row.steps[i];
+          out << std::setprecision(0) << std::setw(10) << d.step << std::setprecision(1) << std::setw(11)
+              << relative(d.replayed_central, row.adjoint) << std::setw(11)
+              << relative(d.replayed_forward, row.adjoint) << std::setw(11);
+          if (std::isnan(d.free_central))
+            out << "-";
+          else
+            out << relative(d.free_central, row.adjoint);
+        }
+        if (i == 0)
+        {
+          out << std::fixed << std::setprecision(2) << "  ";
+          for (const double order : row.taylor_orders)
+            if (out << ' '; std::isfinite(order)) // remainders of nothing have none
+              out << order;
+            else
+              out << '-';
+          out << (row.is_zero ? "  passed (zero)" : row.passed ? "  passed" : "  FAILED") << std::scientific;
+        }
+        out << '\n';
+      }
+    }
+    out << std::defaultfloat << std::setprecision(6);
+  }
+} // namespace retroforge
