@@ -30,6 +30,13 @@ namespace retroforge
     CellVectors<dim, Number>     X;
   };
 
+  /// Positions on an element are all that the kernels need.
+  template <int dim, typename Number>
+  const QuadratureGeometry<dim, Number> &cell_geometry(const QuadratureGeometry<dim, Number> &geometry)
+  {
+    return geometry;
+  }
+
   /// Unknowns of one cell, or anything dual to them (residual, adjoint).
   template <int dim, typename Number>
   struct QuadratureValues
