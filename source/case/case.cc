@@ -36,7 +36,7 @@ namespace retroforge
       const std::vector<Die>        dies = make_dies(parameters.dies);
       std::vector<DieState<double>> states;
       for (const DieParameters &die : parameters.dies)
-        states.push_back(die.initial_state());
+        states.push_back(initial_state(die));
       TetMesh remade = Remesher(parameters.remeshing, parameters.edge_length(mesh), dies, mesh.patches, comm)
                          .remesh(mesh, mesh.X, states, {}, 0., timings)
                          ->mesh;

@@ -580,7 +580,7 @@ end
     for (unsigned int d = 0; d < dies.size(); ++d)
     {
       dies[d].check();
-      if (dies[d].friction > 0. && !material.law.is_linear() && contact.slip_fraction < least_slip)
+      if (contact.slip_fraction < least_slip && needs_regularisation(initial_state(dies[d]), material.law))
         throw Error("Contact/slip regularisation",
                     "is " + as_text(contact.slip_fraction) +
                       " with friction and a strain rate sensitivity below 1",
@@ -719,7 +719,7 @@ end
   {
     std::vector<DieState<double>> states;
     for (const DieParameters &die : dies)
-      states.push_back(die.initial_state());
+      states.push_back(initial_state(die));
     return states;
   }
 

@@ -85,10 +85,12 @@ namespace retroforge
     }
 
     /// Traction of friction at the rim of a disc that is upset, which sticking does not bound yet.
-    double
-    rim_friction(const double alpha, const MaterialLaw<double> &law, const double rate, const double radius)
+    double rim_friction(const DieState<double>    &die,
+                        const MaterialLaw<double> &law,
+                        const double               rate,
+                        const double               radius)
     {
-      return alpha * law.K * std::pow(0.5 * rate * radius, law.m);
+      return friction_traction(die, 0.5 * rate * radius, flow_stress(law, rate), law);
     }
 
     /// Radius of the disc of the whole part.
@@ -103,8 +105,8 @@ namespace retroforge
       const Process<double> &process = view.process;
       const double           rate = closing_speed(process.dies) / height, radius = radius_of(view, height),
                    stress = flow_stress(process.law, rate), most = stress / std::sqrt(3.);
-      const auto tau = [&](const double alpha) {
-        return std::min(most, rim_friction(alpha, process.law, rate, radius));
+      const auto tau = [&](const DieState<double> &die) {
+        return std::min(most, rim_friction(die, process.law, rate, radius));
       };
       const bool halved =
         std::any_of(view.scene.mesh.patches.begin(), view.scene.mesh.patches.end(), [&](const Patch &patch) {
@@ -113,9 +115,9 @@ namespace retroforge
       double other = 0.;
       for (unsigned int d = 0; d < process.dies.size() && !halved; ++d)
         if (d != process.leading_die)
-          other = std::max(other, tau(process.dies[d].friction));
+          other = std::max(other, tau(process.dies[d]));
       const double friction =
-        (tau(process.dies[process.leading_die].friction) + other) * radius / ((process.law.m + 3.) * height);
+        (tau(process.dies[process.leading_die]) + other) * radius / ((process.law.m + 3.) * height);
       return dealii::numbers::PI * radius * radius * (stress + friction);
     }
 
@@ -192,8 +194,7 @@ namespace retroforge
       const double radius = radius_of(view, estimate.height), shear = estimate.flow_stress / std::sqrt(3.);
       for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
         if (const double part =
-              rim_friction(view.process.dies[d].friction, view.process.law, estimate.strain_rate, radius) /
-              shear;
+              rim_friction(view.process.dies[d], view.process.law, estimate.strain_rate, radius) / shear;
             part > largest_friction)
           warnings.push_back(
             view.name(d) + "/friction = " + as_text(view.process.dies[d].friction) + ": its traction is " +

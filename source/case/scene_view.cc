@@ -242,14 +242,15 @@ namespace retroforge
       const DieState<double> &state = parts_->process.dies[d];
       const Die              &die   = parts_->dies[d];
       SceneSummary::Die       described;
-      described.name     = die.name;
-      described.shape    = given.shape.name;
-      described.n_facets = die.n_facets();
-      described.point    = given.point + state.displacement;
-      described.facing   = given.facing;
-      described.velocity = state.velocity;
-      described.friction = given.friction;
-      described.leads    = die.name == parts_->leading_die;
+      described.name          = die.name;
+      described.shape         = given.shape.name;
+      described.n_facets      = die.n_facets();
+      described.point         = given.point + state.displacement;
+      described.facing        = given.facing;
+      described.velocity      = state.velocity;
+      described.friction      = given.friction;
+      described.friction_name = interface_law(state.interface_law).coefficient().name;
+      described.leads         = die.name == parts_->leading_die;
       if (die.surface())
         described.extents = corners_of(die.surface()->vertices(), state.displacement);
       summary_.dies.push_back(std::move(described));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/contact/die_approach.h>
+#include <retroforge/contact/die_overlap.h>
 #include <retroforge/contact/penetration.h>
 #include <retroforge/core/shares.h>
 

@@ -173,6 +173,7 @@ namespace retroforge
 
     void add_numbers_of(const DieParameters          &die,
                         const DieFreeForm            &form,
+                        const NumberInfo             &friction,
                         const unsigned int            d,
                         const double                  width,
                         std::vector<DesignParameter> &all)
@@ -180,8 +181,16 @@ namespace retroforge
       const std::string prefix = "die " + die.name + "/";
       const double      speed  = die.velocity.norm();
       if (die.friction > 0.)
-        all.push_back(
-          {prefix + "friction", "mm^(-m)", Kind::friction, die.friction, die.friction, d, 0, {}, true});
+        all.push_back({prefix + "friction",
+                       friction.unit,
+                       Kind::friction,
+                       die.friction,
+                       die.friction,
+                       d,
+                       0,
+                       {},
+                       friction.may_vanish,
+                       friction.largest});
       if (speed > 0.)
         all.push_back({prefix + "speed", "mm/s", Kind::speed, speed, speed, d});
       all.push_back({prefix + "offset", "mm", Kind::offset, 0., width, d});
@@ -192,6 +201,11 @@ namespace retroforge
           {prefix + "free form " + std::to_string(i + 1), "mm", Kind::die_free_form, 0., width, d, i});
     }
   } // namespace
+
+  NumberInfo Design::friction_of(const unsigned int d) const
+  {
+    return interface_law(process_.dies[d].interface_law).coefficient();
+  }
 
   std::vector<DesignParameter> Design::offered() const
   {
@@ -218,10 +232,10 @@ namespace retroforge
         {"billet/" + shape.name, shape.unit, Kind::billet, shape.nominal, shape.scale, invalid_index, j});
     }
     for (unsigned int d = 0; d < dies_.size(); ++d)
-      add_numbers_of(dies_[d], die_forms_[d], d, width_, all);
+      add_numbers_of(dies_[d], die_forms_[d], friction_of(d), d, width_, all);
     if (friction)
       all.push_back({"dies/friction",
-                     "mm^(-m)",
+                     friction_of(with_friction - dies_.begin()).unit,
                      Kind::friction,
                      with_friction->friction,
                      with_friction->friction,
@@ -254,16 +268,17 @@ namespace retroforge
 
   void Design::check_common_friction() const
   {
-    double alpha = 0.;
+    const DieParameters *first = nullptr;
     for (const auto &die : dies_)
       if (die.friction > 0.)
       {
-        if (alpha > 0. && alpha != die.friction)
+        if (first && (first->friction != die.friction || first->friction_law != die.friction_law))
           throw Error("Design/parameters",
-                      "'dies/friction' stands for all dies with friction, but their coefficients differ",
+                      std::string("'dies/friction' stands for all dies with friction, but their ") +
+                        (first->friction_law != die.friction_law ? "laws" : "coefficients") + " differ",
                       "one number must describe them all",
                       "name each die, as in 'die " + die.name + "/friction'");
-        alpha = die.friction;
+        first = &die;
       }
   }
 

@@ -26,10 +26,15 @@ namespace retroforge
       "NAME/offset' moves the die along it. Units: none.");
     prm.add_parameter("velocity", velocity, "Velocity of the die, constant. Units: mm/s.");
     prm.add_parameter(
+      "friction law",
+      friction_law,
+      "Law of the friction on the die; Norton: tau = -alpha K |dv|^(m-1) dv, with the metal's K "
+      "and m. Units: none.");
+    prm.add_parameter(
       "friction",
       friction,
-      "alpha of the Norton friction law tau = -alpha K |dv|^(m-1) dv; 0 is a frictionless die. "
-      "Units: mm^(-m).",
+      "Coefficient of the law of friction, alpha of Norton's; 0 is a frictionless die. Units: those of the "
+      "law, of Norton's mm^(-m).",
       dealii::Patterns::Double(0.));
     prm.add_parameter("follows billet",
                       follows_billet,

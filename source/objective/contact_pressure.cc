@@ -18,22 +18,6 @@ namespace retroforge
              view.stage.scene.discretization.owns(pair.point.nodes[0]);
     }
 
-    /// Force of a point along the die's normal. A vertex of quadratic velocities that is pressed because the
-    /// middles around it are may pull a little: were that cut off, derivatives would hang on its last digits.
-    template <typename Number>
-    Number pushing_force(const ContactNode<Number> &node, const Number &rho)
-    {
-      return node.active ? Number(rho * node.S * approach_excess(node)) : Number(0.);
-    }
-
-    /// A third of the surface at a node over the S of its pair: where velocities are quadratic, a vertex has
-    /// only a twelfth of a face.
-    template <typename Number>
-    double surface_over_S(const Stage<Number> &stage)
-    {
-      return stage.contact.quadratic ? 4. : 1.;
-    }
-
     constexpr unsigned int none = invalid_index;
 
     /// The pair of each node that is in reach of the die.
@@ -62,13 +46,13 @@ namespace retroforge
     {
       const Stage<Number>            &stage  = view.stage;
       const std::vector<unsigned int> of     = pairs_of_nodes(view, die);
-      const double                    larger = surface_over_S(stage);
+      const double                    larger = surface_over_S(stage.contact);
       std::vector<Number>             pressure(stage.contact.pairs.size(), Number(0.));
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
         if (const ContactPair &pair = stage.contact.pairs[p]; is_seen(view, p, die))
         {
           const Number force =
-            pushing_force(stage.contact_node(p, view.W, view.active), stage.physics.contact.rho);
+            normal_force(stage.contact_node(p, view.W, view.active), stage.physics.contact);
           for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)
             if (const unsigned int q = of[pair.point.nodes[i]]; q != none)
               pressure[q] += pair.point.weight() * force / (larger * stage.areas.S[q]);
@@ -107,7 +91,7 @@ namespace retroforge
   {
     const Stage<Number> &stage    = view.stage;
     const auto           pressure = nodal_pressures(view, die_);
-    const double         larger   = surface_over_S(stage);
+    const double         larger   = surface_over_S(stage.contact);
     std::vector<Number>  sums(2, Number(0.));
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_mine(view, p, die_))
@@ -126,7 +110,7 @@ namespace retroforge
     const Stage<double> &stage    = view.stage;
     const auto           pressure = nodal_pressures(view, die_);
     const auto           of       = pairs_of_nodes(view, die_);
-    const double         larger   = surface_over_S(stage);
+    const double         larger   = surface_over_S(stage.contact);
     ContactPullback      pullback(view, bar);
     std::vector<double>  force_bar(pressure.size(), 0.); ///< of the force on the node of a pair
     for (unsigned int p = 0; p < pressure.size(); ++p)
@@ -148,15 +132,10 @@ namespace retroforge
         for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)
           if (const unsigned int q = of[pair.point.nodes[i]]; q != none)
             of_point += pair.point.weight() * force_bar[q];
-        const ContactNode<double> node = stage.contact_node(p, view.W, view.active);
-        const double              rho = stage.physics.contact.rho, force = pushing_force(node, rho);
-        if (of_point == 0. || !node.active)
-          continue;
-        ContactNodeBar node_bar;
-        node_bar.S           = of_point * force / node.S;
-        node_bar.contact.rho = of_point * force / rho;
-        pullback.add(p, node_bar);
-        pullback.add_excess(p, node, of_point * rho * node.S);
+        if (of_point != 0.)
+          pullback.add(p,
+                       reverse_normal_force(
+                         stage.contact_node(p, view.W, view.active), stage.physics.contact, of_point));
       }
     pullback.finish();
   }

@@ -15,12 +15,10 @@ namespace retroforge
                                               std::vector<double>(stage.scene.mesh.n_nodes(), 0.));
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       {
-        const ContactPair        &pair = stage.contact.pairs[p];
-        const ContactNode<double> node = stage.contact_node(p, W, active);
-        if (node.active)
-          for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)
-            forces[pair.die][pair.point.nodes[i]] +=
-              pair.point.weight() * stage.physics.contact.rho * node.S * approach_excess(node);
+        const ContactPair &pair  = stage.contact.pairs[p];
+        const double       force = normal_force(stage.contact_node(p, W, active), stage.physics.contact);
+        for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)
+          forces[pair.die][pair.point.nodes[i]] += pair.point.weight() * force;
       }
       return forces;
     }
@@ -61,8 +59,7 @@ namespace retroforge
       const NodeIndex    k    = pair.point.nodes[0];
       if (!pair.point.is_node() || fields.die[k] != pair.die + 1.)
         continue;
-      const ContactNode<double> node = stage.contact_node(p, W, active);
-      fields.slip[k]                 = node.u - (node.u * node.n) * node.n;
+      fields.slip[k] = slip(stage.contact_node(p, W, active));
     }
     return fields;
   }

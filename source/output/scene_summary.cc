@@ -186,8 +186,8 @@ namespace retroforge
 
     void list(std::ostream &out, const SceneSummary::Die &die, const bool with_billet)
     {
-      out << "  die " << die.name << ", " << die.shape << ", friction alpha = " << as_text(die.friction)
-          << '\n';
+      out << "  die " << die.name << ", " << die.shape << ", friction " << die.friction_name << " = "
+          << as_text(die.friction) << '\n';
       if (die.extents)
         out << "    " << range(*die.extents) << ", " << die.n_facets << " facets\n";
       else

@@ -30,16 +30,6 @@ namespace retroforge
     add_at_fixed_velocity(p, node_bar);
   }
 
-  void ContactPullback::add_excess(const unsigned int p, const ContactNode<double> &node, const double h_bar)
-  {
-    ContactNodeBar node_bar;
-    node_bar.u     = h_bar * node.n;
-    node_bar.n     = h_bar * node.u;
-    node_bar.delta = -h_bar * approach_slope(node.delta, node.tau, node.approach);
-    node_bar.tau   = h_bar * approach_speed(node.delta, node.tau, node.approach) / node.tau;
-    add(p, node_bar);
-  }
-
   void ContactPullback::finish()
   {
     const Stage<double> &stage = view_.stage;

@@ -109,7 +109,8 @@ namespace retroforge
     const std::vector<double> force = forces_of_metal(stage, W);
     for (unsigned int p = 0; p < force.size(); ++p)
       if (held[p] && force[p] > 0.)
-        sink_into_die(stage, p, force[p] / (stage.physics.contact.rho * stage.areas.S[p]), W);
+        sink_into_die(
+          stage, p, excess_under(force[p], stage.contact_node(p, W, {}), stage.physics.contact), W);
   }
 
   void stop_at_dies(const Stage<double> &stage, const ActiveSet &active, Field<double> &W)

@@ -25,9 +25,10 @@ namespace retroforge
                                    const Transposition               transposition)
   {
     la::BlockVector b = matrix_.vector(), x = matrix_.vector();
-    matrix_.load(rhs, b);
-    const unsigned int iterations = solver_.solve(b, tolerance, starts_from(guesses), transposition, x);
-    matrix_.unload(x, rhs, solution);
+    matrix_.load(rhs, transposition, b);
+    const unsigned int iterations =
+      solver_.solve(b, tolerance, starts_from(guesses, transposition), transposition, x);
+    matrix_.unload(x, rhs, transposition, solution);
     ++n_solves;
     return iterations;
   }
@@ -39,28 +40,29 @@ namespace retroforge
                                               const Transposition               transposition)
   {
     la::BlockVector b = matrix_.vector(), x = matrix_.vector();
-    matrix_.load(rhs, b);
+    matrix_.load(rhs, transposition, b);
     const unsigned int iterations =
-      solver_.solve_penalised_first(b, tolerance, starts_from(guesses), transposition, x);
-    matrix_.unload(x, rhs, solution);
+      solver_.solve_penalised_first(b, tolerance, starts_from(guesses, transposition), transposition, x);
+    matrix_.unload(x, rhs, transposition, solution);
     ++n_solves;
     return iterations;
   }
 
-  double LinearSystem::norm_of_derivative(const Field<double> &rhs) const
+  double LinearSystem::norm_of_derivative(const Field<double> &rhs, const Transposition transposition) const
   {
     la::BlockVector b = matrix_.vector();
-    matrix_.load(rhs, b);
-    return solver_.norm_beside_penalties(b);
+    matrix_.load(rhs, transposition, b);
+    return solver_.norm_beside_penalties(b, transposition);
   }
 
-  std::vector<la::BlockVector> LinearSystem::starts_from(const std::vector<Field<double>> &guesses) const
+  std::vector<la::BlockVector> LinearSystem::starts_from(const std::vector<Field<double>> &guesses,
+                                                         const Transposition transposition) const
   {
     std::vector<la::BlockVector> starts;
     for (const Field<double> &guess : guesses)
     {
       starts.push_back(matrix_.vector());
-      matrix_.load_guess(guess, starts.back());
+      matrix_.load_guess(guess, transposition, starts.back());
     }
     return starts;
   }

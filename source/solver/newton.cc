@@ -106,11 +106,33 @@ namespace retroforge
     return discretization.sum(sum);
   }
 
-  double Newton::line_search(const Stage<double> &stage,
-                             Field<double>       &W,
-                             const Field<double> &r,
-                             const Field<double> &step,
-                             const ActiveSet     &active)
+  namespace
+  {
+    /// Balances bubbles with velocities and pressures that are on their way. Where the metal hardly feels its
+    /// rate, a load that a cell cannot bear makes them  |beta| ~ (load / K)^(1/m),  beyond all bounds, and
+    /// systems solved to a part of such a residual say nothing of the rest: those are left as they are.
+    void settle_bubbles_in_reach(const Stage<double> &stage, const double speed, Field<double> &W)
+    {
+      constexpr double farthest       = 1e3; // of the dies' speed
+      const auto      &discretization = stage.scene.discretization;
+      if (!discretization.has_bubbles())
+        return;
+      const NodeVector<3, double> before = W.V;
+      settle_bubbles(stage, W);
+      for (const CellIndex c : discretization.visited_cells())
+      {
+        const unsigned int place = discretization.velocity_places(c)[4];
+        if (!(W.V.at_place(place).norm() <= farthest * speed))
+          W.V.at_place(place) = before.at_place(place);
+      }
+    }
+  } // namespace
+
+  double Newton::search_power(const Stage<double> &stage,
+                              Field<double>       &W,
+                              const Field<double> &r,
+                              const Field<double> &step,
+                              const ActiveSet     &active)
   {
     // The pressure takes its full step: it is the multiplier of the functional's constraint.
     for (unsigned int place = 0; place < W.P.size(); ++place)
@@ -162,6 +184,35 @@ namespace retroforge
     return a;
   }
 
+  double Newton::search_residual(const Stage<double> &stage,
+                                 Field<double>       &W,
+                                 const SearchStart   &start,
+                                 const Field<double> &step,
+                                 const ActiveSet     &active)
+  {
+    constexpr unsigned int trials      = 6;
+    constexpr double       worth_while = 0.1; // of the fall that the tangent promises
+    double                 a = 1., best = 1., least = std::numeric_limits<double>::infinity();
+    Field<double>          found, r;
+    for (unsigned int i = 0; i < trials; ++i, a *= 0.5)
+    {
+      Field<double> there = W;
+      there.add(a, step);
+      settle_bubbles_in_reach(stage, start.speed, there);
+      const double residual = relative_residual(stage, there, active, start.scale, r);
+      if (residual < least)
+      {
+        least = residual;
+        best  = a;
+        found = std::move(there);
+      }
+      if (residual <= (1. - worth_while * a) * start.residual)
+        break;
+    }
+    W = std::move(found);
+    return best;
+  }
+
   void Newton::initial_guess(const Stage<double> &stage,
                              Field<double>       &W,
                              const ActiveSet     &frozen,
@@ -170,9 +221,13 @@ namespace retroforge
     const auto [volume, speed] = volume_and_speed(stage);
     Physics<double> newtonian  = stage.physics;
     newtonian.law              = stage.physics.law.newtonian(typical_rate(volume, speed));
-    const FrictionLaw<double> friction{stage.physics.law, stage.physics.contact};
+    const double slip = 0.1 * speed, rate = typical_rate(volume, speed),
+                 pressure = 1.5 * rate * newtonian.law(1.5 * rate * rate);
     for (auto &die : newtonian.dies)
-      die.friction *= friction.linear_part(0.1 * speed, newtonian.law);
+    {
+      die.friction      = linear_friction(die, slip, pressure, stage.physics.law, newtonian.law);
+      die.interface_law = 0;
+    }
     const Stage<double> linear(scene_, newtonian, stage.contact, stage.X);
     // Nodes at rest against a die at rest must feel it: all that touch count as active in the first matrix.
     ActiveSet active = frozen;
@@ -198,28 +253,6 @@ namespace retroforge
     if (std::none_of(active.begin(), active.end(), [](const char pressed) { return pressed != 0; }))
       W = Field<double>(scene_.discretization);
   }
-
-  namespace
-  {
-    /// Balances bubbles with velocities and pressures that are on their way. Where the metal hardly feels its
-    /// rate, a load that a cell cannot bear makes them  |beta| ~ (load / K)^(1/m),  beyond all bounds, and
-    /// systems solved to a part of such a residual say nothing of the rest: those are left as they are.
-    void settle_bubbles_in_reach(const Stage<double> &stage, const double speed, Field<double> &W)
-    {
-      constexpr double farthest       = 1e3; // of the dies' speed
-      const auto      &discretization = stage.scene.discretization;
-      if (!discretization.has_bubbles())
-        return;
-      const NodeVector<3, double> before = W.V;
-      settle_bubbles(stage, W);
-      for (const CellIndex c : discretization.visited_cells())
-      {
-        const unsigned int place = discretization.velocity_places(c)[4];
-        if (!(W.V.at_place(place).norm() <= farthest * speed))
-          W.V.at_place(place) = before.at_place(place);
-      }
-    }
-  } // namespace
 
   namespace
   {
@@ -325,18 +358,23 @@ namespace retroforge
       }
       if (first_active == frozen && statistics.residual > settled)
       {
+        const auto search = [&](const ActiveSet &active) {
+          return stage.has_potential()
+                   ? search_power(stage, W, r, step, active)
+                   : search_residual(stage, W, {statistics.residual, scale, speed}, step, active);
+        };
         double taken;
         if (decides && iteration < contacts_settle)
         {
           const ActiveSet active = stage.decide_active(W);
-          taken                  = line_search(stage, W, r, step, active);
+          taken                  = search(active);
           stop_at_dies(stage, active, W);
         }
         else
         {
           // A step that had to be cut was a poor direction: where dies are stiff, the next one is solved for
           // better.
-          taken           = line_search(stage, W, r, step, frozen);
+          taken           = search(frozen);
           largest_forcing = taken == 1. ? std::min(parameters_.forcing, 10. * largest_forcing)
                                         : std::max(least_forcing, 0.1 * largest_forcing);
         }

@@ -68,6 +68,24 @@ namespace retroforge
             append(k, unit);
         }
       }
+    for (NodeFrame &frame : frames)
+      frame.tests = frame.axes;
     return frames;
+  }
+
+  void choose_tests(const dealii::Tensor<2, 3> &tangent, NodeFrame &frame)
+  {
+    if (frame.n_fixed == 3)
+      return;
+    unsigned int p = frame.n_fixed;
+    for (unsigned int i = p + 1; i < 3; ++i)
+      if (tangent[i][i] > tangent[p][p])
+        p = i;
+    for (unsigned int i = frame.n_fixed; i < 3; ++i)
+      if (const double difference = tangent[i][p] - tangent[p][i]; difference != 0.)
+      {
+        frame.tests[i] -= difference / tangent[p][p] * frame.axes[p];
+        frame.identity = false;
+      }
   }
 } // namespace retroforge

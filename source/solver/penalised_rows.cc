@@ -2,6 +2,9 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/solver/penalised_rows.h>
 
+#include <deal.II/lac/solver_gmres.h>
+#include <deal.II/lac/vector.h>
+
 namespace retroforge
 {
   namespace
@@ -9,6 +12,7 @@ namespace retroforge
     /// Some rows and columns of a matrix.
     struct Submatrix
     {
+      bool                                                      transposed = false;
       std::vector<double>                                       diagonal;
       std::vector<std::vector<std::pair<unsigned int, double>>> entries;
 
@@ -31,9 +35,45 @@ namespace retroforge
             }
         }
       }
+
+      /// y = A x, or A^T x.
+      void vmult(dealii::Vector<double> &y, const dealii::Vector<double> &x) const
+      {
+        y = 0.;
+        for (std::size_t i = 0; i < entries.size(); ++i)
+          for (const auto &[j, value] : entries[i])
+            if (transposed)
+              y[j] += value * x[i];
+            else
+              y[i] += value * x[j];
+      }
     };
 
-    /// d = A^(-1) residual.
+    /// Division by the diagonal.
+    struct Diagonal
+    {
+      const std::vector<double> &of;
+
+      void vmult(dealii::Vector<double> &y, const dealii::Vector<double> &x) const
+      {
+        for (std::size_t i = 0; i < of.size(); ++i)
+          y[i] = x[i] / of[i];
+      }
+    };
+
+    /// d = A^(-1) residual  of any A.
+    std::vector<double> solve_unsymmetric(const Submatrix &A, const std::vector<double> &residual)
+    {
+      constexpr unsigned int                      most = 200;
+      const dealii::Vector<double>                b(residual.begin(), residual.end());
+      dealii::Vector<double>                      d(b.size());
+      dealii::IterationNumberControl              control(most, 1e-10 * b.l2_norm());
+      dealii::SolverGMRES<dealii::Vector<double>> gmres(control);
+      gmres.solve(A, d, b, Diagonal{A.diagonal});
+      return {d.begin(), d.end()};
+    }
+
+    /// d = A^(-1) residual  of a symmetric A.
     std::vector<double> solve(const Submatrix &A, std::vector<double> residual)
     {
       const std::size_t   n = residual.size();
@@ -77,14 +117,20 @@ namespace retroforge
     }
   } // namespace
 
-  void solve_penalised_rows(const SaddleSystem &system, const double *r, double *x)
+  void solve_penalised_rows(const SaddleSystem &system,
+                            const Transposition transposition,
+                            const double       *r,
+                            double             *x)
   {
     const std::vector<unsigned int> &rows = system.penalised;
-    const Submatrix                  A(*system.A, rows);
-    std::vector<double>              change(rows.size());
+    Submatrix                        A(*system.A, rows);
+    A.transposed = transposition == Transposition::transposed;
+    std::vector<double> change(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
       change[i] = r[rows[i]];
-    if (system.penalties_couple)
+    if (system.penalties_couple && !system.symmetric)
+      change = solve_unsymmetric(A, change);
+    else if (system.penalties_couple)
       change = solve(A, std::move(change));
     else
       for (std::size_t i = 0; i < rows.size(); ++i)

@@ -2,6 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/solver/saddle_matrix.h>
 
+#include <map>
+
 namespace retroforge
 {
   using namespace dealii;
@@ -42,24 +44,36 @@ namespace retroforge
     }
 
     /// q x
-    void rotate(const NodeFrame &frame, double (&x)[3])
+    void rotate(const Tensor<2, 3> &q, double (&x)[3])
     {
-      if (frame.identity)
-        return;
       double r[3];
       for (unsigned int i = 0; i < 3; ++i)
-        r[i] = frame.axes[i][0] * x[0] + frame.axes[i][1] * x[1] + frame.axes[i][2] * x[2];
+        r[i] = q[i][0] * x[0] + q[i][1] * x[1] + q[i][2] * x[2];
       std::copy(r, r + 3, x);
     }
 
-    /// The entries of a pair of velocities, between their axes.
+    /// Momentum of a node, along its tests.
+    void test(const NodeFrame &frame, double (&x)[3])
+    {
+      if (!frame.identity)
+        rotate(frame.tests, x);
+    }
+
+    /// Velocity of a node, or entries of a row at it, along its axes.
+    void rotate(const NodeFrame &frame, double (&x)[3])
+    {
+      if (!frame.identity)
+        rotate(frame.axes, x);
+    }
+
+    /// The entries of a pair of velocities, between the tests of one and the axes of the other.
     void rotate(const NodeFrame &of_row, const NodeFrame &of_column, double (&A)[3][3])
     {
       if (!of_row.identity)
         for (unsigned int j = 0; j < 3; ++j)
         {
           double column[3] = {A[0][j], A[1][j], A[2][j]};
-          rotate(of_row, column);
+          test(of_row, column);
           for (unsigned int i = 0; i < 3; ++i)
             A[i][j] = column[i];
         }
@@ -197,7 +211,7 @@ namespace retroforge
         if (meets_vertex)
         {
           double of_pressure[3] = {block->rows[0][3], block->rows[1][3], block->rows[2][3]};
-          rotate(frames_[local], of_pressure);
+          test(frames_[local], of_pressure);
           for (unsigned int i = 0; i < 3; ++i)
             *B[i]++ = scale_k[i] * of_pressure[i] * pressure_scale_;
         }
@@ -221,7 +235,6 @@ namespace retroforge
   SaddleMatrix::contact_entries(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
   {
     std::vector<ContactEntries> entries;
-    system_.penalties_couple = false;
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
     {
       const ContactPoint &point = stage.contact.pairs[p].point;
@@ -236,10 +249,26 @@ namespace retroforge
           {
             const unsigned int m = velocities_.place(point.velocity_node_at(b));
             entries.push_back({k, m, frames_[k].axes * of_point * transpose(frames_[m].axes)});
-            system_.penalties_couple |= k != m || !is_nearly_diagonal(entries.back().tangent);
           }
     }
+    if (!system_.symmetric)
+      test_contact(entries);
+    system_.penalties_couple = false;
+    for (const ContactEntries &of : entries)
+      system_.penalties_couple |= of.row != of.column || !is_nearly_diagonal(of.tangent);
     return entries;
+  }
+
+  void SaddleMatrix::test_contact(std::vector<ContactEntries> &contact)
+  {
+    std::map<NodeIndex, Tensor<2, 3>> of_nodes;
+    for (const ContactEntries &of : contact)
+      if (of.row == of.column)
+        of_nodes[of.row] += of.tangent;
+    for (const auto &[k, tangent] : of_nodes)
+      choose_tests(tangent, frames_[k]);
+    for (ContactEntries &of : contact)
+      of.tangent = frames_[of.row].tests * transpose(frames_[of.row].axes) * of.tangent;
   }
 
   void SaddleMatrix::add_contact(const std::vector<ContactEntries> &contact) const

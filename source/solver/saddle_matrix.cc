@@ -28,6 +28,7 @@ namespace retroforge
                               const Linearisation  linearisation)
   {
     const ActiveSet chosen = active.empty() ? stage.decide_active(W) : active;
+    system_.symmetric      = stage.has_potential();
     frames_                = make_frames(scene_, stage.contact, chosen);
     sums_->assemble(stage, W, linearisation);
     pressure_scale_                           = sums_->viscosity_over_edge();
@@ -123,7 +124,7 @@ namespace retroforge
     double momentum2 = 0., continuity2 = 0.;
     for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
-      const Vec3 v = frames_[local].to_frame(r.V.at_place(local));
+      const Vec3 v = frames_[local].to_tests(r.V.at_place(local));
       for (unsigned int i = frames_[local].n_fixed; i < 3; ++i)
         momentum2 += std::pow(scale_.at_place(local)[i] * v[i], 2);
     }
@@ -159,14 +160,16 @@ namespace retroforge
     return result;
   }
 
-  void SaddleMatrix::load(const Field<double> &rhs, la::BlockVector &b) const
+  void
+  SaddleMatrix::load(const Field<double> &rhs, const Transposition transposition, la::BlockVector &b) const
   {
     const Field<double> from       = condensed(rhs);
     double             *momentum   = b.block(0).begin();
     double             *continuity = b.block(1).begin();
     for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
-      const Vec3 v = frames_[local].to_frame(from.V.at_place(local));
+      const Vec3 v = transposition == Transposition::plain ? frames_[local].to_tests(from.V.at_place(local))
+                                                           : frames_[local].to_frame(from.V.at_place(local));
       for (unsigned int i = 0; i < 3; ++i)
         momentum[3 * local + i] = i < frames_[local].n_fixed ? 0. : scale_.at_place(local)[i] * v[i];
     }
@@ -174,7 +177,10 @@ namespace retroforge
       continuity[local] = pressure_scale_ * from.P.at_place(local);
   }
 
-  void SaddleMatrix::unload(const la::BlockVector &x, const Field<double> &rhs, Field<double> &solution) const
+  void SaddleMatrix::unload(const la::BlockVector &x,
+                            const Field<double>   &rhs,
+                            const Transposition    transposition,
+                            Field<double>         &solution) const
   {
     const auto &discretization = scene_.discretization;
     solution                   = Field<double>(discretization);
@@ -185,7 +191,8 @@ namespace retroforge
       Vec3 v;
       for (unsigned int i = frames_[local].n_fixed; i < 3; ++i)
         v[i] = scale_.at_place(local)[i] * velocity[3 * local + i];
-      solution.V.at_place(local) = frames_[local].to_space(v);
+      solution.V.at_place(local) =
+        transposition == Transposition::plain ? frames_[local].to_space(v) : frames_[local].from_tests(v);
     }
     for (unsigned int local = 0; local < pressures_.n_owned(); ++local)
       solution.P.at_place(local) = pressure_scale_ * pressure[local];
@@ -199,13 +206,17 @@ namespace retroforge
     }
   }
 
-  void SaddleMatrix::load_guess(const Field<double> &guess, la::BlockVector &x) const
+  void SaddleMatrix::load_guess(const Field<double> &guess,
+                                const Transposition  transposition,
+                                la::BlockVector     &x) const
   {
     double *velocity = x.block(0).begin();
     double *pressure = x.block(1).begin();
     for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
-      const Vec3 v = frames_[local].to_frame(guess.V.at_place(local));
+      const Vec3 v = transposition == Transposition::plain || system_.symmetric
+                       ? frames_[local].to_frame(guess.V.at_place(local))
+                       : Vec3(transpose(invert(frames_[local].tests)) * guess.V.at_place(local));
       for (unsigned int i = 0; i < 3; ++i)
         velocity[3 * local + i] = i < frames_[local].n_fixed ? 0. : v[i] / scale_.at_place(local)[i];
     }

@@ -75,37 +75,53 @@ namespace retroforge
   unsigned int SaddleSolver::solve_penalised_first(const la::BlockVector       &b,
                                                    const double                 tolerance,
                                                    std::vector<la::BlockVector> guesses,
-                                                   const Transposition          transposition,
+                                                   const Transposition          asked,
                                                    la::BlockVector             &x)
   {
-    if (!system_.symmetric || parameters_.method == "direct")
+    const Transposition transposition = simplest(asked);
+    if (parameters_.method == "direct")
       return solve(b, tolerance, guesses, transposition, x);
     la::BlockVector       first(x), nothing(b);
-    const la::BlockVector rest = take_penalised(b, first);
+    const la::BlockVector rest = take_penalised(b, transposition, first);
     nothing                    = 0.;
     for (la::BlockVector &guess : guesses)
-      polish_penalised(nothing, guess);
+      polish_penalised(nothing, transposition, guess);
     const unsigned int iterations = solve(rest, tolerance, guesses, transposition, x);
     x += first;
-    polish_penalised(b, x);
+    polish_penalised(b, transposition, x);
     return iterations;
   }
 
-  double SaddleSolver::norm_beside_penalties(const la::BlockVector &b) const
+  double SaddleSolver::norm_beside_penalties(const la::BlockVector &b, const Transposition asked) const
   {
-    if (!system_.symmetric || parameters_.method == "direct")
+    if (parameters_.method == "direct")
       return b.l2_norm();
     la::BlockVector x(b);
-    return take_penalised(b, x).l2_norm();
+    return take_penalised(b, simplest(asked), x).l2_norm();
   }
 
-  la::BlockVector SaddleSolver::take_penalised(const la::BlockVector &b, la::BlockVector &x) const
+  la::BlockVector SaddleSolver::take_penalised(const la::BlockVector &b,
+                                               const Transposition    transposition,
+                                               la::BlockVector       &x) const
   {
-    la::BlockVector rest(b);
     x = 0.;
-    polish_penalised(b, x);
-    system_.matrix.residual(rest, x, b);
-    return rest;
+    polish_penalised(b, transposition, x);
+    return residual(b, transposition, x);
+  }
+
+  la::BlockVector SaddleSolver::residual(const la::BlockVector &b,
+                                         const Transposition    transposition,
+                                         const la::BlockVector &x) const
+  {
+    la::BlockVector r(x);
+    if (transposition == Transposition::plain)
+      system_.matrix.residual(r, x, b);
+    else
+    {
+      system_.matrix.Tvmult(r, x);
+      r.sadd(-1., 1., b);
+    }
+    return r;
   }
 
   double SaddleSolver::start_from(const std::vector<la::BlockVector> &guesses,
@@ -170,11 +186,12 @@ namespace retroforge
     first_rate_          = 0.;
   }
 
-  void SaddleSolver::polish_penalised(const la::BlockVector &b, la::BlockVector &x) const
+  void SaddleSolver::polish_penalised(const la::BlockVector &b,
+                                      const Transposition    transposition,
+                                      la::BlockVector       &x) const
   {
-    la::BlockVector r(x);
-    system_.matrix.residual(r, x, b);
-    solve_penalised_rows(system_, r.block(0).begin(), x.block(0).begin());
+    const la::BlockVector r = residual(b, transposition, x);
+    solve_penalised_rows(system_, transposition, r.block(0).begin(), x.block(0).begin());
   }
 
   unsigned int SaddleSolver::solve_iteratively(const la::BlockVector              &b,
@@ -219,8 +236,7 @@ namespace retroforge
       try
       {
         krylov.solve(M, x, b, P);
-        if (system_.symmetric)
-          polish_penalised(b, x);
+        polish_penalised(b, transposition, x);
         total += control.last_step();
         const double rate = control.last_step() / decades;
         if (fresh)

@@ -21,16 +21,25 @@ namespace retroforge
     const ContactPair      &pair = contact.pairs[p];
     const DieState<Number> &die  = physics.dies[pair.die];
     ContactNode<Number>     node;
-    node.u        = pair.point.velocity(W.V) - die.velocity;
-    node.n        = contact.projections[p].n;
-    node.delta    = contact.projections[p].delta;
-    node.tau      = contact.tau;
-    node.approach = contact.approach;
-    node.S        = areas.S[p];
-    node.Sf       = areas.Sf[p];
-    node.alpha    = die.friction;
-    node.active   = active.empty() ? value_of(approach_excess(node)) > 0. : active[p] != 0;
+    node.u             = pair.point.velocity(W.V) - die.velocity;
+    node.n             = contact.projections[p].n;
+    node.delta         = contact.projections[p].delta;
+    node.tau           = contact.tau;
+    node.approach      = contact.approach;
+    node.S             = areas.S[p];
+    node.Sf            = areas.Sf[p];
+    node.alpha         = die.friction;
+    node.interface_law = die.interface_law;
+    node.active        = active.empty() ? value_of(approach_excess(node)) > 0. : active[p] != 0;
     return node;
+  }
+
+  template <typename Number>
+  bool Stage<Number>::has_potential() const
+  {
+    return std::all_of(physics.dies.begin(), physics.dies.end(), [](const DieState<Number> &die) {
+      return value_of(die.friction) == 0. || interface_law(die.interface_law).has_potential();
+    });
   }
 
   template <typename Number>

@@ -428,7 +428,7 @@ namespace retroforge
         Field<double> minus_rhs(scene_.discretization), lambda;
         minus_rhs.add(-1., rhs);
         auto        &guesses = earlier_lambdas_[s][j];
-        const double norm    = system_.norm_of_derivative(minus_rhs);
+        const double norm    = system_.norm_of_derivative(minus_rhs, Transposition::transposed);
         largest[j]           = std::max(largest[j], norm);
         system_.solve_derivative(
           minus_rhs, tolerance_of(norm, largest[j]), lambda, guesses, Transposition::transposed);

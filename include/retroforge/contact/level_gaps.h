@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/contact/contact.h>
+#include <retroforge/contact/contact_kinematics.h>
 
 /// @file
 /// Gaps of quadratic velocities to curved dies, such that flat faces can close them all.

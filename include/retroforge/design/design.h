@@ -100,6 +100,9 @@ namespace retroforge
                                   const NodalVectors<double> &X_0_bar,
                                   const Process<double>      &process_bar) const;
 
+    /// Returns the coefficient of the friction on die d, as its law has it.
+    NumberInfo friction_of(unsigned int d) const;
+
     /// All that this scene offers.
     std::vector<DesignParameter> offered() const;
     /// Names with `billet/free form` and `die NAME/free form` replaced by those of all their modes.

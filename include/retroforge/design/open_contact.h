@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/contact/friction.h>
+#include <retroforge/contact/contact_law.h>
 
 namespace retroforge
 {

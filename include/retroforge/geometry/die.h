@@ -16,15 +16,17 @@ namespace retroforge
   {
     Vector3<Number> velocity;              ///< [mm/s]
     Vector3<Number> displacement;          ///< from the position at the start of the run [mm]
-    Number          friction = Number(0.); ///< alpha of tau = -alpha K |dv|^(m-1) dv [mm^(-m)]
+    Number          friction = Number(0.); ///< coefficient of its law of friction, in the law's unit
     /// Of its surface, where a design has moved them or a derivative in them is wanted; empty: as made [mm].
     NodalVectors<Number> vertices = {};
+    /// Which law of friction the coefficient is of (contact/interface_law.h); 0: Norton's.
+    unsigned int interface_law = 0;
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[velocity, displacement, friction, vertices] = self;
-      return std::tie(velocity, displacement, friction, vertices);
+      auto &[velocity, displacement, friction, vertices, interface_law] = self;
+      return std::tie(velocity, displacement, friction, vertices, interface_law);
     }
   };
 

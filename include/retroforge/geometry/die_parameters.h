@@ -15,6 +15,7 @@ namespace retroforge
     Vec3            point;
     Vec3            facing;
     Vec3            velocity;
+    std::string     friction_law   = "Norton";
     double          friction       = 0.;
     bool            follows_billet = false;
 
@@ -27,8 +28,7 @@ namespace retroforge
     DiePlace place() const { return {name, section(), point, facing}; }
 
     /// @throws Error  for a file or measures that make no surface
-    Die              die() const { return shape->make(place()); }
-    DieState<double> initial_state() const { return {velocity, Vec3(), friction, {}}; }
+    Die die() const { return shape->make(place()); }
 
   private:
     std::string section() const { return "Die " + name; }

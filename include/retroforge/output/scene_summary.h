@@ -55,6 +55,7 @@ namespace retroforge
       Vec3                   point, facing; ///< of a plane: where it stands; facing of length one
       Vec3                   velocity;      ///< [mm/s]
       double                 friction      = 0.;
+      std::string            friction_name = "alpha"; ///< of the coefficient in its law
       bool                   leads         = false;
       double                 smallest_size = unknown; ///< of the edges wanted near it [mm]
 

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/contact/contact.h>
+#include <retroforge/contact/contact_kinematics.h>
 #include <retroforge/transfer/transfer.h>
 
 #include <memory>

@@ -19,9 +19,6 @@ namespace retroforge
     /// The same, but none in the unknowns.
     void add_at_fixed_velocity(unsigned int p, const ContactNodeBar &node_bar);
 
-    /// Derivative in the excess h = u·n - a(delta) of pair p.
-    void add_excess(unsigned int p, const ContactNode<double> &node, double h_bar);
-
     /// Passes the areas' derivatives on to the positions. Once, at the end.
     void finish();
 

@@ -39,7 +39,7 @@ namespace retroforge
 
     /// Of a right-hand side as solve_derivative() sees it, scaled, without bubbles and penalised rows: what
     /// its tolerance is relative to.
-    double norm_of_derivative(const Field<double> &rhs) const;
+    double norm_of_derivative(const Field<double> &rhs, Transposition transposition) const;
 
     /// Forget the preconditioner: the next solve makes a new one.
     void reset() { solver_.reset(); }
@@ -52,7 +52,8 @@ namespace retroforge
 
   private:
     /// The system's vectors of fields.
-    std::vector<la::BlockVector> starts_from(const std::vector<Field<double>> &guesses) const;
+    std::vector<la::BlockVector> starts_from(const std::vector<Field<double>> &guesses,
+                                             Transposition                     transposition) const;
 
     Timings     &timings_;
     SaddleMatrix matrix_;

@@ -52,16 +52,18 @@ namespace retroforge
     }
   };
 
-  /// Solves the equilibrium of a stage for W by Newton's method, with a line search on the power functional:
-  /// the step length is a root of its slope along the step, monotone because the functional is convex in V.
-  /// A step that must be cut tells that the power law bends more than its tangent knows. Steps at constant
-  /// viscosity (Picard) are short of no length: one follows each that was cut, and a start from afar begins
-  /// with them. Bubbles settle after each step, so that what Newton's method sees is a functional of V and P
-  /// alone: a bubble in metal that hardly flows would keep it from converging. At first the slope is that of
-  /// the functional with the contacts of the step, and nodes that arrive do so at once (contact_steps.h);
-  /// where that does not converge, of the functional itself. A slope of either sign that has become a fifth
-  /// smaller is enough, which does not ensure that the functional has: an iteration that does not settle ends
-  /// in NoEquilibrium, and the increment is made shorter.
+  /// Solves the equilibrium of a stage for W by Newton's method, with a line search on the power functional
+  /// where the laws of contact have one (Stage::has_potential()): the step length is a root of its slope
+  /// along the step, monotone because the functional is convex in V. Where they have none, as where friction
+  /// follows the pressure, the search is for a fall of the residual's norm, which Newton's step promises as
+  /// well. A step that must be cut tells that the power law bends more than its tangent knows. Steps at
+  /// constant viscosity (Picard) are short of no length: one follows each that was cut, and a start from afar
+  /// begins with them. Bubbles settle after each step, so that what Newton's method sees is a functional of V
+  /// and P alone: a bubble in metal that hardly flows would keep it from converging. At first the slope is
+  /// that of the functional with the contacts of the step, and nodes that arrive do so at once
+  /// (contact_steps.h); where that does not converge, of the functional itself. A slope of either sign that
+  /// has become a fifth smaller is enough, which does not ensure that the functional has: an iteration that
+  /// does not settle ends in NoEquilibrium, and the increment is made shorter.
   class Newton
   {
   public:
@@ -94,11 +96,27 @@ namespace retroforge
     /// Advances W and returns the part of the velocity step that was taken.
     /// @param r       residual at W, with the same contacts
     /// @param active  empty, or the contacts that count throughout
-    double line_search(const Stage<double> &stage,
-                       Field<double>       &W,
-                       const Field<double> &r,
-                       const Field<double> &step,
-                       const ActiveSet     &active);
+    double search_power(const Stage<double> &stage,
+                        Field<double>       &W,
+                        const Field<double> &r,
+                        const Field<double> &step,
+                        const ActiveSet     &active);
+
+    /// What search_residual compares with: the relative residual at W, its scale, and the dies' speed.
+    struct SearchStart
+    {
+      double residual;
+      Scale  scale;
+      double speed;
+    };
+
+    /// The same by the residual's norm, bubbles settled: the longest of the steps 1, 1/2, ... that lowers it,
+    /// or the one after which it is least.
+    double search_residual(const Stage<double> &stage,
+                           Field<double>       &W,
+                           const SearchStart   &start,
+                           const Field<double> &step,
+                           const ActiveSet     &active);
     double slope(const Field<double> &r, const Field<double> &step) const;
 
     const Scene            &scene_;

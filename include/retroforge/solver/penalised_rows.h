@@ -6,9 +6,10 @@
 
 namespace retroforge
 {
-  /// Adds to x what makes the residual r vanish in the penalised rows of A, all other unknowns held: exactly
-  /// where these rows share no entries, else as well as a few steps of conjugate gradients can. Of a
-  /// symmetric system; entries that another rank owns are held, too.
+  /// Adds to x what makes the residual r vanish in the penalised rows of A, or of A^T, all other unknowns
+  /// held: exactly where these rows share no entries, else as well as a few steps of conjugate gradients can,
+  /// or, of an unsymmetric system, of GMRES. Entries that another rank owns are held, too.
   /// @param r, x  by local rows of A
-  void solve_penalised_rows(const SaddleSystem &system, const double *r, double *x);
+  void
+  solve_penalised_rows(const SaddleSystem &system, Transposition transposition, const double *r, double *x);
 } // namespace retroforge

@@ -13,7 +13,7 @@ namespace retroforge
     la::BlockSparseMatrix       matrix;
     la::SparseMatrix            schur; ///< positive, and much like D A^(-1) B - C
     std::unique_ptr<NodeMatrix> A, B, D, C, S;
-    bool                        symmetric = true; ///< D = B^T, and A and C are symmetric
+    bool symmetric = true; ///< D = B^T, and A and C are symmetric: friction has a potential
     /// Rows of A in which a penalty dwarfs all else, by local number, ascending.
     std::vector<unsigned int> penalised;
     bool                      penalties_couple = false; ///< some of these rows share entries
@@ -25,8 +25,10 @@ namespace retroforge
   };
 
   /// The Newton matrix of a stage with bubbles condensed, in node frames and scaled: the fields of the
-  /// program on one side, the unknowns of a SaddleSystem on the other. The laws derive from potentials: it is
-  /// symmetric.
+  /// program on one side, the unknowns of a SaddleSystem on the other. It is symmetric where the laws derive
+  /// from potentials, as that of the metal does. Where friction follows the normal force, momentum is tested
+  /// along other directions than the velocities' axes (NodeFrame), so that each penalty stands in one row and
+  /// one column all the same; then unknowns of the transposed system are tested momentum.
   ///
   /// Scaling: pressures by viscosity/edge, and each velocity component by (viscous/total diagonal)^(1/2),
   /// which takes penalty and friction off the residual's norm.
@@ -47,12 +49,15 @@ namespace retroforge
     la::BlockVector vector() const;
 
     /// The system's right-hand side for that of the uncondensed one (owned entries).
-    void load(const Field<double> &rhs, la::BlockVector &b) const;
+    void load(const Field<double> &rhs, Transposition transposition, la::BlockVector &b) const;
     /// Velocities and pressures as unknowns.
-    void load_guess(const Field<double> &guess, la::BlockVector &x) const;
+    void load_guess(const Field<double> &guess, Transposition transposition, la::BlockVector &x) const;
     /// The solution of the uncondensed system from that of the condensed one: what this rank works with
     /// and ghosts.
-    void unload(const la::BlockVector &x, const Field<double> &rhs, Field<double> &solution) const;
+    void unload(const la::BlockVector &x,
+                const Field<double>   &rhs,
+                Transposition          transposition,
+                Field<double>         &solution) const;
 
     /// The scaled norm of a residual's momentum rows, and of its continuity rows.
     std::pair<double, double> residual_norm(const Field<double> &r) const;
@@ -71,7 +76,9 @@ namespace retroforge
     std::vector<double> viscous_diagonal() const;
     /// Of owned rows; says whether penalties couple.
     std::vector<ContactEntries>
-         contact_entries(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
+    contact_entries(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
+    /// Chooses the tests of owned nodes, and has contact's rows along them.
+    void test_contact(std::vector<ContactEntries> &contact);
     void choose_scales(const std::vector<double> &viscous, const std::vector<ContactEntries> &contact);
     /// The sums over cells, in frames and scaled.
     void write_sums();

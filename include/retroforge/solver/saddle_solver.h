@@ -45,7 +45,7 @@ namespace retroforge
                                        la::BlockVector             &x);
 
     /// What the tolerance of solve_penalised_first is relative to.
-    double norm_beside_penalties(const la::BlockVector &b) const;
+    double norm_beside_penalties(const la::BlockVector &b, Transposition transposition) const;
 
     /// Forget the preconditioner: the next solve makes a new one.
     void reset() { preconditioner_.reset(); }
@@ -63,14 +63,18 @@ namespace retroforge
                       la::BlockVector                    &x) const;
     void   make_preconditioner();
     /// Sets penalised components of x, and nothing else, so that their rows have no residual, and returns
-    /// what that leaves of b. Of symmetric systems only.
-    la::BlockVector take_penalised(const la::BlockVector &b, la::BlockVector &x) const;
+    /// what that leaves of b.
+    la::BlockVector
+    take_penalised(const la::BlockVector &b, Transposition transposition, la::BlockVector &x) const;
+    /// b - M x, or b - M^T x.
+    la::BlockVector
+    residual(const la::BlockVector &b, Transposition transposition, const la::BlockVector &x) const;
     /// y = M x, or y = M^T x.
     void multiply(Transposition transposition, la::BlockVector &y, const la::BlockVector &x) const;
     /// Solves the rows of penalised components exactly, the others held: an error there that the norm hardly
     /// sees would decide which nodes a die pushes, because a contact force is the penalty times a small
-    /// difference. Of symmetric systems only.
-    void polish_penalised(const la::BlockVector &b, la::BlockVector &x) const;
+    /// difference.
+    void polish_penalised(const la::BlockVector &b, Transposition transposition, la::BlockVector &x) const;
     void solve_directly(const la::BlockVector &b, Transposition transposition, la::BlockVector &x) const;
     /// The one that is as good and simpler: of a symmetric matrix, the plain one.
     Transposition simplest(const Transposition transposition) const

@@ -2,7 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/contact/contact.h>
+#include <retroforge/contact/contact_areas.h>
+#include <retroforge/contact/interface_law.h>
 #include <retroforge/discretization/field.h>
 #include <retroforge/element/semi_analytic.h>
 
@@ -82,6 +83,10 @@ namespace retroforge
 
     /// Deformation and friction power [mJ/s], this rank's part of the sums.
     std::pair<Number, Number> power(const Field<Number> &W, const ActiveSet &active) const;
+
+    /// Whether the residual is the gradient of a power functional in V, and the Newton matrix symmetric:
+    /// where the friction of all dies is.
+    bool has_potential() const;
 
     /// Which pairs are pressed: those with h > 0, and what they hold (ContactSet::middles_around).
     ActiveSet decide_active(const Field<Number> &W) const;

@@ -22,7 +22,8 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/contact/contact.h>
+#include <retroforge/contact/contact_areas.h>
+#include <retroforge/contact/interface_law.h>
 
 #include <algorithm>
 

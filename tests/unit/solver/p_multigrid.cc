@@ -50,7 +50,7 @@ namespace
   {
     const SaddleSystem &system = corner.matrix.system();
     la::BlockVector     x      = corner.matrix.vector();
-    corner.matrix.load_guess(corner.linear_velocity(), x);
+    corner.matrix.load_guess(corner.linear_velocity(), Transposition::plain, x);
     la::Vector   at_vertices(system.interpolation.locally_owned_domain_indices(), MPI_COMM_WORLD);
     la::Vector   found(x.block(0));
     const double n_vertices = at_vertices.locally_owned_size(), *expected = x.block(0).begin();

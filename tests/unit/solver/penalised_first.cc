@@ -44,7 +44,7 @@ int main(int argc, char **argv)
     Timings                timings;
     LinearSolverParameters parameters;
     SaddleSolver           solver(system, parameters, timings);
-    matrix.load_guess(corner.random_field(random), exact);
+    matrix.load_guess(corner.random_field(random), Transposition::plain, exact);
     system.matrix.vmult(b, exact);
     solver.solve(b, tolerance, {}, Transposition::plain, at_once);
     solver.solve_penalised_first(b, tolerance, {}, Transposition::plain, first);

@@ -2,60 +2,27 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/contact/contact_point.h>
-#include <retroforge/contact/friction.h>
-#include <retroforge/discretization/middle_nodes.h>
-#include <retroforge/geometry/die.h>
+#include <retroforge/contact/contact_law.h>
+#include <retroforge/contact/contact_search.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-
-#include <mpi.h>
 
 /// @file
-/// Unilateral contact at points of the surface, and Norton friction lumped at its nodes.
+/// Gaps, normals and ramps of the points that contact looks at, and the speeds at which gaps close.
 ///
 /// For a point against a die, its position and velocity means of its nodes' (ContactPoint):  u = V_k - v_die,
-/// h = u·n - a(delta),  a = delta/tau or, with a layer l, l/tau asinh(delta/l),  dv = u - (u·n) n,  and the
-/// force on the residual is
-///   rho S [h]^+ n  +  S^f alpha K (|dv|^2 + v0^2)^((m-1)/2) dv.       @cite Laroussi2003, Eq. (21),
-///   (40)-(49)
-/// S is a third of the areas of the surface faces at the point; S^f, of nodes only, a third of those whose
-/// three nodes touch the die, each face weighted by the product of its nodes' ramps w(delta). A node held off
-/// the die by an edge that touches counts as touching. Where velocities are quadratic, nodes are those of the
-/// velocity, middles of edges among them, and faces the four equal triangles that the middles cut each into:
-/// of a face, a corner has a twelfth of the area, a middle a quarter.
-///
-/// Nodes of linear velocities alone do not keep an edge out of a die whose convex part it spans: its ends
-/// touch, and its middle is in the die. So the middles of such edges are points, too. Their penalty is soft:
-/// nodes and edges together are more constraints than the surface has motions, and stiff ones would fight.
-/// Since gaps are found anew in each increment, what an edge gives way does not add up: a penalty at which it
-/// sinks with 1 % of the press speed leaves it 1 % of an increment's stroke in the die, times the pressure
-/// there over the mean one.
+/// h = u·n - a(delta),  a = delta/tau or, with a layer l, l/tau asinh(delta/l),  dv = u - (u·n) n.
+/// A node held off the die by an edge that touches counts as touching.
 ///
 /// Uniform pressure does not load the vertices of a quadratic velocity: whether one is pressed would be
 /// decided by the last digits. So one is pressed, too, where the middles of all its surface edges are. On
 /// curved dies the gaps are those that flat faces can close (level_gaps.h).
 ///
 /// What belongs to the increment (delta, n, w, tau) is found once at X_i and kept for all its stages:
-/// ContactSet. What belongs to a stage (S, S^f) is computed from the stage's positions: ContactAreas.
+/// ContactSet. What belongs to a stage, the areas, is computed from the stage's positions (contact_areas.h).
 namespace retroforge
 {
-  /// w(delta): 1 where the node touches, 0 where it is out of reach.
-  /// Smooth: 1 - 10t^3 + 15t^4 - 6t^5 with t = delta/width on [0, 1], twice differentiable, because nodes in
-  /// contact stand exactly at delta = 0. Sharp: 1 for delta <= width.
-  struct FrictionRamp
-  {
-    double width = 0.; ///< [mm]
-    bool   sharp = false;
-
-    /// @param touching  the recorded decision delta <= width, which alone counts when sharp
-    template <typename Number>
-    Number operator()(const Number &delta, bool touching) const;
-    double derivative(double delta) const;
-  };
-
   /// How fast a gap closes, beyond its time tau.
   struct ApproachLaw
   {
@@ -80,15 +47,6 @@ namespace retroforge
     {
       return {layer, step > 0. ? std::min(1., stroke / step) : 1.};
     }
-  };
-
-  /// A point in reach of a die: a recorded decision.
-  struct ContactPair
-  {
-    ContactPoint point;
-    unsigned int die;
-    bool         touching; ///< delta <= width of the friction ramp
-    DieFeature   feature;  ///< of the die, closest to the point
   };
 
   /// An edge of the surface, whose ends and middle are in reach of one curved die.
@@ -132,13 +90,6 @@ namespace retroforge
     double              edge_stiffness = 1.; ///< of edges' penalty over the nodes'
   };
 
-  /// S, of edges times their stiffness, and S^f [mm^2] of each pair.
-  template <typename Number>
-  struct ContactAreas
-  {
-    std::vector<Number> S, Sf;
-  };
-
   /// Derivatives in the increment's data: what ContactSet depends on is filled in later, by
   /// reverse_contact_set.
   struct ContactSetBar
@@ -147,19 +98,6 @@ namespace retroforge
     std::vector<Vec3>   n;
 
     explicit ContactSetBar(const std::size_t n_pairs) : delta(n_pairs, 0.), ramp(n_pairs, 0.), n(n_pairs) {}
-  };
-
-  /// What contact depends on, but for decisions and laws: the workpiece at positions X, and the dies.
-  template <typename Number>
-  struct ContactView
-  {
-    const TetMesh                       &mesh;
-    const Topology                      &topology;
-    const std::vector<Die>              &dies;
-    const std::vector<DieState<Number>> &states; ///< of each die
-    const NodalVectors<Number>          &X;
-    const MiddleNodes                   *edges = nullptr;       ///< null where velocities are linear
-    MPI_Comm                             comm  = MPI_COMM_SELF; ///< ranks that look for contacts together
   };
 
   /// How points approach the dies in an increment, and where friction sets in.
@@ -171,16 +109,6 @@ namespace retroforge
     ApproachLaw  law            = {};
     double       edge_stiffness = 1.; ///< of edges' penalty over the nodes'
   };
-
-  /// The nodes within `reach` of a die, at positions X. Where velocities are quadratic, the middles of the
-  /// surface's edges within reach, too. Where they are linear and the die bulges into edges, their middles,
-  /// and their ends if farther away. Deterministic order: by die, then nodes, edges, ends, each ascending.
-  /// Each rank looks at its share of the points, and all find the same. Collective.
-  /// @param with_edges  whether middles count that have no velocity of their own
-  std::vector<ContactPair> find_contact_pairs(const ContactView<double> &view,
-                                              const FrictionRamp        &ramp,
-                                              double                     reach,
-                                              bool                       with_edges);
 
   /// Gaps, normals and ramps of given pairs. Collective: each rank projects its share of them.
   template <typename Number>
@@ -197,21 +125,6 @@ namespace retroforge
                            NodalVectors<double>          &X_bar,
                            std::vector<DieState<double>> &dies_bar);
 
-  template <typename Number>
-  ContactAreas<Number> contact_areas(const TetMesh              &mesh,
-                                     const Topology             &topology,
-                                     const ContactSet<Number>   &contact,
-                                     const NodalVectors<Number> &X);
-
-  /// Pull-back of contact_areas: S_bar, Sf_bar -> X_bar and the ramps of the increment.
-  void reverse_contact_areas(const TetMesh              &mesh,
-                             const Topology             &topology,
-                             const ContactSet<double>   &contact,
-                             const NodalVectors<double> &X,
-                             const ContactAreas<double> &areas_bar,
-                             NodalVectors<double>       &X_bar,
-                             ContactSetBar              &bar);
-
   /// One point with all that its force depends on.
   template <typename Number>
   struct ContactNode
@@ -222,6 +135,7 @@ namespace retroforge
     Number          alpha;
     bool            active; ///< counts as h > 0
     ApproachLaw     approach;
+    unsigned int    interface_law = 0; ///< of the die (interface_law.h)
   };
 
   /// Speed at which a gap may close: delta/tau, so that what is in reach arrives within tau; with a layer l
@@ -270,26 +184,12 @@ namespace retroforge
     return node.u * node.n - approach_speed(node.delta, node.tau, node.approach);
   }
 
+  /// Velocity along the die [mm/s].
   template <typename Number>
-  Vector3<Number> contact_force(const ContactNode<Number> &node,
-                                const MaterialLaw<Number> &law,
-                                const ContactLaw<Number>  &contact);
-
-  /// tau·dv S^f: power lost in friction [mJ/s], as the residual has it.
-  template <typename Number>
-  Number friction_power(const ContactNode<Number> &node,
-                        const MaterialLaw<Number> &law,
-                        const ContactLaw<Number>  &contact);
-
-  /// Value of the potential whose gradient in V is contact_force.
-  double contact_potential(const ContactNode<double> &node,
-                           const MaterialLaw<double> &law,
-                           const ContactLaw<double>  &contact);
-
-  /// d contact_force / dV, symmetric.
-  dealii::Tensor<2, 3> contact_tangent(const ContactNode<double> &node,
-                                       const MaterialLaw<double> &law,
-                                       const ContactLaw<double>  &contact);
+  Vector3<Number> slip(const ContactNode<Number> &node)
+  {
+    return node.u - node.n * Number(node.u * node.n);
+  }
 
   /// Derivatives of a scalar of one node.
   struct ContactNodeBar
@@ -301,15 +201,7 @@ namespace retroforge
     ContactLaw<double>  contact;
   };
 
-  /// Derivatives of  lambda·contact_force.
-  ContactNodeBar reverse_contact_force(const ContactNode<double> &node,
-                                       const MaterialLaw<double> &law,
-                                       const ContactLaw<double>  &contact,
-                                       const Vec3                &lambda);
-
-  /// Derivatives of  weight * friction_power.
-  ContactNodeBar reverse_friction_power(const ContactNode<double> &node,
-                                        const MaterialLaw<double> &law,
-                                        const ContactLaw<double>  &contact,
-                                        double                     weight);
+  /// Adds the derivatives in u, n, delta and tau of a scalar whose derivatives in dv and h are given.
+  void
+  reverse_kinematics(const ContactNode<double> &node, const Vec3 &dv_bar, double h_bar, ContactNodeBar &bar);
 } // namespace retroforge

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/contact/contact_kinematics.h>
+#include <retroforge/geometry/die_parameters.h>
+
+/// @file
+/// What acts between metal and die at a point of contact: unilateral contact by a penalty, and friction by
+/// the law that the die's section in the parameter file names. The force on the residual is
+///   N n + f dv,   N = rho S [h]^+,   f = factor(S^f, alpha, |dv|^2, N/S, numbers of the metal and of
+///   contact).
+/// It acts on the residual, so that f is not negative: the traction on the metal is -f dv / S^f.
+namespace retroforge
+{
+  /// What the friction at a point depends on.
+  template <typename Number>
+  struct SlidingPoint
+  {
+    Number area;        ///< S^f [mm^2]
+    Number coefficient; ///< of the die: DieState::friction
+    Number slip2;       ///< |dv|^2 [mm^2/s^2]
+    Number pressure;    ///< N/S [MPa]; 0 where the point is not pressed, less where it is held and pulls
+
+    const MaterialLaw<Number> &metal;
+    const ContactLaw<Number>  &contact;
+  };
+
+  /// Derivatives of a scalar in the numbers of a SlidingPoint.
+  struct SlidingBar
+  {
+    double              coefficient = 0.;
+    MaterialLaw<double> metal;
+    ContactLaw<double>  contact;
+  };
+
+  /// A law of friction for all dies that name it. It has no numbers of its own: these are the die's
+  /// coefficient, and those of the metal and of contact. Laws derive from InterfaceLawOf.
+  class InterfaceLaw
+  {
+  public:
+    virtual ~InterfaceLaw() = default;
+
+    /// Returns the die's coefficient as users know it.
+    virtual NumberInfo coefficient() const = 0;
+
+    /// Tells whether friction is the gradient in V of a potential. Where it follows the pressure, it is not.
+    virtual bool has_potential() const = 0;
+
+    /// Tells whether the tangent is symmetric: that of a smooth force is, if and only if it has a potential.
+    bool is_symmetric() const { return has_potential(); }
+
+    /// Returns f [N s/mm], which is proportional to the area.
+    virtual double factor(const SlidingPoint<double> &point) const = 0;
+    virtual Dual   factor(const SlidingPoint<Dual> &point) const   = 0;
+
+    /// Returns d log(f) / d|dv| over |dv|  [s^2/mm^2].
+    virtual double slip_slope(const SlidingPoint<double> &point) const = 0;
+
+    /// Returns df / d(N/S)  [mm s].
+    virtual double pressure_slope(const SlidingPoint<double> &) const { return 0.; }
+
+    /// Returns the potential over f, where there is one: d potential / d|dv| = f |dv|  [mm^2/s^2].
+    virtual double potential_ratio(const SlidingPoint<double> &point) const;
+
+    /// Adds the derivatives in the coefficient and the numbers of metal and contact of a scalar whose
+    /// derivative in log(f) is `log_bar`. That in the penalty by way of the pressure is the caller's.
+    virtual void reverse(const SlidingPoint<double> &point, double log_bar, SlidingBar &bar) const = 0;
+
+    /// Returns the coefficient of Norton's law beside a linear metal for the same traction: a start from rest
+    /// is the flow of such a metal.
+    /// @param point  of area 1, at a slip and a pressure that are typical; without regularisation
+    virtual double linear_coefficient(const SlidingPoint<double> &point,
+                                      const MaterialLaw<double>  &linear_metal) const
+    {
+      return factor(point) / linear_metal.K;
+    }
+  };
+
+  /// An InterfaceLaw made from class Law, which has for any Number
+  ///   Number compute_factor(const SlidingPoint<Number> &) const;
+  /// and the functions that InterfaceLaw leaves open.
+  template <typename Law>
+  class InterfaceLawOf : public InterfaceLaw
+  {
+  public:
+    double factor(const SlidingPoint<double> &point) const override
+    {
+      return static_cast<const Law &>(*this).compute_factor(point);
+    }
+    Dual factor(const SlidingPoint<Dual> &point) const override
+    {
+      return static_cast<const Law &>(*this).compute_factor(point);
+    }
+  };
+
+  /// Returns law number i, as DieState::interface_law counts them; 0 is Norton's.
+  const InterfaceLaw &interface_law(unsigned int i);
+
+  /// Returns the number of the law that a parameter file calls `name`.
+  /// @param where  the setting that names it
+  /// @throws Error  where there is none of this name
+  unsigned int find_interface_law(const std::string &name, const std::string &where);
+
+  /// Adds a law to those there are, by a new name, before anything names it.
+  void add_interface_law(const std::string &name, std::unique_ptr<const InterfaceLaw> law);
+
+  /// Returns the state that a die starts in.
+  /// @throws Error  where it names no law of friction that there is
+  DieState<double> initial_state(const DieParameters &die);
+
+  /// Returns the traction of a die's friction without regularisation [MPa].
+  /// @param slip  speed [mm/s]      @param pressure  [MPa]
+  double friction_traction(const DieState<double>    &die,
+                           double                     slip,
+                           double                     pressure,
+                           const MaterialLaw<double> &metal);
+
+  /// Tells whether a die's friction on a point that sticks is infinitely stiff without regularisation.
+  bool needs_regularisation(const DieState<double> &die, const MaterialLaw<double> &metal);
+
+  /// Returns that die's coefficient in Norton's law beside a linear metal, for the same traction.
+  double linear_friction(const DieState<double>    &die,
+                         double                     slip,
+                         double                     pressure,
+                         const MaterialLaw<double> &metal,
+                         const MaterialLaw<double> &linear_metal);
+
+  /// Returns N  [N]: the die's force on the residual of a point, along its normal. A vertex of quadratic
+  /// velocities that is pressed because the middles around it are may pull a little: were that cut off,
+  /// derivatives would hang on its last digits.
+  template <typename Number>
+  Number normal_force(const ContactNode<Number> &node, const ContactLaw<Number> &contact)
+  {
+    return node.active ? Number(contact.rho * node.S * approach_excess(node)) : Number(0.);
+  }
+
+  /// Returns the excess h at which the normal force is `force`  [mm/s].
+  inline double
+  excess_under(const double force, const ContactNode<double> &node, const ContactLaw<double> &contact)
+  {
+    return force / (contact.rho * node.S);
+  }
+
+  template <typename Number>
+  Vector3<Number> contact_force(const ContactNode<Number> &node,
+                                const MaterialLaw<Number> &law,
+                                const ContactLaw<Number>  &contact);
+
+  /// f |dv|^2: power lost in friction [mJ/s], as the residual has it.
+  template <typename Number>
+  Number friction_power(const ContactNode<Number> &node,
+                        const MaterialLaw<Number> &law,
+                        const ContactLaw<Number>  &contact);
+
+  /// Value of the potential whose gradient in V is contact_force, where the law has one.
+  double contact_potential(const ContactNode<double> &node,
+                           const MaterialLaw<double> &law,
+                           const ContactLaw<double>  &contact);
+
+  /// d contact_force / dV.
+  dealii::Tensor<2, 3> contact_tangent(const ContactNode<double> &node,
+                                       const MaterialLaw<double> &law,
+                                       const ContactLaw<double>  &contact);
+
+  /// Derivatives of  weight * normal_force.
+  ContactNodeBar
+  reverse_normal_force(const ContactNode<double> &node, const ContactLaw<double> &contact, double weight);
+
+  /// Derivatives of  lambda·contact_force.
+  ContactNodeBar reverse_contact_force(const ContactNode<double> &node,
+                                       const MaterialLaw<double> &law,
+                                       const ContactLaw<double>  &contact,
+                                       const Vec3                &lambda);
+
+  /// Derivatives of  weight * friction_power.
+  ContactNodeBar reverse_friction_power(const ContactNode<double> &node,
+                                        const MaterialLaw<double> &law,
+                                        const ContactLaw<double>  &contact,
+                                        double                     weight);
+} // namespace retroforge

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/level_gaps.h>
+#include <retroforge/core/shares.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace retroforge
+{
+  void reverse_kinematics(const ContactNode<double> &node,
+                          const Vec3                &dv_bar,
+                          const double               h_bar,
+                          ContactNodeBar            &bar)
+  {
+    const double un = node.u * node.n, dv_n = dv_bar * node.n;
+    bar.u += dv_bar - dv_n * node.n + h_bar * node.n;
+    bar.n += -un * dv_bar - dv_n * node.u + h_bar * node.u;
+    bar.delta -= h_bar * approach_slope(node.delta, node.tau, node.approach);
+    bar.tau += h_bar * approach_speed(node.delta, node.tau, node.approach) / node.tau;
+  }
+
+  namespace
+  {
+    /// Of each pair, as far as it is this rank's to project: the gap and the normal.
+    template <typename Number>
+    std::vector<Projection<Number>> projections_of(const ContactView<Number>      &view,
+                                                   const std::vector<ContactPair> &pairs,
+                                                   const std::size_t               begin,
+                                                   const std::size_t               end)
+    {
+      std::vector<Projection<Number>> projections;
+      for (std::size_t p = begin; p < end; ++p)
+        projections.push_back(view.dies[pairs[p].die].project(
+          pairs[p].point.position(view.X), view.states[pairs[p].die], pairs[p].feature));
+      return projections;
+    }
+
+    std::vector<Projection<double>> projected(const ContactView<double>      &view,
+                                              const std::vector<ContactPair> &pairs)
+    {
+      const auto [begin, end] = share_of_rank(pairs.size(), view.comm);
+      std::vector<std::array<double, 4>> numbers;
+      for (const auto &[delta, n] : projections_of(view, pairs, begin, end))
+        numbers.push_back({{delta, n[0], n[1], n[2]}});
+      std::vector<Projection<double>> projections;
+      for (const auto &of : joined(std::move(numbers), view.comm))
+        projections.push_back({of[0], Vec3({of[1], of[2], of[3]})});
+      return projections;
+    }
+
+    /// A tangent is carried by all ranks alike.
+    std::vector<Projection<Dual>> projected(const ContactView<Dual>        &view,
+                                            const std::vector<ContactPair> &pairs)
+    {
+      return projections_of(view, pairs, 0, pairs.size());
+    }
+  } // namespace
+
+  namespace
+  {
+    /// (pair of a node, pair of an edge at it), in a fixed order; as often as the edge stands at the node in
+    /// the whole, so that a sector's nodes touch as those of the whole do.
+    std::vector<std::array<unsigned int, 2>> touched_by_edges(const Topology                 &topology,
+                                                              const std::vector<ContactPair> &pairs)
+    {
+      std::map<std::pair<unsigned int, NodeIndex>, unsigned int> of_node;
+      for (unsigned int p = 0; p < pairs.size(); ++p)
+        if (pairs[p].point.is_node())
+          of_node[{pairs[p].die, pairs[p].point.nodes[0]}] = p;
+      std::vector<std::array<unsigned int, 2>> touched;
+      for (unsigned int p = 0; p < pairs.size(); ++p)
+        if (const ContactPoint &point = pairs[p].point; !point.has_own_velocity())
+        {
+          const std::array<NodeIndex, 2> ends{{point.nodes[0], point.nodes[1]}};
+          const auto                    &edges = topology.surface_edges;
+          const auto                     edge  = std::lower_bound(edges.begin(), edges.end(), ends);
+          AssertThrow(edge != edges.end() && *edge == ends, dealii::ExcInternalError());
+          for (unsigned int i = 0; i < 2; ++i)
+            if (const auto found = of_node.find({pairs[p].die, ends[i]}); found != of_node.end())
+              touched.insert(
+                touched.end(), topology.edge_images[edge - edges.begin()][i], {{found->second, p}});
+        }
+      return touched;
+    }
+
+    /// Adds to the ramps' derivatives those of the points' own ramps: the reverse of how edges let nodes
+    /// touch.
+    std::vector<double> reverse_touched_by_edges(const ContactSet<double>  &contact,
+                                                 const FrictionRamp        &ramp,
+                                                 const std::vector<double> &ramps_bar)
+    {
+      std::vector<double> own_bar = ramps_bar, at;
+      for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+        at.push_back(ramp(contact.projections[p].delta, contact.pairs[p].touching));
+      std::vector<double> before; // of the node, at each step
+      for (const auto &[node, edge] : contact.touched_by_edges)
+      {
+        before.push_back(at[node]);
+        at[node] += (1. - at[node]) * at[edge];
+      }
+      for (std::size_t i = contact.touched_by_edges.size(); i-- > 0;)
+      {
+        const auto &[node, edge] = contact.touched_by_edges[i];
+        own_bar[edge] += (1. - before[i]) * own_bar[node];
+        own_bar[node] *= 1. - at[edge];
+      }
+      return own_bar;
+    }
+  } // namespace
+
+  namespace
+  {
+    /// The triangles of velocity nodes that a face is made of.
+    template <typename Use>
+    void for_each_triangle(const TetMesh &mesh, const MiddleNodes *edges, const unsigned int f, const Use &use)
+    {
+      const auto &k = mesh.faces[f].nodes;
+      if (!edges)
+        return use(k);
+      std::array<NodeIndex, 3> m; // between corner i and the next
+      for (unsigned int i = 0; i < 3; ++i)
+        m[i] = edges->between(k[i], k[(i + 1) % 3]);
+      use({{k[0], m[0], m[2]}});
+      use({{k[1], m[1], m[0]}});
+      use({{k[2], m[2], m[1]}});
+      use({{m[0], m[1], m[2]}});
+    }
+  } // namespace
+
+  namespace
+  {
+    using PairOfVelocityNode = std::map<std::pair<unsigned int, NodeIndex>, unsigned int>; // by die and node
+
+    /// ContactSet::middles_around
+    std::vector<std::vector<unsigned int>> middles_around(const Topology                 &topology,
+                                                          const MiddleNodes              &edges,
+                                                          const PairOfVelocityNode       &index,
+                                                          const std::vector<ContactPair> &pairs)
+    {
+      std::vector<std::vector<unsigned int>> around(pairs.size());
+      std::vector<char>                      all(pairs.size(), 1);
+      std::set<unsigned int>                 dies;
+      for (const ContactPair &pair : pairs)
+        dies.insert(pair.die);
+      for (std::size_t e = 0; e < topology.surface_edges.size(); ++e)
+        for (const unsigned int d : dies)
+        {
+          const auto &ends   = topology.surface_edges[e];
+          const auto  middle = index.find({d, edges.between(ends[0], ends[1])});
+          for (unsigned int i = 0; i < 2; ++i)
+            if (const auto vertex = index.find({d, ends[i]}); vertex != index.end())
+            {
+              if (middle == index.end())
+                all[vertex->second] = 0;
+              else
+                around[vertex->second].push_back(middle->second);
+            }
+        }
+      for (unsigned int p = 0; p < pairs.size(); ++p)
+        if (!all[p])
+          around[p].clear();
+      return around;
+    }
+  } // namespace
+
+  template <typename Number>
+  ContactSet<Number> make_contact_set(const ContactView<Number>      &view,
+                                      const std::vector<ContactPair> &pairs,
+                                      const ContactApproach<Number>  &approach)
+  {
+    ContactSet<Number> contact;
+    const auto &[mesh, topology, dies, states, X, edges, comm] = view;
+    contact.edge_stiffness                                     = approach.edge_stiffness;
+    contact.pairs                                              = pairs;
+    contact.projections                                        = projected(view, pairs);
+    contact.tau                                                = approach.tau;
+    contact.approach                                           = approach.law;
+    contact.quadratic                                          = edges != nullptr;
+    PairOfVelocityNode index;
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+    {
+      if (pairs[p].point.has_own_velocity())
+        index[{pairs[p].die, pairs[p].point.velocity_node}] = p;
+      contact.ramps.push_back(approach.ramp(contact.projections[p].delta, pairs[p].touching));
+    }
+    if (edges)
+    {
+      contact.middles_around = middles_around(topology, *edges, index, pairs);
+      contact.chords         = find_chords(view, pairs, index);
+      level_gaps(X, approach.ramp, contact);
+    }
+    contact.touched_by_edges = touched_by_edges(topology, pairs);
+    for (const auto &[node, edge] : contact.touched_by_edges)
+      contact.ramps[node] += (1. - contact.ramps[node]) * contact.ramps[edge];
+    // A triangle is visited from its first pair of each die.
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+      if (const ContactPoint &point = pairs[p].point; point.has_own_velocity() &&
+                                                      value_of(states[pairs[p].die].friction) != 0. &&
+                                                      value_of(contact.ramps[p]) > 0.)
+        point.for_each_face(mesh, topology, [&](const unsigned int f) {
+          for_each_triangle(mesh, edges, f, [&](const std::array<NodeIndex, 3> &corners) {
+            if (std::find(corners.begin(), corners.end(), point.velocity_node) == corners.end())
+              return;
+            typename ContactSet<Number>::Face face{f, {}, Number(1.)};
+            for (unsigned int c = 0; c < 3; ++c)
+            {
+              const auto found = index.find({pairs[p].die, corners[c]});
+              if (found == index.end() || found->second < p || !(value_of(contact.ramps[found->second]) > 0.))
+                return;
+              face.points[c] = found->second;
+              face.weight *= contact.ramps[found->second];
+            }
+            contact.friction_faces.push_back(face);
+          });
+        });
+    return contact;
+  }
+
+  void reverse_contact_set(const ContactView<double>     &view,
+                           const ContactSet<double>      &contact,
+                           const FrictionRamp            &ramp,
+                           const ContactSetBar           &bar,
+                           NodalVectors<double>          &X_bar,
+                           std::vector<DieState<double>> &dies_bar)
+  {
+    std::vector<double> gaps_bar = bar.delta;
+    if (contact.quadratic)
+      reverse_level_gaps(view.X, ramp, contact, bar.ramp, gaps_bar, X_bar);
+    else
+    {
+      const std::vector<double> ramps_bar = reverse_touched_by_edges(contact, ramp, bar.ramp);
+      for (unsigned int p = 0; p < gaps_bar.size(); ++p)
+        gaps_bar[p] += ramps_bar[p] * ramp.derivative(contact.projections[p].delta);
+    }
+    for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+    {
+      // Of the sums of all ranks, a rank has the part of its own points.
+      if (gaps_bar[p] == 0. && bar.n[p].norm_square() == 0.)
+        continue;
+      const ContactPair &pair    = contact.pairs[p];
+      DieState<double>  &die_bar = dies_bar[pair.die];
+      Vec3               at_point;
+      view.dies[pair.die].reverse_project(pair.point.position(view.X),
+                                          view.states[pair.die].displacement,
+                                          pair.feature,
+                                          gaps_bar[p],
+                                          bar.n[p],
+                                          at_point,
+                                          die_bar.displacement,
+                                          die_bar.vertices.empty() ? nullptr : &die_bar.vertices);
+      pair.point.add_to_position(at_point, X_bar);
+    }
+  }
+
+  template ContactSet<double> make_contact_set(const ContactView<double> &,
+                                               const std::vector<ContactPair> &,
+                                               const ContactApproach<double> &);
+  template ContactSet<Dual>   make_contact_set(const ContactView<Dual> &,
+                                               const std::vector<ContactPair> &,
+                                               const ContactApproach<Dual> &);
+} // namespace retroforge

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/contact_search.h>
+#include <retroforge/core/shares.h>
+
+#include <algorithm>
+
+namespace retroforge
+{
+  template <typename Number>
+  Number FrictionRamp::operator()(const Number &delta, const bool touching) const
+  {
+    if (sharp)
+      return Number(touching ? 1. : 0.);
+    const double d = value_of(delta);
+    if (d <= 0. || d >= width)
+      return Number(d <= 0. ? 1. : 0.);
+    const Number t = delta / width;
+    return 1. - t * t * t * (10. - t * (15. - 6. * t));
+  }
+
+  double FrictionRamp::derivative(const double delta) const
+  {
+    if (sharp || delta <= 0. || delta >= width)
+      return 0.;
+    const double t = delta / width;
+    return -30. * t * t * (1. - t) * (1. - t) / width;
+  }
+
+  namespace
+  {
+    /// Where a die bulges into an edge by more than this part of its length, as seen from its ends.
+    constexpr double least_bulge = 1e-6;
+
+    /// One of the points looked at, as it sees a die.
+    struct Seen
+    {
+      unsigned int point;
+      DieFeature   feature;
+      double       delta;
+    };
+
+    /// What points 0 … n - 1 see of die d within reach, ascending. Each rank looks at its share of them.
+    /// @param position  of a point
+    template <typename Position>
+    std::vector<Seen> seen_by(const ContactView<double> &view,
+                              const unsigned int         d,
+                              const std::size_t          n,
+                              const double               reach,
+                              const Position            &position)
+    {
+      std::vector<Seen> seen;
+      const auto [begin, end] = share_of_rank(n, view.comm);
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const Vec3 x = position(i);
+        if (const DieFeature feature = view.dies[d].closest(x, view.states[d].displacement, reach);
+            feature.found())
+          seen.push_back(
+            {static_cast<unsigned int>(i), feature, view.dies[d].project(x, view.states[d], feature).delta});
+      }
+      return joined(std::move(seen), view.comm);
+    }
+
+    /// Adds the middles of edges in reach of die d that are deeper in it than their ends.
+    /// @param delta  of each node to this die; infinite out of reach
+    void add_edges(const ContactView<double> &view,
+                   const unsigned int         d,
+                   const std::vector<double> &delta,
+                   const FrictionRamp        &ramp,
+                   const double               reach,
+                   std::vector<ContactPair>  &pairs)
+    {
+      const auto            &X     = view.X;
+      const auto            &edges = view.topology.surface_edges;
+      std::vector<NodeIndex> ends;
+      const auto             middle = [&](const std::size_t e) {
+        return ContactPoint::middle(edges[e][0], edges[e][1]).position(X);
+      };
+      for (const auto &[e, feature, at_middle] : seen_by(view, d, edges.size(), reach, middle))
+      {
+        const auto &[a, b] = edges[e];
+        if (at_middle <= reach &&
+            at_middle < 0.5 * (delta[a] + delta[b]) - least_bulge * (X[a] - X[b]).norm())
+        {
+          pairs.push_back({ContactPoint::middle(a, b), d, at_middle <= ramp.width, feature});
+          for (const NodeIndex k : edges[e])
+            if (!(delta[k] <= reach))
+              ends.push_back(k);
+        }
+      }
+      std::sort(ends.begin(), ends.end());
+      ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+      const auto     node      = [&](const std::size_t i) { return X[ends[i]]; };
+      constexpr auto any_reach = std::numeric_limits<double>::max();
+      for (const Seen &seen : seen_by(view, d, ends.size(), any_reach, node))
+        pairs.push_back({ContactPoint::node(ends[seen.point]), d, false, seen.feature});
+    }
+  } // namespace
+
+  std::vector<ContactPair> find_contact_pairs(const ContactView<double> &view,
+                                              const FrictionRamp        &ramp,
+                                              const double               reach,
+                                              const bool                 with_edges)
+  {
+    const auto              &X     = view.X;
+    const auto              &edges = view.topology.surface_edges;
+    std::vector<NodeIndex>   nodes;
+    std::vector<ContactPair> pairs;
+    for (NodeIndex k = 0; k < X.size(); ++k)
+      if (view.topology.is_on_surface(k))
+        nodes.push_back(k);
+    const auto node   = [&](const std::size_t i) { return X[nodes[i]]; };
+    const auto middle = [&](const std::size_t e) {
+      const auto &[a, b] = edges[e];
+      return ContactPoint::middle(a, b, view.edges->between(a, b));
+    };
+    for (unsigned int d = 0; d < view.dies.size(); ++d)
+    {
+      const auto add = [&](const ContactPoint &point, const Seen &seen) {
+        if (seen.delta <= reach)
+          pairs.push_back({point, d, seen.delta <= ramp.width, seen.feature});
+      };
+      std::vector<double> delta(X.size(), std::numeric_limits<double>::infinity());
+      for (const Seen &seen : seen_by(view, d, nodes.size(), reach, node))
+      {
+        delta[nodes[seen.point]] = seen.delta;
+        add(ContactPoint::node(nodes[seen.point]), seen);
+      }
+      if (view.edges)
+        for (const Seen &seen : seen_by(
+               view, d, edges.size(), reach, [&](const std::size_t e) { return middle(e).position(X); }))
+          add(middle(seen.point), seen);
+      else if (with_edges && view.dies[d].surface())
+        add_edges(view, d, delta, ramp, reach, pairs);
+    }
+    return pairs;
+  }
+
+  template double FrictionRamp::operator()(const double &, bool) const;
+  template Dual FrictionRamp::operator()(const Dual &, bool) const;
+} // namespace retroforge

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/norton_friction.h>
+#include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
+
+#include <deque>
+
+namespace retroforge
+{
+  namespace
+  {
+    struct NamedLaw
+    {
+      std::string                         name;
+      std::unique_ptr<const InterfaceLaw> law;
+    };
+
+    /// The laws there are, by the names that parameter files have for them.
+    std::deque<NamedLaw> &interface_laws()
+    {
+      static std::deque<NamedLaw> laws = [] {
+        std::deque<NamedLaw> made;
+        made.push_back({"Norton", std::make_unique<NortonFriction>()});
+        return made;
+      }();
+      return laws;
+    }
+
+    std::vector<std::string> names_of_laws()
+    {
+      std::vector<std::string> names;
+      for (const NamedLaw &known : interface_laws())
+        names.push_back(known.name);
+      return names;
+    }
+  } // namespace
+
+  const InterfaceLaw &interface_law(const unsigned int i)
+  {
+    AssertIndexRange(i, interface_laws().size());
+    return *interface_laws()[i].law;
+  }
+
+  unsigned int find_interface_law(const std::string &name, const std::string &where)
+  {
+    const std::vector<std::string> names = names_of_laws();
+    const auto                     found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+    {
+      const std::string near = nearest_name(name, names, tolerated_edits(name));
+      throw Error(where,
+                  "'" + name + "' is no law of friction",
+                  "there are: " + join(names),
+                  near.empty() ? "name one of these" : "did you mean '" + near + "'?");
+    }
+    return found - names.begin();
+  }
+
+  void add_interface_law(const std::string &name, std::unique_ptr<const InterfaceLaw> law)
+  {
+    Assert(law != nullptr, dealii::ExcMessage("no law"));
+    for (const std::string &known : names_of_laws())
+      AssertThrow(known != name, dealii::ExcMessage("there is a law of friction of this name"));
+    interface_laws().push_back({name, std::move(law)});
+  }
+
+  DieState<double> initial_state(const DieParameters &die)
+  {
+    return {die.velocity,
+            Vec3(),
+            die.friction,
+            {},
+            find_interface_law(die.friction_law, "Die " + die.name + "/friction law")};
+  }
+
+  namespace
+  {
+    /// On a unit of area, without regularisation.
+    struct TypicalSliding
+    {
+      const ContactLaw<double>   sharp;
+      const SlidingPoint<double> point;
+
+      TypicalSliding(const DieState<double>    &die,
+                     const double               slip,
+                     const double               pressure,
+                     const MaterialLaw<double> &metal)
+          : point{1., die.friction, slip * slip, pressure, metal, sharp}
+      {
+      }
+      TypicalSliding(const TypicalSliding &) = delete; // its members refer to each other
+    };
+  } // namespace
+
+  double friction_traction(const DieState<double>    &die,
+                           const double               slip,
+                           const double               pressure,
+                           const MaterialLaw<double> &metal)
+  {
+    return interface_law(die.interface_law).factor(TypicalSliding(die, slip, pressure, metal).point) * slip;
+  }
+
+  bool needs_regularisation(const DieState<double> &die, const MaterialLaw<double> &metal)
+  {
+    return die.friction > 0. &&
+           !std::isfinite(interface_law(die.interface_law).factor(TypicalSliding(die, 0., 1., metal).point));
+  }
+
+  double linear_friction(const DieState<double>    &die,
+                         const double               slip,
+                         const double               pressure,
+                         const MaterialLaw<double> &metal,
+                         const MaterialLaw<double> &linear_metal)
+  {
+    return interface_law(die.interface_law)
+      .linear_coefficient(TypicalSliding(die, slip, pressure, metal).point, linear_metal);
+  }
+
+  double InterfaceLaw::potential_ratio(const SlidingPoint<double> &) const
+  {
+    AssertThrow(false, dealii::ExcMessage("friction without a potential"));
+    return 0.;
+  }
+
+  namespace
+  {
+    template <typename Number>
+    bool has_friction(const ContactNode<Number> &node)
+    {
+      return value_of(node.Sf) * value_of(node.alpha) != 0.;
+    }
+
+    /// Friction at a point, with what it depends on.
+    template <typename Number>
+    struct Friction
+    {
+      const InterfaceLaw        &law;
+      const Vector3<Number>      dv;
+      const SlidingPoint<Number> point;
+      const Number               factor;
+
+      /// @param pressing  the normal force
+      Friction(const ContactNode<Number> &node,
+               const Number              &pressing,
+               const MaterialLaw<Number> &metal,
+               const ContactLaw<Number>  &contact)
+          : law(interface_law(node.interface_law))
+          , dv(slip(node))
+          , point{node.Sf, node.alpha, Number(dv * dv), Number(pressing / node.S), metal, contact}
+          , factor(law.factor(point))
+      {
+      }
+    };
+
+    /// Adds the derivatives, in all but the slip, of a scalar whose derivative in the factor is `factor_bar`,
+    /// and factor times that in its logarithm.
+    void reverse_factor(const Friction<double>    &friction,
+                        const ContactNode<double> &node,
+                        const double               factor_bar,
+                        const double               log_bar,
+                        double                    &h_bar,
+                        ContactNodeBar            &bar)
+    {
+      SlidingBar numbers;
+      friction.law.reverse(friction.point, log_bar, numbers);
+      bar.Sf += log_bar / node.Sf;
+      bar.alpha += numbers.coefficient;
+      add_numbers(numbers.metal, bar.law);
+      add_numbers(numbers.contact, bar.contact);
+      const double pressure_bar = node.active ? factor_bar * friction.law.pressure_slope(friction.point) : 0.;
+      if (pressure_bar != 0.)
+      {
+        h_bar += pressure_bar * friction.point.contact.rho;
+        bar.contact.rho += pressure_bar * approach_excess(node);
+      }
+    }
+  } // namespace
+
+  template <typename Number>
+  Vector3<Number> contact_force(const ContactNode<Number> &node,
+                                const MaterialLaw<Number> &law,
+                                const ContactLaw<Number>  &contact)
+  {
+    const Number    pressing = normal_force(node, contact);
+    Vector3<Number> force;
+    if (node.active)
+      force += node.n * pressing;
+    if (has_friction(node))
+    {
+      const Friction<Number> friction(node, pressing, law, contact);
+      force += friction.dv * friction.factor;
+    }
+    return force;
+  }
+
+  template <typename Number>
+  Number friction_power(const ContactNode<Number> &node,
+                        const MaterialLaw<Number> &law,
+                        const ContactLaw<Number>  &contact)
+  {
+    if (!has_friction(node))
+      return Number(0.);
+    const Friction<Number> friction(node, normal_force(node, contact), law, contact);
+    return friction.factor * friction.point.slip2;
+  }
+
+  double contact_potential(const ContactNode<double> &node,
+                           const MaterialLaw<double> &law,
+                           const ContactLaw<double>  &contact)
+  {
+    const double pressing  = normal_force(node, contact);
+    double       potential = 0.5 * pressing * approach_excess(node);
+    if (has_friction(node))
+    {
+      const Friction<double> friction(node, pressing, law, contact);
+      potential += friction.factor * friction.law.potential_ratio(friction.point);
+    }
+    return potential;
+  }
+
+  dealii::Tensor<2, 3> contact_tangent(const ContactNode<double> &node,
+                                       const MaterialLaw<double> &law,
+                                       const ContactLaw<double>  &contact)
+  {
+    dealii::Tensor<2, 3> tangent;
+    if (node.active)
+      tangent += contact.rho * node.S * outer_product(node.n, node.n);
+    if (has_friction(node))
+    {
+      const Friction<double> friction(node, normal_force(node, contact), law, contact);
+      tangent -= friction.factor * outer_product(node.n, node.n);
+      for (unsigned int i = 0; i < 3; ++i)
+        tangent[i][i] += friction.factor;
+      if (const double slope = friction.law.slip_slope(friction.point); slope != 0.)
+        tangent += friction.factor * slope * outer_product(friction.dv, friction.dv);
+      if (const double slope = node.active ? friction.law.pressure_slope(friction.point) : 0.; slope != 0.)
+        tangent += slope * contact.rho * outer_product(friction.dv, node.n);
+    }
+    return tangent;
+  }
+
+  namespace
+  {
+    /// That of  weight * normal_force,  without the motion's: derivative in h.
+    double reverse_penalty(const ContactNode<double> &node,
+                           const ContactLaw<double>  &contact,
+                           const double               weight,
+                           ContactNodeBar            &bar)
+    {
+      const double h = approach_excess(node);
+      bar.S += contact.rho * h * weight;
+      bar.contact.rho += node.S * h * weight;
+      return contact.rho * node.S * weight;
+    }
+  } // namespace
+
+  ContactNodeBar reverse_normal_force(const ContactNode<double> &node,
+                                      const ContactLaw<double>  &contact,
+                                      const double               weight)
+  {
+    ContactNodeBar bar;
+    if (node.active)
+      reverse_kinematics(node, Vec3(), reverse_penalty(node, contact, weight, bar), bar);
+    return bar;
+  }
+
+  ContactNodeBar reverse_contact_force(const ContactNode<double> &node,
+                                       const MaterialLaw<double> &law,
+                                       const ContactLaw<double>  &contact,
+                                       const Vec3                &lambda)
+  {
+    ContactNodeBar bar;
+    const double   pressing = normal_force(node, contact);
+    double         h_bar    = 0.;
+    if (node.active)
+    {
+      h_bar = reverse_penalty(node, contact, lambda * node.n, bar);
+      bar.n = pressing * lambda;
+    }
+    Vec3 dv_bar;
+    if (has_friction(node))
+    {
+      const Friction<double> friction(node, pressing, law, contact);
+      const double           product = lambda * friction.dv;
+      reverse_factor(friction, node, product, friction.factor * product, h_bar, bar);
+      dv_bar = friction.factor * (lambda + friction.law.slip_slope(friction.point) * product * friction.dv);
+    }
+    reverse_kinematics(node, dv_bar, h_bar, bar);
+    return bar;
+  }
+
+  ContactNodeBar reverse_friction_power(const ContactNode<double> &node,
+                                        const MaterialLaw<double> &law,
+                                        const ContactLaw<double>  &contact,
+                                        const double               weight)
+  {
+    ContactNodeBar bar;
+    if (!has_friction(node))
+      return bar;
+    const Friction<double> friction(node, normal_force(node, contact), law, contact);
+    const double           dv2 = friction.point.slip2, factor = weight * friction.factor;
+    double                 h_bar = 0.;
+    reverse_factor(friction, node, weight * dv2, factor * dv2, h_bar, bar);
+    reverse_kinematics(
+      node, factor * (2. + friction.law.slip_slope(friction.point) * dv2) * friction.dv, h_bar, bar);
+    return bar;
+  }
+
+#define RETROFORGE_INSTANTIATE(Number)                                                     \
+  template Vector3<Number> contact_force(                                                  \
+    const ContactNode<Number> &, const MaterialLaw<Number> &, const ContactLaw<Number> &); \
+  template Number friction_power(                                                          \
+    const ContactNode<Number> &, const MaterialLaw<Number> &, const ContactLaw<Number> &);
+  RETROFORGE_INSTANTIATE(double)
+  RETROFORGE_INSTANTIATE(Dual)
+#undef RETROFORGE_INSTANTIATE
+} // namespace retroforge
