@@ -24,6 +24,14 @@ namespace retroforge
       return std::make_unique<FESystem<dim>>(FE_SimplexHat<dim>(), dim);
     }
 
+    template <int dim>
+    ReferenceElement<dim> reference_element(const ElementPair pair)
+    {
+      const auto kinematics = dim == 3 ? Kinematics::three_dimensions : Kinematics::plane_strain;
+      return pair == ElementPair::mini ? mini_reference<dim>(1, kinematics)
+                                       : taylor_hood_reference<dim>(1, kinematics);
+    }
+
     /// The cell's index in the mesh.
     template <typename Cell>
     CellIndex index_of(const Cell &cell)
@@ -63,6 +71,8 @@ namespace retroforge
     const auto element = velocity_element<dim>(choice.pair);
     if (choice.pair == ElementPair::taylor_hood)
       number_middles(mesh);
+    if (choice.assembly == Assembly::quadrature)
+      quadrature_ = std::make_unique<const ReferenceElement<dim>>(reference_element<dim>(choice.pair));
     places_per_cell_ = element->dofs_per_cell / dim;
     nodes_per_cell_  = places_per_cell_ - (has_bubbles() ? 1 : 0);
 
