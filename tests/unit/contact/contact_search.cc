@@ -17,6 +17,8 @@
 #include "../mesh/block_mesh.h"
 #include "wavy_sheet.h"
 
+#include "../discretization/middles_of.h"
+
 using namespace retroforge;
 
 namespace
@@ -73,7 +75,7 @@ int main(int argc, char **argv)
   Random               random;
   const TetMesh        mesh = half_box_mesh(Vec3({10., 8., 6.}), {{4, 6, 4}});
   const Topology       topology(mesh);
-  const MeshEdges      edges(mesh);
+  const MiddleNodes    edges = middles_of(mesh);
   NodalVectors<double> X = mesh.X;
   for (Vec3 &x : X)
     x += 0.1 * random.vector();
