@@ -8,7 +8,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/contact/contact_search.h>
+#include <retroforge/contact/contact_kinematics.h>
 #include <retroforge/contact/penetration.h>
 
 #include <iostream>

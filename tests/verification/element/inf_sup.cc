@@ -51,7 +51,7 @@ Pressures times_mass(const TetMesh &mesh, const Pressures &p)
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
   {
     const auto  &nodes = mesh.cells[c];
-    const double unit  = geometry_of_cell(discretization, mesh.X, c).volume / 20.;
+    const double unit  = tet_volume(corners(nodes, mesh.X)) / 20.;
     const double sum   = p[nodes[0]] + p[nodes[1]] + p[nodes[2]] + p[nodes[3]];
     for (const NodeIndex k : nodes)
       y[k] += unit * (sum + p[k]);
