@@ -31,7 +31,7 @@ Json as_json(const std::vector<Vec3> &vectors)
 
 Json as_json(const Field<double> &W, const Discretization<3> &discretization)
 {
-  NodalVectors<double> V = W.V.complete(*discretization.velocity_nodes());
+  NodalVectors<double> V       = W.V.complete(*discretization.velocity_nodes());
   const auto           bubbles = V.begin() + discretization.condensed_nodes()->n();
   return {{"V", as_json({V.begin(), bubbles})},
           {"beta", as_json({bubbles, V.end()})},
@@ -131,25 +131,27 @@ void print_case(RandomNumbers    &random,
   Json faces              = Json::array();
   for (const BoundaryFace &face : scene.mesh.faces)
     faces.push_back(face.nodes);
-  const Json line = {{"pair", pair == ElementPair::mini ? "P1+/P1" : "P2/P1"},
-                     {"X", as_json(std::vector<Vec3>(X.begin(), X.end()))},
-                     {"faces", faces},
-                     {"middles", scene.discretization.middles() ? Json(scene.discretization.middles()->ends()) : Json::array()},
-                     {"W", as_json(W, scene.discretization)},
-                     {"K", physics.law.K},
-                     {"m", m},
-                     {"e_0", physics.law.e0},
-                     {"rho", physics.contact.rho},
-                     {"v_0", physics.contact.v0},
-                     {"alpha", physics.dies[0].friction},
-                     {"die", die},
-                     {"tau", tau},
-                     {"l", layer},
-                     {"theta", part},
-                     {"b", ramp.width},
-                     {"kappa", edge_stiffness},
-                     {"reach", reach},
-                     {"R", as_json(stage.residual(W, {}))}};
+  const Json line = {
+    {"pair", pair == ElementPair::mini ? "P1+/P1" : "P2/P1"},
+    {"X", as_json(std::vector<Vec3>(X.begin(), X.end()))},
+    {"faces", faces},
+    {"middles",
+     scene.discretization.middles() ? Json(scene.discretization.middles()->ends()) : Json::array()},
+    {"W", as_json(W, scene.discretization)},
+    {"K", physics.law.K},
+    {"m", m},
+    {"e_0", physics.law.e0},
+    {"rho", physics.contact.rho},
+    {"v_0", physics.contact.v0},
+    {"alpha", physics.dies[0].friction},
+    {"die", die},
+    {"tau", tau},
+    {"l", layer},
+    {"theta", part},
+    {"b", ramp.width},
+    {"kappa", edge_stiffness},
+    {"reach", reach},
+    {"R", as_json(stage.residual(W, {}), scene.discretization)}};
   std::cout << line << std::endl;
 }
 

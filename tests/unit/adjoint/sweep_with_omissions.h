@@ -286,7 +286,7 @@ namespace retroforge
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
       CellValues<double> w_bar = {};
-      const auto         s     = reverse_cell_dissipation(geometry_of_cell(stage.scene.discretization, stage.X, c),
+      const auto s = reverse_cell_dissipation(geometry_of_cell(stage.scene.discretization, stage.X, c),
                                               MiniPair::on_cell(stage.scene.discretization, W, c),
                                               stage.physics.law,
                                               weight * dt,
@@ -371,7 +371,8 @@ namespace retroforge
       const SolveRecord         &solve    = record.solves[s];
       const NodalVectors<double> position = advanced(X, dt, scheme.a[s], record.solves);
       const Stage<double>        stage(scene, physics, contact, position);
-      Field<double>              W(scene.discretization), rhs(scene.discretization), minus_rhs(scene.discretization), lambda;
+      Field<double> W(scene.discretization), rhs(scene.discretization), minus_rhs(scene.discretization),
+        lambda;
       W.V.take(solve.V);
       W.P.take(solve.P);
       recover_bubbles(stage, W);

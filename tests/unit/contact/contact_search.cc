@@ -76,7 +76,7 @@ int main(int argc, char **argv)
   const TetMesh        mesh = half_box_mesh(Vec3({10., 8., 6.}), {{4, 6, 4}});
   const Topology       topology(mesh);
   const MiddleNodes    edges = middles_of(mesh);
-  NodalVectors<double> X = mesh.X;
+  NodalVectors<double> X     = mesh.X;
   for (Vec3 &x : X)
     x += 0.1 * random.vector();
   const Vec3                          side   = Vec3({-1., 0.1, 0.2});

@@ -53,7 +53,8 @@ namespace
   }
 
   template <typename Velocity>
-  Field<double> field_of(const TetMesh &mesh, const Discretization<3> &discretization, const Velocity &velocity)
+  Field<double>
+  field_of(const TetMesh &mesh, const Discretization<3> &discretization, const Velocity &velocity)
   {
     Field<double> W(discretization);
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
@@ -75,7 +76,7 @@ namespace
 
   void check_two_cells()
   {
-    const TetMesh mesh = two_cells();
+    const TetMesh           mesh = two_cells();
     const Discretization<3> discretization(mesh, {ElementPair::mini}, MPI_COMM_SELF);
     Field<double>           W(discretization);
     // A turn of both, and the first cell sheared by its own node: e1 = sym(u (x) z), e2 = 0; no trace.
@@ -103,14 +104,14 @@ namespace
     for (const ElementPair pair : {ElementPair::mini, ElementPair::taylor_hood})
     {
       const Discretization<3> discretization(mesh, {pair}, MPI_COMM_SELF);
-      const auto   error = [&](const auto &velocity, const MaterialLaw<double> &of) {
+      const auto              error = [&](const auto &velocity, const MaterialLaw<double> &of) {
         return total(indicated_errors(discretization, mesh.X, field_of(mesh, discretization, velocity), of));
       };
       auto twice = law;
       twice.K *= 2.;
       const bool mini = pair == ElementPair::mini;
-      std::cout << (mini ? "mini" : "P2-P1") << ", degree " << velocity_degree(discretization) << ": linear: none "
-                << (error(linear, law) < 1e-20 ? "yes" : "NO") << "; quadratic: "
+      std::cout << (mini ? "mini" : "P2-P1") << ", degree " << velocity_degree(discretization)
+                << ": linear: none " << (error(linear, law) < 1e-20 ? "yes" : "NO") << "; quadratic: "
                 << (error(quadratic, law) > 1e-3    ? "some"
                     : error(quadratic, law) < 1e-20 ? "none"
                                                     : "SOMETHING");

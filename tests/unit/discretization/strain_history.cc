@@ -51,7 +51,7 @@ struct Inputs
   std::vector<Number *> entries()
   {
     std::vector<Number *> all;
-    const auto add = [&](auto &vectors) {
+    const auto            add = [&](auto &vectors) {
       for (auto &v : vectors)
         for (unsigned int d = 0; d < 3; ++d)
           all.push_back(&v[d]);
@@ -91,7 +91,7 @@ double dot_product_defect(const TetMesh             &mesh,
   const auto tangent = accumulate_strain(mini_discretization(mesh), dual.X, dual.W, dual.dt, dual.q);
   auto       bar     = empty_inputs<double>(mesh);
   bar.q              = y;
-  bar.dt             = reverse_accumulate_strain(mini_discretization(mesh), at.X, at.W, at.dt, y, bar.W, bar.X);
+  bar.dt         = reverse_accumulate_strain(mini_discretization(mesh), at.X, at.W, at.dt, y, bar.W, bar.X);
   double forward = 0., reverse = 0., size = 0.;
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
   {
@@ -202,7 +202,7 @@ void check_at_rest(const TetMesh &mesh, Random &random)
   const Vec3  beta     = Vec3({0.5, 0.25, -1});
   MiniPair::bubble(mini_discretization(mesh), at.W, 0) = beta;
   at.W.V[first[0]]                                     = -4. * beta;
-  const auto e         = cell_strain_rates(geometry, MiniPair::on_cell(mini_discretization(mesh), at.W, 0));
+  const auto e = cell_strain_rates(geometry, MiniPair::on_cell(mini_discretization(mesh), at.W, 0));
   errors.compare("one part of a cell at rest", e[0], 0.);
   errors.print(1e-13);
   std::cout << "  the others move, derivatives finite: "
@@ -212,8 +212,8 @@ void check_at_rest(const TetMesh &mesh, Random &random)
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  Random        random;
-  const TetMesh mesh = small_mesh(random);
+  Random                                   random;
+  const TetMesh                            mesh = small_mesh(random);
   std::cout << "values" << std::endl;
   check_by_hand(mesh, random);
   std::cout << "reverse" << std::endl;

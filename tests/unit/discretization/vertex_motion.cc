@@ -267,7 +267,7 @@ void check_whole(RandomNumbers &random, Errors &errors)
     }
   for (const auto &[a, b] : part.middles.ends())
   {
-    const Vec3 v                                          = part.V[part.middles.between(a, b)];
+    const Vec3 v                                       = part.V[part.middles.between(a, b)];
     whole.V[whole.middles.between(image[a], image[b])] = mirrored(v);
     whole.V[whole.middles.between(a, b)]               = v;
   }

@@ -264,16 +264,16 @@ struct Differences
 
 Differences solution_differences(const double element_size)
 {
-  const std::string      free_patch = "side +x";
-  const ManufacturedFlow flow{{1., 1., 0.}};
-  const TetMesh          mesh = unit_cube(element_size);
+  const std::string       free_patch = "side +x";
+  const ManufacturedFlow  flow{{1., 1., 0.}};
+  const TetMesh           mesh = unit_cube(element_size);
   const Discretization<3> discretization(mesh, {ElementPair::mini}, MPI_COMM_SELF);
-  const auto             start    = flow.interpolant(mesh, discretization);
-  const auto             traction = flow.traction_load(mesh, discretization, free_patch);
-  const auto             points   = sub_cell_points();
-  QuadratureElement      quadrature(mesh);
-  const Unknowns         unknowns(discretization);
-  GlobalSystem           system(mesh, unknowns, held_velocities(mesh, discretization, free_patch));
+  const auto              start    = flow.interpolant(mesh, discretization);
+  const auto              traction = flow.traction_load(mesh, discretization, free_patch);
+  const auto              points   = sub_cell_points();
+  QuadratureElement       quadrature(mesh);
+  const Unknowns          unknowns(discretization);
+  GlobalSystem            system(mesh, unknowns, held_velocities(mesh, discretization, free_patch));
 
   const auto solve = [&](const auto &cell_system) {
     NodalVectors<double> boundary = traction;

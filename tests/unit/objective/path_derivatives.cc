@@ -32,7 +32,7 @@ struct PathInputs
   struct State
   {
     NodalVectors<Number> X, Y, V;
-    NodalVectors<Number> bubbles;  ///< of all cells, if there are any
+    NodalVectors<Number> bubbles; ///< of all cells, if there are any
 
     /// What of it this rank has.
     Field<Number> field(const Scene &scene) const
@@ -125,10 +125,7 @@ struct PathProblem
   }
 
   PathProblem(Random &random, const bool curved, const ElementPair pair = ElementPair::mini)
-      : scene(half_box_mesh(Vec3({10., 8., 6.}), {{3, 6, 4}}),
-              {pair},
-              make_dies(curved),
-              MPI_COMM_WORLD)
+      : scene(half_box_mesh(Vec3({10., 8., 6.}), {{3, 6, 4}}), {pair}, make_dies(curved), MPI_COMM_WORLD)
       , at(empty_inputs<double>(scene))
   {
     at.physics.law     = {1.3, 0.4, 0.2};
@@ -189,7 +186,8 @@ struct PathProblem
       const ContactSet<double> set = contact(at, i);
       const Stage<double>      stage(scene, at.physics, set, at.states[i].Y);
       for (unsigned int p = 0; p < pairs[i].size(); ++p)
-        n += active[i][p] && approach_excess(stage.contact_node(p, at.states[i].field(scene), active[i])) < 0.;
+        n +=
+          active[i][p] && approach_excess(stage.contact_node(p, at.states[i].field(scene), active[i])) < 0.;
     }
     return n;
   }
@@ -203,13 +201,12 @@ struct PathProblem
       const ContactSet<Number> set = contact(inputs, i);
       const Stage<Number>      stage(scene, inputs.physics, set, inputs.states[i].Y);
       const Field<Number>      W = inputs.states[i].field(scene);
-      rows.push_back(
-        {sum_over_ranks(objective.integrals(StageView<Number>{stage, W, active[i]}),
-                        scene.discretization.comm()),
-         dt(inputs, i),
-         Number(strokes[i] / inputs.speed),
-         strokes[i],
-         steps[i]});
+      rows.push_back({sum_over_ranks(objective.integrals(StageView<Number>{stage, W, active[i]}),
+                                     scene.discretization.comm()),
+                      dt(inputs, i),
+                      Number(strokes[i] / inputs.speed),
+                      strokes[i],
+                      steps[i]});
     }
     return rows;
   }

@@ -58,7 +58,7 @@ public:
     PathRows<double>     rows;
     for (int i = 0; i < n_increments; ++i)
     {
-      const double  step = stroke / n_increments, dt = step / v, h = edge - i * step;
+      const double         step = stroke / n_increments, dt = step / v, h = edge - i * step;
       NodalVectors<double> V(X.size());
       for (NodeIndex k = 0; k < X.size(); ++k)
         V[k] = speed / h * Vec3({X[k][0] / 2., X[k][1] / 2., -X[k][2]});

@@ -35,7 +35,7 @@ namespace
                const Field<double> &before,
                const Field<double> &after)
   {
-    const auto               &pairs = corner.contact.pairs;
+    const auto               &pairs    = corner.contact.pairs;
     const auto                V_before = corner.velocities(before), V_after = corner.velocities(after);
     std::vector<unsigned int> n_dies(V_before.size(), 0);
     for (const ContactPair &pair : pairs)

@@ -32,10 +32,7 @@ namespace retroforge
                 const ElementPair                  pair  = ElementPair::mini,
                 const std::array<unsigned int, 3> &cells = {{4, 6, 4}},
                 const double                       hills = 0.3)
-        : scene(half_box_mesh(Vec3({10., 8., 6.}), cells),
-                {pair},
-                make_dies(hills),
-                MPI_COMM_WORLD)
+        : scene(half_box_mesh(Vec3({10., 8., 6.}), cells), {pair}, make_dies(hills), MPI_COMM_WORLD)
         , X(scene.mesh.X)
         , W(scene.discretization)
     {

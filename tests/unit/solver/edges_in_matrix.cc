@@ -108,7 +108,7 @@ namespace
   {
     const auto  &discretization = corner.scene.discretization;
     unsigned int n = 0, n_pressed = 0, n_frames = 0;
-    double           n_shared = 0.;
+    double       n_shared = 0.;
     for (unsigned int p = 0; p < corner.contact.pairs.size(); ++p)
       if (const ContactPoint &point = corner.contact.pairs[p].point; !point.is_node())
       {

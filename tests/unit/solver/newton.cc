@@ -114,7 +114,7 @@ namespace
     Field<double> third = second;
     solver.newton.solve(corner.stage(), third, {}, Start::near, corner.stage().decide_active(second));
     const auto distance = [&](const Field<double> &W) {
-      double     sum = 0.;
+      double     sum  = 0.;
       const auto of_W = corner.velocities(W), of_third = corner.velocities(third);
       for (NodeIndex k = 0; k < of_W.size(); ++k)
         sum += (of_W[k] - of_third[k]).norm_square();

@@ -57,7 +57,7 @@ namespace retroforge
       // On one rank places are numbers of nodes.
       const unsigned int *nodes = discretization_.velocity_places(c);
       const unsigned int  n     = discretization_.n_nodes_per_cell();
-      Indices            indices;
+      Indices             indices;
       for (unsigned int a = 0; a < n; ++a)
         for (unsigned int i = 0; i < 3; ++i)
           indices.push_back(velocity(nodes[a], i));
@@ -210,8 +210,9 @@ namespace retroforge
 
   /// Velocity nodes of a face of the boundary: its corners, then the middles of its edges where there are
   /// any.
-  inline std::vector<NodeIndex>
-  velocity_nodes_of_face(const TetMesh &mesh, const Discretization<3> &discretization, const unsigned int face)
+  inline std::vector<NodeIndex> velocity_nodes_of_face(const TetMesh           &mesh,
+                                                       const Discretization<3> &discretization,
+                                                       const unsigned int       face)
   {
     const auto            &corners = mesh.faces[face].nodes;
     std::vector<NodeIndex> nodes(corners.begin(), corners.end());

@@ -114,7 +114,7 @@ private:
   /// All boundary velocities, and one pressure for the constant.
   static std::vector<char> held(const TetMesh &mesh, const Discretization<3> &discretization)
   {
-    std::vector<char> fixed             = held_velocities(mesh, discretization, "none");
+    std::vector<char> fixed                     = held_velocities(mesh, discretization, "none");
     fixed[Unknowns(discretization).pressure(0)] = 1;
     return fixed;
   }
@@ -126,9 +126,9 @@ private:
 double inf_sup_constant(const TetMesh &mesh, const ElementPair pair, const Blocks &blocks)
 {
   const Discretization<3> discretization(mesh, {pair}, MPI_COMM_SELF);
-  SchurComplement schur(mesh, discretization, blocks);
-  const Pressures ones(mesh.n_nodes(), 1.), M_ones = times_mass(mesh, ones);
-  const double    volume = dot(ones, M_ones);
+  SchurComplement         schur(mesh, discretization, blocks);
+  const Pressures         ones(mesh.n_nodes(), 1.), M_ones = times_mass(mesh, ones);
+  const double            volume = dot(ones, M_ones);
 
   std::mt19937           generator(1);
   Pressures              p(mesh.n_nodes());

@@ -75,7 +75,7 @@ double newton_step(const ManufacturedFlow          &flow,
   if constexpr (std::is_same_v<Pair, MiniPair>)
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
-      const auto w = Pair::on_cell(discretization, step, c);
+      const auto w                     = Pair::on_cell(discretization, step, c);
       step.V[discretization.bubble(c)] = tangents[c].recover_bubble(rhs[c].beta, w.V, w.P);
     }
   W.add(1., step);
@@ -124,7 +124,7 @@ FlowErrors errors_of(const TetMesh &mesh, const Discretization<3> &discretizatio
 template <typename Pair>
 FlowErrors solve_on(const ManufacturedFlow &flow, const double element_size, std::ostream &output)
 {
-  const TetMesh mesh = unit_cube(element_size);
+  const TetMesh           mesh = unit_cube(element_size);
   const Discretization<3> discretization(
     mesh, {std::is_same_v<Pair, MiniPair> ? ElementPair::mini : ElementPair::taylor_hood}, MPI_COMM_SELF);
   std::vector<Values<Pair>> loads;

@@ -140,8 +140,9 @@ namespace retroforge
     }
 
     /// Forces of the traction on one patch at the velocity nodes.
-    NodalVectors<double>
-    traction_load(const TetMesh &mesh, const Discretization<3> &discretization, const std::string &patch) const
+    NodalVectors<double> traction_load(const TetMesh           &mesh,
+                                       const Discretization<3> &discretization,
+                                       const std::string       &patch) const
     {
       const dealii::QGaussSimplex<2> rule(4);
       NodalVectors<double>           load(discretization.condensed_nodes()->n());

@@ -50,7 +50,7 @@ namespace
     explicit Equilibrium(const double element_size)
         : parameters(cube(element_size))
         , scene(make_billet(parameters.billet, MPI_COMM_WORLD),
-                ElementPair::mini,
+                {},
                 {parameters.dies[0].die(), parameters.dies[1].die()},
                 MPI_COMM_WORLD)
         , model(parameters.step_model())
