@@ -114,7 +114,8 @@ namespace retroforge
   {
     /// The triangles of velocity nodes that a face is made of.
     template <typename Use>
-    void for_each_triangle(const TetMesh &mesh, const MiddleNodes *edges, const unsigned int f, const Use &use)
+    void
+    for_each_triangle(const TetMesh &mesh, const MiddleNodes *edges, const unsigned int f, const Use &use)
     {
       const auto &k = mesh.faces[f].nodes;
       if (!edges)
