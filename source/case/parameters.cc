@@ -580,7 +580,8 @@ end
     for (unsigned int d = 0; d < dies.size(); ++d)
     {
       dies[d].check();
-      if (contact.slip_fraction < least_slip && needs_regularisation(initial_state(dies[d]), material.law))
+      const DieState<double> state = initial_state(dies[d]);
+      if (contact.slip_fraction < least_slip && needs_regularisation(state, material.law))
         throw Error("Contact/slip regularisation",
                     "is " + as_text(contact.slip_fraction) +
                       " with friction and a strain rate sensitivity below 1",

@@ -140,14 +140,17 @@ namespace retroforge
       const SlidingPoint<Number> point;
       const Number               factor;
 
-      /// @param pressing  the normal force
       Friction(const ContactNode<Number> &node,
-               const Number              &pressing,
                const MaterialLaw<Number> &metal,
                const ContactLaw<Number>  &contact)
           : law(interface_law(node.interface_law))
           , dv(slip(node))
-          , point{node.Sf, node.alpha, Number(dv * dv), Number(pressing / node.S), metal, contact}
+          , point{node.Sf,
+                  node.alpha,
+                  Number(dv * dv),
+                  node.active ? Number(contact.rho * approach_excess(node)) : Number(0.),
+                  metal,
+                  contact}
           , factor(law.factor(point))
       {
       }
@@ -182,13 +185,12 @@ namespace retroforge
                                 const MaterialLaw<Number> &law,
                                 const ContactLaw<Number>  &contact)
   {
-    const Number    pressing = normal_force(node, contact);
     Vector3<Number> force;
     if (node.active)
-      force += node.n * pressing;
+      force += node.n * normal_force(node, contact);
     if (has_friction(node))
     {
-      const Friction<Number> friction(node, pressing, law, contact);
+      const Friction<Number> friction(node, law, contact);
       force += friction.dv * friction.factor;
     }
     return force;
@@ -201,7 +203,7 @@ namespace retroforge
   {
     if (!has_friction(node))
       return Number(0.);
-    const Friction<Number> friction(node, normal_force(node, contact), law, contact);
+    const Friction<Number> friction(node, law, contact);
     return friction.factor * friction.point.slip2;
   }
 
@@ -209,11 +211,10 @@ namespace retroforge
                            const MaterialLaw<double> &law,
                            const ContactLaw<double>  &contact)
   {
-    const double pressing  = normal_force(node, contact);
-    double       potential = 0.5 * pressing * approach_excess(node);
+    double potential = 0.5 * normal_force(node, contact) * approach_excess(node);
     if (has_friction(node))
     {
-      const Friction<double> friction(node, pressing, law, contact);
+      const Friction<double> friction(node, law, contact);
       potential += friction.factor * friction.law.potential_ratio(friction.point);
     }
     return potential;
@@ -228,7 +229,7 @@ namespace retroforge
       tangent += contact.rho * node.S * outer_product(node.n, node.n);
     if (has_friction(node))
     {
-      const Friction<double> friction(node, normal_force(node, contact), law, contact);
+      const Friction<double> friction(node, law, contact);
       tangent -= friction.factor * outer_product(node.n, node.n);
       for (unsigned int i = 0; i < 3; ++i)
         tangent[i][i] += friction.factor;
@@ -271,17 +272,16 @@ namespace retroforge
                                        const Vec3                &lambda)
   {
     ContactNodeBar bar;
-    const double   pressing = normal_force(node, contact);
-    double         h_bar    = 0.;
+    double         h_bar = 0.;
     if (node.active)
     {
       h_bar = reverse_penalty(node, contact, lambda * node.n, bar);
-      bar.n = pressing * lambda;
+      bar.n = normal_force(node, contact) * lambda;
     }
     Vec3 dv_bar;
     if (has_friction(node))
     {
-      const Friction<double> friction(node, pressing, law, contact);
+      const Friction<double> friction(node, law, contact);
       const double           product = lambda * friction.dv;
       reverse_factor(friction, node, product, friction.factor * product, h_bar, bar);
       dv_bar = friction.factor * (lambda + friction.law.slip_slope(friction.point) * product * friction.dv);
@@ -298,7 +298,7 @@ namespace retroforge
     ContactNodeBar bar;
     if (!has_friction(node))
       return bar;
-    const Friction<double> friction(node, normal_force(node, contact), law, contact);
+    const Friction<double> friction(node, law, contact);
     const double           dv2 = friction.point.slip2, factor = weight * friction.factor;
     double                 h_bar = 0.;
     reverse_factor(friction, node, weight * dv2, factor * dv2, h_bar, bar);

@@ -190,21 +190,30 @@ namespace retroforge
                                  const Field<double> &step,
                                  const ActiveSet     &active)
   {
+    // Friction that hardly grows with the slip leaves the residual blind to a step that goes too far.
+    Field<double> there = W, r;
+    const double  part  = search_power(stage, there, start.r, step, active);
+    settle_bubbles_in_reach(stage, start.speed, there);
+    if (relative_residual(stage, there, active, start.scale, r) < start.residual)
+    {
+      W = std::move(there);
+      return part;
+    }
     constexpr unsigned int trials      = 6;
     constexpr double       worth_while = 0.1; // of the fall that the tangent promises
-    double                 a = 1., best = 1., least = std::numeric_limits<double>::infinity();
-    Field<double>          found, r;
+    double                 a = 1., best = 1., least = 0.;
+    Field<double>          found;
     for (unsigned int i = 0; i < trials; ++i, a *= 0.5)
     {
-      Field<double> there = W;
+      there = W;
       there.add(a, step);
       settle_bubbles_in_reach(stage, start.speed, there);
       const double residual = relative_residual(stage, there, active, start.scale, r);
-      if (residual < least)
+      if (i == 0 || residual < least)
       {
         least = residual;
         best  = a;
-        found = std::move(there);
+        found = there;
       }
       if (residual <= (1. - worth_while * a) * start.residual)
         break;
@@ -303,7 +312,8 @@ namespace retroforge
     // A recorded active set comes with its solution.
     const bool        decides = frozen.empty() && !linear;
     std::vector<char> held;
-    if (decides && !from_rest)
+    // Friction that follows the pressure needs to know it from the start.
+    if (decides && (!from_rest || !stage.has_potential()))
       held = hold_on_dies(stage, W, pressed);
     const double speed = volume_and_speed(stage).second;
     settle_bubbles_in_reach(stage, speed, W);
@@ -361,7 +371,7 @@ namespace retroforge
         const auto search = [&](const ActiveSet &active) {
           return stage.has_potential()
                    ? search_power(stage, W, r, step, active)
-                   : search_residual(stage, W, {statistics.residual, scale, speed}, step, active);
+                   : search_residual(stage, W, {r, statistics.residual, scale, speed}, step, active);
         };
         double taken;
         if (decides && iteration < contacts_settle)

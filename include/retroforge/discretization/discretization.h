@@ -129,9 +129,6 @@ namespace retroforge
     /// Sum over ranks of one number per rank.
     double sum(double x) const;
 
-    /// For each of this rank's velocity nodes the indices of those that it meets in a cell, without bubbles.
-    Rows<unsigned int> velocity_pattern() const;
-
   private:
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 

@@ -102,16 +102,18 @@ namespace retroforge
                         const Field<double> &step,
                         const ActiveSet     &active);
 
-    /// What search_residual compares with: the relative residual at W, its scale, and the dies' speed.
+    /// What search_residual compares with: the residual at W, its relative norm and scale, and the dies'
+    /// speed.
     struct SearchStart
     {
-      double residual;
-      Scale  scale;
-      double speed;
+      const Field<double> &r;
+      double               residual;
+      Scale                scale;
+      double               speed;
     };
 
-    /// The same by the residual's norm, bubbles settled: the longest of the steps 1, 1/2, ... that lowers it,
-    /// or the one after which it is least.
+    /// The same by the residual's norm, bubbles settled: the step that search_power takes where it lowers
+    /// that, else the longest of 1, 1/2, ... that does, or the one after which it is least.
     double search_residual(const Stage<double> &stage,
                            Field<double>       &W,
                            const SearchStart   &start,

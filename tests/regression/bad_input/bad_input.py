@@ -122,6 +122,8 @@ MISTAKES = {
     "unknown choice": (settings("Press/scheme=leapfrog"), r"Press/scheme.*leapfrog.*midpoint"),
     "die without section": (settings("Dies/names=lower, upper, third"), r"[Dd]ie third"),
     "no die": (settings("Dies/names="), r"Die"),
+    "unknown law of friction": (settings("Die upper/friction law=Nortan"),
+                                r"Die upper/friction law.*'Nortan' is no law of friction.*Norton.*did you mean 'Norton'\?"),
     "no die moves": (settings("Die upper/velocity=0, 0, 0"), r"move"),
     "unknown leading die": (settings("Press/leading die=middle"), r"Press/leading die.*middle"),
     "unknown design parameter": (settings("Design/parameters=material/L"), r"material/L"),

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// Forgings with friction after Coulomb, a law of the test that parameters call by its name: it follows the
+// pressure, so that the tangent is not symmetric and the adjoint is that of the transposed system. Under a
+// tilted die, with linear and with quadratic velocities, and under tripods, by node positions, the speed and
+// the offset of the upper die, and the coefficient of friction. Proved:
+// - the backward sweep agrees with the direct method to 1e-10, solved directly and by Krylov's method;
+// - and with replayed central differences to 1e-6;
+// - along each the remainder of Taylor's expansion falls with the square of the step;
+// - by the coefficient also with a difference of whole runs that decide anew.
+
+#include <deal.II/base/mpi.h>
+
+#include "../contact/coulomb_friction.h"
+#include "directions.h"
+
+#include <algorithm>
+#include <functional>
+#include <iostream>
+
+using namespace retroforge;
+
+namespace
+{
+  void with_coulomb(Parameters &p)
+  {
+    for (DieParameters &die : p.dies)
+    {
+      die.friction_law = "Coulomb";
+      die.friction     = 0.25;
+    }
+  }
+
+  Parameters tripod_scene()
+  {
+    Parameters p             = tilted_block();
+    p.billet.shape           = "cylinder";
+    p.billet.radius          = 20.;
+    p.billet.height          = 24.;
+    p.billet.symmetry_planes = {Vec3({0., -1., 0.}), Vec3({-std::sqrt(0.75), 0.5, 0.})};
+    p.billet.element_size    = 6.;
+    p.dies[1].point          = Vec3({0., 0., 24.});
+    p.dies[1].facing         = Vec3({0., 0., -1.});
+    for (DieParameters &die : p.dies)
+    {
+      auto &tripod           = die.shape.choose<TripodDie>();
+      tripod.chord_error     = 0.3;
+      tripod.feature_angle   = 40.; // for facets as coarse as these
+      tripod.largest_sagitta = 1.;
+      tripod.shape           = {{}, 10., 10., 46., 4., 60., {5., 20., 2., 2.}};
+    }
+    return p;
+  }
+
+  /// A direction, or the coefficient of both dies.
+  struct Way
+  {
+    Direction direction;
+    double    friction_dot = 0.;
+  };
+
+  template <typename Number>
+  std::pair<Process<Number>, NodalVectors<Number>> at(const RecordedRun &run, const Way &way, const double t)
+  {
+    auto there = along<Number>(run, way.direction, t);
+    for (auto &die : there.first.dies)
+      die.friction = number<Number>(value_of(die.friction) + t * way.friction_dot, way.friction_dot);
+    return there;
+  }
+
+  double energy(const RecordedRun &run, const Way &way, const double t)
+  {
+    const auto [process, X] = at<double>(run, way, t);
+    return run.replayed_energy(process, X);
+  }
+
+  double by_adjoint(const RecordedRun &run, const AdjointResult &bar, const Way &way)
+  {
+    double sum = slope(run, bar, way.direction);
+    for (const auto &die : bar.process.dies)
+      sum += way.friction_dot * die.friction;
+    return sum;
+  }
+
+  /// Order of the remainder between two steps.
+  double taylor_order(const RecordedRun &run, const Way &way, const double gradient, const double step)
+  {
+    const double here      = energy(run, way, 0.);
+    const auto   remainder = [&](const double t) {
+      return std::abs(energy(run, way, t) - here - t * gradient);
+    };
+    return std::log2(remainder(step) / remainder(0.5 * step));
+  }
+
+  double check(const std::string &name, const Parameters &parameters)
+  {
+    RecordedRun                run(parameters);
+    const AdjointResult        bar = run.adjoint();
+    const NodalVectors<double> still(run.forged.X.size());
+    std::cout << name
+              << "\n  friction works: " << yes(run.forged.energy.friction > 1e-2 * run.forged.energy.total())
+              << "\n";
+    double largest = 0.;
+    for (const Way &way : {Way{{"random X_0", random_vectors(still.size()), 0., 0., {}}},
+                           Way{{"speed", still, 1., 0., {}}},
+                           Way{{"offset", still, 0., 1., {}}},
+                           Way{{"friction", still, 0., 0., {}}, 1.}})
+    {
+      const double adjoint    = by_adjoint(run, bar, way);
+      const auto [process, X] = at<Dual>(run, way, 0.);
+      const double tangent    = relative_error(run.tangent(process, X), adjoint);
+      double       best = 1e300, order = 0.;
+      for (const double h : {1e-4, 1e-5, 1e-6})
+        best =
+          std::min(best, relative_error((energy(run, way, h) - energy(run, way, -h)) / (2. * h), adjoint));
+      for (const double h : {1e-2, 1e-3})
+        if (const double found = taylor_order(run, way, adjoint, h);
+            std::abs(found - 2.) < std::abs(order - 2.))
+          order = found;
+      largest = std::max(largest, best);
+      std::cout << "  " << way.direction.name << ": direct method within 1e-10: " << yes(tangent < 1e-10)
+                << ", differences within 1e-6: " << yes(best < 1e-6)
+                << ", remainder of second order: " << yes(std::abs(order - 2.) < 0.1) << "\n";
+      std::cerr << name << ", " << way.direction.name << ": " << adjoint << ", tangent " << tangent
+                << ", difference " << best << ", order " << order << "\n";
+    }
+    return largest;
+  }
+
+  /// By the coefficient, of runs that find contacts and active sets by themselves.
+  void whole_runs(Parameters parameters)
+  {
+    RecordedRun  run(parameters);
+    const double gradient = run.adjoint().process.dies[0].friction + run.adjoint().process.dies[1].friction;
+    const auto   energy   = [&](const double change) {
+      for (DieParameters &die : parameters.dies)
+        die.friction = 0.25 + change;
+      return RecordedRun(parameters).forged.energy.total();
+    };
+    constexpr double h     = 1e-4;
+    const double     error = relative_error((energy(h) - energy(-h)) / (2. * h), gradient);
+    std::cout << "whole runs, by the coefficient: within 1e-5: " << yes(error < 1e-5) << "\n";
+    std::cerr << "whole runs: " << error << "\n";
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  add_coulomb_friction();
+  Parameters block = tilted_block(), tripods = tripod_scene();
+  with_coulomb(block);
+  with_coulomb(tripods);
+  Parameters krylov                = block;
+  krylov.linear_solver.method      = "auto";
+  Parameters quadratic             = block;
+  quadratic.discretization.element = "P2-P1";
+  quadratic.billet.element_size    = 20.;
+  const std::vector<double> errors = {check("tilted die", block),
+                                      check("tilted die, Krylov's method", krylov),
+                                      check("tilted die, quadratic velocities", quadratic),
+                                      check("tripods", tripods)};
+  whole_runs(block);
+  std::cout << "FIGURE unsymmetric_friction_gradient_error "
+            << *std::max_element(errors.begin(), errors.end()) << "\n";
+}
