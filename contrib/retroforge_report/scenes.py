@@ -172,12 +172,15 @@ class ScenePage:
                 frees = f"; free when the die moves by {place(overlap['frees'])} mm" if any(overlap["frees"]) else ""
                 stands = bad(f"{millimetres(overlap['distance'])} {inside}, at {place(overlap['place'])}{frees}")
             elif die["touches"]:
-                stands = f"touches, at {place(die['gap']['place'])}"
+                area = f" on {number(die['contact_area'], 4)} mm²" if die.get("contact_area") else ""
+                stands = f"touches{area}, at {place(die['gap']['place'])}"
             elif die["gap"]["distance"] is None:
                 stands = "sees no part of the billet" if self.billet else "unknown"
             else:
                 stands = f"{millimetres(die['gap']['distance'])} away, nearest to {place(die['gap']['place'])}"
             moves = f"{place(die['velocity'])} mm/s" + (", leads" if die["leads"] else "") if any(die["velocity"]) else "stands still"
+            if any(die.get("travel", ())):
+                moves += f"; by {place(die['travel'])} mm over the stroke"
             if die["touches"]:
                 first = "at the start"
             elif not any(die["velocity"]) or overlap:
@@ -199,18 +202,17 @@ class ScenePage:
         rows = [("shape", billet["shape"]), ("extents [mm]", ", ".join(f"{axis} {a:.6g} to {b:.6g}" for axis, a, b in zip("xyz", low, high))),
                 ("nodes, tetrahedra", f"{number(billet['nodes'])}, {number(billet['cells'])}"),
                 ("edges of the surface [mm]", f"{number(billet['shortest_edge'], 3)} to {number(billet['longest_edge'], 3)}, wanted {number(billet['element_size'], 3)}"),
-                ("smallest angle between faces [degrees]", number(billet["smallest_angle"], 3)),
-                ("volume of the mesh [mm³]", number(billet["volume"]))]
-        shape = billet.get("volume_of_shape")
+                ("smallest angle between faces [degrees]", number(billet["smallest_angle"], 3))]
+        copies, shape = billet["whole"]["copies"], billet.get("volume_of_shape")
+        if copies is None:
+            rows.append(("whole part", "the symmetry planes bound none"))
+        elif copies != 1:
+            rows.append(("whole part", f"{number(copies)} times the model, {number(copies * (shape or billet['volume']))} mm³"))
+        rows.append(("volume of the mesh [mm³]", number(billet["volume"])))
         if shape is not None:
             percent = 100 * (1 - billet["volume"] / shape)
             lacking = f"; the mesh {'lacks' if percent > 0 else 'has more by'} {abs(percent):.2g} %" if abs(percent) >= 0.005 else ""
             rows.append(("volume of the shape [mm³]", number(shape) + lacking))
-        copies = billet["whole"]["copies"]
-        if copies is None:
-            rows.append(("whole part", "the symmetry planes bound none"))
-        elif copies != 1:
-            rows.append(("whole part", f"{number(copies)} times the model, {number(copies * billet['volume'])} mm³"))
         rows += [(f"patch {patch['name']} [mm²]", number(patch["area"])) for patch in billet["patches"]]
         rows += [(f"symmetry plane {plane['name']}", f"through {place(plane['point'])}, outward normal {place(plane['normal'])}")
                  for plane in billet["symmetry_planes"]]
@@ -223,7 +225,8 @@ class ScenePage:
             n = press["increments"]
             rows = [("stroke", f"{millimetres(press['stroke'])} of die {press['leading_die']}, in {number(press['seconds'], 4)} s")]
             if n:
-                rows.append(("increments", f"{n} of {millimetres(press['stroke'] / n)}, {number(press['seconds'] / n, 3)} s each"))
+                chosen = " (chosen by the program)" if press.get("increments_chosen") else ""
+                rows.append(("increments", f"{n} of {millimetres(press['stroke'] / n)}, {number(press['seconds'] / n, 3)} s each{chosen}"))
             self.to.table(("", ""), rows)
         if estimate:
             self.to.heading("What to expect")
@@ -234,7 +237,8 @@ class ScenePage:
                                         for when, force in (("where the dies first press", estimate["first_force"]),
                                                             ("after the stroke", estimate["final_force"])) if force is not None
                                         for factor, unit in [readable("N", force)])])
-            self.to.note(f"By the {estimate['name']}, without any forging: to a factor of two in open upsetting; closed cavities and flash take several times more.")
+            self.to.note(f"By the {estimate['name']}, without any forging: to a factor of two in open upsetting. Metal that a bore or a cavity holds together, "
+                         "and flash, take three times as much and more.")
 
 
 def middle(points):

@@ -2,8 +2,7 @@
 # Copyright (C) 2026 The Retroforge authors
 """Read VTU files (ASCII, or inline base64 with or without zlib): tetrahedra, whose boundary is drawn, or triangles.
 
-The program's files give each cell points of its own and have all fields at points, also those of cells. Here equal points
-are one node; of quadratic cells the corners count."""
+Nodes and cells keep the order that they have in the file. Of quadratic cells the corners count."""
 import base64
 import dataclasses
 import xml.etree.ElementTree as xml
@@ -55,8 +54,8 @@ class Surface:
 
 @dataclasses.dataclass
 class Mesh:
-    """Cells (n, 4) are tetrahedra, cells (n, 3) triangles. Point data are fields with one value at each node, cell data those
-    with one value in each cell, a constant is both. Symmetry planes: point and outward normal of each."""
+    """Cells (n, 4) are tetrahedra, cells (n, 3) triangles. Point data have one value at each node, cell data one in each cell.
+    Symmetry planes: point and outward normal of each."""
     points: np.ndarray
     cells: np.ndarray
     point_data: dict
@@ -92,63 +91,36 @@ class Mesh:
 
 
 def read(path):
-    """The tetrahedra of a file or, where it has none, its triangles, of all its pieces.
+    """The tetrahedra of a file or, where it has none, its triangles.
 
-    @throws ValueError  for no piece, a compressor or a data format that is not known, cells of other types
+    @throws ValueError  for no piece or several, a compressor or a data format that is not known, cells of other types
     """
     root = xml.parse(path).getroot()
     grid = root.find("UnstructuredGrid")
-    if grid is None or grid.find("Piece") is None:
-        raise ValueError(f"{path}: has no piece of an unstructured grid")
+    pieces = [] if grid is None else grid.findall("Piece")
+    if len(pieces) != 1:
+        raise ValueError(f"{path}: has {len(pieces)} pieces of an unstructured grid; one is read")
     decode = _Decoder(path, root)
-    pieces = [_Piece(piece, decode) for piece in grid.findall("Piece")]
-    kind = next((kind for kind in (QUADRATIC_TETRAHEDRON, TETRAHEDRON, TRIANGLE)
-                 if any((piece.types == kind).any() for piece in pieces)), None)
-    if kind is None:
-        raise ValueError(f"{path}: has neither tetrahedra nor triangles; the report draws nothing else")
-    mesh = _merge(*(_joined(parts) for parts in zip(*(piece.corners(kind) for piece in pieces))))
+    mesh = _mesh(path, pieces[0], decode)
     planes = grid.find("FieldData/DataArray[@Name='symmetry_planes']")
     if planes is not None:
         mesh.symmetry_planes = decode(planes).reshape(-1, 6)
     return mesh
 
 
-class _Piece:
-    def __init__(self, piece, decode):
-        self.points = decode(piece.find("Points/DataArray")).reshape(-1, 3)
-        cells = {array.get("Name"): decode(array) for array in piece.find("Cells")}
-        self.types, self.connectivity, self.ends = cells["types"], cells["connectivity"].astype(int), cells["offsets"].astype(int)
-        self.point_data, self.cell_data = ({array.get("Name"): decode(array) for array in piece.findall(f"{kind}/DataArray")}
-                                           for kind in ("PointData", "CellData"))
-
-    def corners(self, kind):
-        """Of cells of a kind: places (cell, corner, 3), fields at points {name: (cell, corner, ...)} and in cells {name: (cell, ...)}"""
-        chosen = self.types == kind
-        first = self.ends[chosen] - N_POINTS[kind]
-        corners = self.connectivity[first[:, None] + np.arange(N_CORNERS[kind])]
-        return (self.points[corners], {name: values[corners] for name, values in self.point_data.items()},
-                {name: values[chosen] for name, values in self.cell_data.items()})
-
-
-def _joined(parts):
-    """Arrays, or dictionaries of arrays, of all pieces as one."""
-    if isinstance(parts[0], dict):
-        return {name: _joined([part[name] for part in parts]) for name in parts[0]}
-    return np.concatenate(parts)
-
-
-def _merge(places, fields, cell_data):
-    """A mesh of cells by their corners; equal places are one node."""
-    points, first, node = np.unique(places.reshape(-1, 3), axis=0, return_index=True, return_inverse=True)
-    node, point_data = node.reshape(-1), {}
-    for name, values in fields.items():
-        at_corners = values.reshape(-1, *values.shape[2:])
-        at_nodes = at_corners[first]
-        if np.array_equal(at_nodes[node], at_corners, equal_nan=True):
-            point_data[name] = at_nodes
-        if np.array_equal(np.broadcast_to(values[:, :1], values.shape), values, equal_nan=True):
-            cell_data[name] = values[:, 0]
-    return Mesh(points.astype(float), node.reshape(places.shape[:2]), point_data, cell_data)
+def _mesh(path, piece, decode):
+    arrays = {array.get("Name"): decode(array) for array in piece.find("Cells")}
+    kind = next((kind for kind in (QUADRATIC_TETRAHEDRON, TETRAHEDRON, TRIANGLE) if (arrays["types"] == kind).any()), None)
+    if kind is None:
+        raise ValueError(f"{path}: has neither tetrahedra nor triangles; the report draws nothing else")
+    chosen = arrays["types"] == kind
+    first = arrays["offsets"].astype(int)[chosen] - N_POINTS[kind]
+    corners = arrays["connectivity"].astype(int)[first[:, None] + np.arange(N_CORNERS[kind])]
+    node, cells = np.unique(corners, return_inverse=True)
+    point_data, cell_data = ({array.get("Name"): decode(array)[of_mesh] for array in piece.findall(f"{where}/DataArray")}
+                             for where, of_mesh in (("PointData", node), ("CellData", chosen)))
+    points = decode(piece.find("Points/DataArray")).reshape(-1, 3)[node].astype(float)
+    return Mesh(points, cells.reshape(corners.shape), point_data, cell_data)
 
 
 class _Decoder:

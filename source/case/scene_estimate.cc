@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/case/scene_checks.h>
 #include <retroforge/case/scene_estimate.h>
+#include <retroforge/contact/die_approach.h>
 #include <retroforge/core/text.h>
 #include <retroforge/geometry/triangle_surface.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/whole_part.h>
-#include <retroforge/time/closing_speed.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +24,9 @@ namespace retroforge
     /// Times the traction that shears the metal. A sticking die has 1; some users set a few for that.
     constexpr double largest_friction = 3.;
 
-    /// Extents of an STL die or one by measures over that of the billet.
-    constexpr double small_die = 0.2, large_die = 20.;
+    /// Extents of an STL die or one by measures over that of a cube of the whole part's volume. A die as
+    /// large as this in a file in inches has 0.04, one of two and a half times its size 0.1.
+    constexpr double small_die = 0.1, large_die = 20.;
 
     /// Over the height of the billet.
     constexpr double least_path = 1e-3, largest_step = 0.1;
@@ -40,34 +42,115 @@ namespace retroforge
       const Process<double>      &process;
       const NodalVectors<double> &X;
       Vec3                        low, high;   ///< corners of the billet's box
-      Vec3                        way;         ///< unit vector of the leading die's path
-      double                      path   = 0.; ///< by which the dies close over the stroke [mm]
-      double                      gap    = 0.; ///< from the leading die to the billet [mm]
+      Vec3                        way;         ///< unit vector in which the leading die faces the billet
+      double                      speed  = 0.; ///< at which the dies close along it [mm/s]
+      double                      path   = 0.; ///< by which they do so over the stroke [mm]
+      double                      gaps   = 0.; ///< between dies and billet along it, on both sides [mm]
       double                      volume = 0.; ///< of the model [mm^3]
 
-      double               extent() const { return (high - low).norm(); }
-      double               closing() const { return std::max(0., path - gap); }
+      double extent() const { return (high - low).norm(); }
+      /// By which the billet gets shorter.
+      double               closing() const { return std::max(0., path - gaps); }
       const Die           &leading() const { return scene.dies[process.leading_die]; }
       std::string          name(const unsigned int d) const { return "Die " + scene.dies[d].name; }
       const DieParameters &given(const unsigned int d) const { return parameters.dies[d]; }
     };
+
+    /// Mean normal of an open surface, short where its facets look to all sides.
+    Vec3 mean_normal(const TriangleSurface &surface)
+    {
+      Vec3   sum;
+      double areas = 0.;
+      for (const Triangle &facet : surface.triangles())
+      {
+        const auto &x      = surface.vertices();
+        const Vec3  vector = facet_vector(x[facet[0]], x[facet[1]], x[facet[2]]);
+        sum += vector;
+        areas += vector.norm();
+      }
+      return sum / areas;
+    }
+
+    /// What a die faces: as it is told or, of a file, by its facets, and then roughly.
+    Vec3 facing(const View &view, const unsigned int d)
+    {
+      return view.given(d).shape.name == "stl" ? mean_normal(*view.scene.dies[d].surface())
+                                               : view.given(d).facing;
+    }
+
+    /// Whether a die moves at less than 45 degrees to what it faces; a die that looks to all sides does.
+    bool moves_as_it_faces(const Vec3 &velocity, const Vec3 &facing)
+    {
+      return !(facing.norm() > 0.5 && velocity * facing < std::sqrt(0.5) * velocity.norm() * facing.norm());
+    }
+
+    /// The direction in which the leading die presses: what it faces; or the way it moves, where its facets
+    /// tell only roughly what it faces, and where it presses with a side.
+    Vec3 pressing_direction(const View &view)
+    {
+      constexpr double   least    = 1e-2; // cosine of the angle between the two
+      const unsigned int lead     = view.process.leading_die;
+      const Vec3        &velocity = view.process.dies[lead].velocity;
+      const Vec3         normal   = facing(view, lead);
+      const bool is_rough = view.given(lead).shape.name == "stl" && moves_as_it_faces(velocity, normal);
+      return is_rough || velocity * normal < least * velocity.norm() * normal.norm()
+               ? velocity / velocity.norm()
+               : normal / normal.norm();
+    }
+
+    /// As closing_speed(), of the velocities' parts along a unit vector.
+    double closing_speed_along(const std::vector<DieState<double>> &dies, const Vec3 &way)
+    {
+      double speed = 0.;
+      for (std::size_t a = 0; a < dies.size(); ++a)
+      {
+        speed = std::max(speed, std::abs(dies[a].velocity * way));
+        for (std::size_t b = 0; b < a; ++b)
+          speed = std::max(speed, std::abs((dies[a].velocity - dies[b].velocity) * way));
+      }
+      return speed;
+    }
+
+    /// Whether a plane of symmetry across the way stands for the other die.
+    bool is_halved(const View &view)
+    {
+      const auto &patches = view.scene.mesh.patches;
+      return std::any_of(patches.begin(), patches.end(), [&](const Patch &patch) {
+        return patch.symmetry && std::abs(patch.symmetry->normal * view.way) > 1. - 1e-6;
+      });
+    }
+
+    /// The ways that the leading die and the nearest of those against it have to the billet.
+    double gaps_of(const View &view)
+    {
+      const MetalSurface metal    = metal_surface(view.scene.mesh, view.X);
+      const double       touching = touching_distance(view.scene, view.X);
+      const auto         gap      = [&](const unsigned int d, const Vec3 &way) {
+        const auto met =
+          first_meeting(view.scene.dies[d], view.process.dies[d].displacement, way, metal, touching);
+        return met ? met->travel : std::numeric_limits<double>::max();
+      };
+      double against = std::numeric_limits<double>::max();
+      for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
+        if (d != view.process.leading_die)
+          against = std::min(against, gap(d, -view.way));
+      const double ahead = gap(view.process.leading_die, view.way);
+      return (ahead < std::numeric_limits<double>::max() ? ahead : 0.) +
+             (is_halved(view) || against == std::numeric_limits<double>::max() ? 0. : against);
+    }
 
     View view_of(const Parameters           &parameters,
                  const Scene                &scene,
                  const Process<double>      &process,
                  const NodalVectors<double> &X)
     {
-      View               view{parameters, scene, process, X, {}, {}, {}};
-      const unsigned int lead       = process.leading_die;
+      View view{parameters, scene, process, X, {}, {}, {}};
       std::tie(view.low, view.high) = bounding_box(X);
-      view.way                      = process.dies[lead].velocity / process.speed();
-      view.path = process.stretch * parameters.press.stroke * (closing_speed(process.dies) / process.speed());
-      view.volume    = volume(scene.mesh.cells, X);
-      double nearest = std::numeric_limits<double>::max();
-      for (NodeIndex k = 0; k < X.size(); ++k)
-        if (scene.topology.is_on_surface(k))
-          nearest = std::min(nearest, view.leading().signed_distance(X[k], process.dies[lead].displacement));
-      view.gap = std::max(0., nearest);
+      view.way                      = pressing_direction(view);
+      view.speed                    = closing_speed_along(process.dies, view.way);
+      view.path                     = process.time(parameters.press.stroke) * view.speed;
+      view.volume                   = volume(scene.mesh.cells, X);
+      view.gaps                     = gaps_of(view);
       return view;
     }
 
@@ -93,27 +176,35 @@ namespace retroforge
       return friction_traction(die, 0.5 * rate * radius, flow_stress(law, rate), law);
     }
 
+    double or_one(const double copies)
+    {
+      return std::isfinite(copies) ? copies : 1.;
+    }
+
     /// Radius of the disc of the whole part.
     double radius_of(const View &view, const double height)
     {
-      const double copies = whole_part(view.scene.mesh, view.way).force;
-      return std::sqrt((std::isfinite(copies) ? copies : 1.) * view.volume / height / dealii::numbers::PI);
+      const double copies = or_one(whole_part(view.scene.mesh, view.way).force);
+      return std::sqrt(copies * view.volume / height / dealii::numbers::PI);
+    }
+
+    /// Diagonal of the cube that has the volume of the whole part, whatever its shape and its planes.
+    double size_of_whole(const View &view)
+    {
+      const double copies = or_one(whole_part(view.scene.mesh, view.way).copies);
+      return std::sqrt(3.) * std::cbrt(copies * view.volume);
     }
 
     double slab_force(const View &view, const double height)
     {
       const Process<double> &process = view.process;
-      const double           rate = closing_speed(process.dies) / height, radius = radius_of(view, height),
+      const double           rate = view.speed / height, radius = radius_of(view, height),
                    stress = flow_stress(process.law, rate), most = stress / std::sqrt(3.);
       const auto tau = [&](const DieState<double> &die) {
         return std::min(most, rim_friction(die, process.law, rate, radius));
       };
-      const bool halved =
-        std::any_of(view.scene.mesh.patches.begin(), view.scene.mesh.patches.end(), [&](const Patch &patch) {
-          return patch.symmetry && std::abs(patch.symmetry->normal * view.way) > 1. - 1e-6;
-        });
       double other = 0.;
-      for (unsigned int d = 0; d < process.dies.size() && !halved; ++d)
+      for (unsigned int d = 0; d < process.dies.size() && !is_halved(view); ++d)
         if (d != process.leading_die)
           other = std::max(other, tau(process.dies[d]));
       const double friction =
@@ -144,14 +235,17 @@ namespace retroforge
         coarse("Remeshing/element size", view.parameters.remeshing.element_size);
       for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
         if (const TriangleSurface *surface = view.scene.dies[d].surface())
-          if (const double ratio = surface->diagonal() / view.extent();
+          if (const double size = size_of_whole(view), ratio = surface->diagonal() / size;
               !(ratio >= small_die && ratio <= large_die))
+          {
+            const std::string &shape   = view.given(d).shape.name;
+            const bool         of_file = shape == "stl";
             warnings.push_back(
-              view.name(d) +
-              (view.given(d).shape.name == "stl" ? "/scale"
-                                                 : std::string("/shape = ") + view.given(d).shape.name) +
-              ": the die's extent is " + as_text(surface->diagonal()) + " mm, that of the billet " +
-              as_text(view.extent()) + " mm; a file in inches wants scale = 25.4, in metres 1000");
+              view.name(d) + (of_file ? "/scale" : "/shape = " + shape) + ": the die's extent is " +
+              as_text(surface->diagonal()) + " mm, that of a cube of the whole part's volume " +
+              as_text(size) + " mm; " +
+              (of_file ? "a file in inches wants scale = 25.4, in metres 1000" : "its measures are in mm"));
+          }
     }
 
     void warn_of_press(const View &view, const SceneEstimate &estimate, Warnings &warnings)
@@ -203,30 +297,14 @@ namespace retroforge
             "to 1 is usual");
     }
 
-    /// Mean normal of an open surface, short where its facets look to all sides.
-    Vec3 mean_normal(const TriangleSurface &surface)
-    {
-      Vec3   sum;
-      double areas = 0.;
-      for (const Triangle &facet : surface.triangles())
-      {
-        const auto &x      = surface.vertices();
-        const Vec3  vector = facet_vector(x[facet[0]], x[facet[1]], x[facet[2]]);
-        sum += vector;
-        areas += vector.norm();
-      }
-      return sum / areas;
-    }
-
     void warn_of_ways(const View &view, Warnings &warnings)
     {
       for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
       {
         const Vec3  &velocity = view.process.dies[d].velocity;
-        const bool   is_free  = view.given(d).shape.name == "stl"; // what such a die faces, its facets tell
-        const Vec3   normal   = is_free ? mean_normal(*view.scene.dies[d].surface()) : view.given(d).facing;
+        const Vec3   normal   = facing(view, d);
         const double along    = velocity * normal;
-        if (normal.norm() > 0.5 && along < std::sqrt(0.5) * velocity.norm() * normal.norm())
+        if (!moves_as_it_faces(velocity, normal))
           warnings.push_back(view.name(d) + "/velocity: the die moves at " +
                              as_text(std::acos(std::max(-1., along / (velocity.norm() * normal.norm()))) *
                                      180. / dealii::numbers::PI) +
@@ -234,11 +312,11 @@ namespace retroforge
       }
     }
 
-    /// How far a surface and its mirror image are apart at the billet; 0 where it stands on one side of the
-    /// plane only, so that its image is another die.
+    /// How a die stands to a plane of symmetry, and how far a surface and its mirror image are apart at the
+    /// billet. Of a die on the model's side only, the image is another die.
     struct Asymmetry
     {
-      bool   spans    = false; ///< whether the die stands on both sides
+      bool   is_inside = false, is_outside = false; ///< whether there is a part of it on either side
       double distance = 0.;
       Vec3   place;
     };
@@ -248,7 +326,10 @@ namespace retroforge
       const Die             &die     = view.scene.dies[d];
       const TriangleSurface *surface = die.surface();
       if (!surface)
-        return {std::abs(view.given(d).facing * plane.normal) < 1e-6, 0., {}};
+      {
+        const bool spans = std::abs(view.given(d).facing * plane.normal) < 1e-6;
+        return {spans, spans, 0., {}};
+      }
       constexpr std::size_t most_samples = 5000;
       const Vec3           &displacement = view.process.dies[d].displacement;
       const double          size = view.extent(), near = 1e-2 * size;
@@ -256,13 +337,12 @@ namespace retroforge
       const auto           &x      = surface->vertices();
       const std::size_t     stride = x.size() / most_samples + 1;
       Asymmetry             found;
-      bool                  inside = false, outside = false;
       for (std::size_t v = 0; v < x.size(); v += stride)
       {
         const Vec3   at     = x[v] + displacement;
         const double beyond = (at - plane.point) * plane.normal;
-        inside |= beyond < -near;
-        outside |= beyond > near;
+        found.is_inside |= beyond < -near;
+        found.is_outside |= beyond > near;
         const Vec3 image = at - 2. * beyond * plane.normal, from = image - middle;
         if (!(beyond > near) || (from - (from * view.way) * view.way).norm() > 0.5 * size)
           continue;
@@ -273,7 +353,6 @@ namespace retroforge
           found.place    = at;
         }
       }
-      found.spans = inside && outside;
       return found;
     }
 
@@ -288,9 +367,13 @@ namespace retroforge
           const auto       &n        = plane.normal;
           const std::string where =
             "the symmetry plane of normal " + as_text(n[0]) + ", " + as_text(n[1]) + ", " + as_text(n[2]);
-          if (!found.spans)
+          if (!found.is_outside)
             continue;
-          if (std::abs(velocity * n) > 1e-6 * velocity.norm())
+          if (!found.is_inside)
+            warnings.push_back(view.name(d) + "/point: the die stands beyond " + where +
+                               " alone, where there is no metal: its mirror image, which would press, is no "
+                               "part of the model; move the die");
+          else if (std::abs(velocity * n) > 1e-6 * velocity.norm())
             warnings.push_back(view.name(d) + "/velocity: the die lies across " + where +
                                " and moves through it: whole part and model differ");
           else if (found.distance > 2e-2 * view.extent())
@@ -313,7 +396,7 @@ namespace retroforge
     constexpr double thinnest = 0.1; // of the height: dies of a cavity meet where flat ones would not
     const View       view     = view_of(parameters, scene, process, X);
     SceneEstimate    estimate;
-    estimate.speed       = closing_speed(process.dies);
+    estimate.speed       = view.speed;
     estimate.height      = height_along(X, view.way);
     estimate.strain_rate = estimate.speed / estimate.height;
     estimate.flow_stress = flow_stress(process.law, estimate.strain_rate);

@@ -8,6 +8,7 @@
 #include <retroforge/core/exception_message.h>
 #include <retroforge/core/told_error.h>
 #include <retroforge/core/version.h>
+#include <retroforge/geometry/triangle_surface.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/objective/box.h>
 #include <retroforge/output/results_folder.h>
@@ -85,6 +86,12 @@ namespace retroforge
     }
   }
 
+  bool SceneView::chooses_increments() const
+  {
+    std::string echo;
+    return Parameters::read(command_, echo).press.increments == 0;
+  }
+
   void SceneView::look()
   {
     summary_.case_file = command_.case_file;
@@ -98,8 +105,9 @@ namespace retroforge
     if (!parts_)
       return;
     const PressParameters &press = parts_->parameters.press;
-    summary_.press               = {parts_->leading_die, press.stroke, parts_->seconds, press.increments};
-    summary_.metal               = {parts_->parameters.material.law.K, parts_->parameters.material.law.m};
+    summary_.press               = {
+                    parts_->leading_die, press.stroke, parts_->seconds, press.increments, chooses_increments()};
+    summary_.metal = {parts_->parameters.material.law.K, parts_->parameters.material.law.m};
     describe_dies();
     if (!parts_->mesh)
       return;
@@ -186,13 +194,43 @@ namespace retroforge
                                                 : whole_volume(billet) / n_copies(billet.symmetry_cuts());
     }
 
-    double area_of(const TetMesh &mesh, const NodalVectors<double> &X, const unsigned int patch)
+    /// @param is_meant  of a face, whether it counts
+    double area_of(const TetMesh                                   &mesh,
+                   const NodalVectors<double>                      &X,
+                   const std::function<bool(const BoundaryFace &)> &is_meant)
     {
       double area = 0.;
       for (const BoundaryFace &face : mesh.faces)
-        if (const auto &[a, b, c] = face.nodes; face.patch == patch)
-          area += 0.5 * cross_product_3d(X[b] - X[a], X[c] - X[a]).norm();
+        if (is_meant(face))
+          area += 0.5 * facet_vector(X[face.nodes[0]], X[face.nodes[1]], X[face.nodes[2]]).norm();
       return area;
+    }
+
+    /// Of the faces whose corners all lie as near to a die as what touches.
+    double
+    contact_area(const Scene &scene, const Die &die, const Vec3 &displacement, const NodalVectors<double> &X)
+    {
+      const double touching = touching_distance(scene, X);
+      return area_of(scene.mesh, X, [&](const BoundaryFace &face) {
+        return !scene.mesh.patches[face.patch].symmetry &&
+               std::all_of(face.nodes.begin(), face.nodes.end(), [&](const NodeIndex k) {
+                 return die.signed_distance(X[k], displacement) <= touching;
+               });
+      });
+    }
+
+    /// Planes on whose inner side all vertices of a die stand.
+    std::vector<std::string>
+    planes_beside(const TetMesh &mesh, const TriangleSurface &surface, const Vec3 &displacement)
+    {
+      std::vector<std::string> names;
+      for (const Patch &patch : mesh.patches)
+        if (const auto &plane = patch.symmetry;
+            plane && std::all_of(surface.vertices().begin(), surface.vertices().end(), [&](const Vec3 &x) {
+              return (x + displacement - plane->point) * plane->normal < -surface.rounding();
+            }))
+          names.push_back(patch.name);
+      return names;
     }
 
     SceneSummary::Corners corners_of(NodalVectors<double> X, const Vec3 &displacement)
@@ -230,7 +268,8 @@ namespace retroforge
       if (const Patch &patch = mesh.patches[p]; patch.symmetry)
         billet.symmetry_planes.push_back({patch.name, patch.symmetry->point, patch.symmetry->normal});
       else
-        billet.patches.emplace_back(patch.name, area_of(mesh, X, p));
+        billet.patches.emplace_back(
+          patch.name, area_of(mesh, X, [p](const BoundaryFace &face) { return face.patch == p; }));
     summary_.billet = std::move(billet);
   }
 
@@ -248,11 +287,16 @@ namespace retroforge
       described.point         = given.point + state.displacement;
       described.facing        = given.facing;
       described.velocity      = state.velocity;
+      described.travel        = parts_->seconds * state.velocity;
       described.friction      = given.friction;
       described.friction_name = interface_law(state.interface_law).coefficient().name;
       described.leads         = die.name == parts_->leading_die;
       if (die.surface())
+      {
         described.extents = corners_of(die.surface()->vertices(), state.displacement);
+        if (parts_->mesh)
+          described.mirrored_by = planes_beside(*parts_->mesh, *die.surface(), state.displacement);
+      }
       summary_.dies.push_back(std::move(described));
     }
   }
@@ -274,7 +318,10 @@ namespace retroforge
         described.is_of_die = approach.overlap.is_of_die;
         described.frees     = approach.freeing;
       }
-      described.touches  = !described.overlap && approach.gap <= touching;
+      described.touches = !described.overlap && approach.gap <= touching;
+      if (described.touches)
+        described.contact_area =
+          contact_area(scene, parts_->dies[d], parts_->process.dies[d].displacement, parts_->X);
       const double speed = described.velocity.norm();
       if (!described.overlap && approach.meeting && approach.meeting->travel <= speed * seconds + touching)
       {

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <deal.II/base/mpi.h>
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_system.h>
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
-#include <deal.II/lac/sparsity_tools.h>
 
 #include <retroforge/discretization/discretization.h>
 #include <retroforge/element/fe_simplex_hat.h>
@@ -25,6 +22,14 @@ namespace retroforge
       if (pair == ElementPair::taylor_hood)
         return std::make_unique<FESystem<dim>>(FE_SimplexP<dim>(2), dim);
       return std::make_unique<FESystem<dim>>(FE_SimplexHat<dim>(), dim);
+    }
+
+    template <int dim>
+    ReferenceElement<dim> reference_element(const ElementPair pair)
+    {
+      const auto kinematics = dim == 3 ? Kinematics::three_dimensions : Kinematics::plane_strain;
+      return pair == ElementPair::mini ? mini_reference<dim>(1, kinematics)
+                                       : taylor_hood_reference<dim>(1, kinematics);
     }
 
     /// The cell's index in the mesh.
@@ -66,6 +71,8 @@ namespace retroforge
     const auto element = velocity_element<dim>(choice.pair);
     if (choice.pair == ElementPair::taylor_hood)
       number_middles(mesh);
+    if (choice.assembly == Assembly::quadrature)
+      quadrature_ = std::make_unique<const ReferenceElement<dim>>(reference_element<dim>(choice.pair));
     places_per_cell_ = element->dofs_per_cell / dim;
     nodes_per_cell_  = places_per_cell_ - (has_bubbles() ? 1 : 0);
 
@@ -305,36 +312,6 @@ namespace retroforge
   double Discretization<dim>::sum(const double x) const
   {
     return Utilities::MPI::sum(x, comm_);
-  }
-
-  template <int dim>
-  Rows<unsigned int> Discretization<dim>::velocity_pattern() const
-  {
-    // All components of two nodes meet where the first ones do. Symmetry does not thin the pattern out: node
-    // frames eliminate other components than the constraints.
-    Table<2, DoFTools::Coupling> first(dim, dim);
-    first.fill(DoFTools::none);
-    first(0, 0) = DoFTools::always;
-    IndexSet relevant;
-    DoFTools::extract_locally_relevant_dofs(velocity_dofs_, relevant);
-    DynamicSparsityPattern met(velocity_dofs_.n_dofs(), velocity_dofs_.n_dofs(), relevant);
-    DoFTools::make_sparsity_pattern(velocity_dofs_, first, met, AffineConstraints<double>(), true);
-    SparsityTools::distribute_sparsity_pattern(met, velocity_dofs_.locally_owned_dofs(), comm_, relevant);
-
-    const auto        &partitioner = *velocity_nodes_->partitioner();
-    Rows<unsigned int> pattern;
-    for (unsigned int i = 0; i < condensed_nodes_->n_owned(); ++i)
-    {
-      const auto row = partitioner.local_to_global(dim * i);
-      for (auto entry = met.begin(row); entry != met.end(row); ++entry)
-      {
-        const NodeIndex k = velocity_nodes_->node_at(partitioner.global_to_local(entry->column()) / dim);
-        if (k < condensed_nodes_->n())
-          pattern.entries.push_back(condensed_nodes_->index_at(condensed_nodes_->place(k)));
-      }
-      pattern.begin.push_back(pattern.entries.size());
-    }
-    return pattern;
   }
 
   template class Discretization<2>;

@@ -21,12 +21,21 @@ namespace retroforge
                       "deal.II's triangulation; or fully distributed, its own and those around them, which "
                       "takes less memory on many ranks. Results are the same. Units: none.",
                       dealii::Patterns::Selection("shared|fully distributed"));
+    prm.add_parameter(
+      "assembly",
+      assembly,
+      "How integrals over tetrahedra are computed: closed form, by code written for the pair of "
+      "elements; or quadrature, by code for any pair, whose derivatives are those of dual "
+      "numbers at the points, some ten times slower. Results are the same to rounding: one is "
+      "the check of the other. Units: none.",
+      dealii::Patterns::Selection("closed form|quadrature"));
     prm.leave_subsection();
   }
 
   DiscretizationChoice DiscretizationParameters::choice() const
   {
     return {element == "mini" ? ElementPair::mini : ElementPair::taylor_hood,
-            triangulation == "shared" ? TriangulationKind::shared : TriangulationKind::fully_distributed};
+            triangulation == "shared" ? TriangulationKind::shared : TriangulationKind::fully_distributed,
+            assembly == "closed form" ? Assembly::closed_form : Assembly::quadrature};
   }
 } // namespace retroforge

@@ -50,8 +50,8 @@ namespace retroforge
       with_pair(discretization, [&](const auto pair) {
         for (const CellIndex c : discretization.visited_cells())
         {
-          const auto geometry = geometry_of_cell(discretization, X, c);
-          rates.volume.push_back(std::max(geometry.volume, 0.));
+          const auto geometry = cell_geometry(pair.positions(discretization, X, c));
+          rates.volume.push_back(std::max(cell_volume(geometry), 0.));
           rates.at_corners.push_back(corner_strain_rates(geometry, pair.at_nodes(discretization, W, c)));
           for (Symmetric<double> &e : rates.at_corners.back())
             remove_trace(e);

@@ -16,8 +16,8 @@ namespace retroforge
     std::vector<Number> q = q_n;
     with_pair(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
-        q[c] +=
-          dt * cell_strain_rate(geometry_of_cell(discretization, X, c), pair.on_cell(discretization, W, c));
+        q[c] += dt * cell_strain_rate(cell_geometry(pair.positions(discretization, X, c)),
+                                      pair.on_cell(discretization, W, c));
     });
     return q;
   }
@@ -36,10 +36,10 @@ namespace retroforge
       {
         if (q_bar[c] == 0.)
           continue;
-        const auto                                       w          = pair.on_cell(discretization, W, c);
-        const auto                                       geometry   = geometry_of_cell(discretization, X, c);
-        typename decltype(pair)::template Values<double> w_bar      = {};
-        Four<Vec3>                                       cell_X_bar = {};
+        const auto w          = pair.on_cell(discretization, W, c);
+        const auto geometry   = cell_geometry(pair.positions(discretization, X, c));
+        auto       w_bar      = pair.no_values();
+        auto       cell_X_bar = pair.no_positions();
         dt_bar += q_bar[c] * cell_strain_rate(geometry, w);
         reverse_cell_strain_rate(geometry, w, dt * q_bar[c], w_bar, cell_X_bar);
         pair.add(discretization, w_bar, c, W_bar);

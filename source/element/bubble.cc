@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/element/bubble_search.h>
 #include <retroforge/element/mini_element.templates.h>
 #include <retroforge/element/mini_pack.templates.h>
 
@@ -7,18 +8,11 @@ namespace retroforge
 {
   namespace
   {
-    /// The functional of a cell as a function of its bubble alone, its gradient, and Newton's step.
-    template <typename T>
-    struct BubbleState
-    {
-      T value, residual[3], newton_step[3];
-    };
-
     template <typename T>
     RETROFORGE_INLINE void compute_state(const CellInput<T> &cell,
                                          const T (&grad_p)[3],
                                          const MaterialLaw<double> &law,
-                                         BubbleState<T>            &state)
+                                         BubbleState<3, T>         &state)
     {
       TangentInput<T> in;
       fill(cell, law, in);
@@ -46,75 +40,21 @@ namespace retroforge
     void compute_states(const CellInput<Pack> &cells,
                         const Pack (&grad_p)[3],
                         const MaterialLaw<double> &law,
-                        BubbleState<Pack>         &states)
+                        BubbleState<3, Pack>      &states)
     {
       compute_state(cells, grad_p, law, states);
     }
-
-    Vec3 vector(const double (&x)[3])
-    {
-      return Vec3({x[0], x[1], x[2]});
-    }
-
-    /// Newton's method for the bubble of one cell, with a search along each step: says where it wants to know
-    /// the state, is told, and goes on. So cells of a pack need not go on alike.
-    class BubbleSearch
-    {
-    public:
-      BubbleSearch() = default;
-      BubbleSearch(const CellValues<double> &w) : beta_(w.beta), trial_(w.beta)
-      {
-        for (unsigned int c = 1; c < 4; ++c)
-          spread_ += (w.V[c] - w.V[0]).norm();
-      }
-
-      bool        done() const { return done_; }
-      const Vec3 &beta() const { return beta_; }
-      /// Where the state is wanted.
-      const Vec3 &trial() const { return trial_; }
-
-      void take(const BubbleState<double> &state)
-      {
-        if (!first_ && scale_ > 1e-4 &&
-            state.value > value_ - 1e-4 * scale_ * decrement_ + 1e-14 * std::abs(value_))
-        {
-          scale_ *= 0.5;
-          trial_ = beta_ + scale_ * step_;
-          return;
-        }
-        beta_      = trial_;
-        value_     = state.value;
-        step_      = vector(state.newton_step);
-        decrement_ = -(step_ * vector(state.residual));
-        scale_     = 1.;
-        trial_     = beta_ + step_;
-        first_     = false;
-        // Convergence is quadratic: the error left by so small a step is below rounding.
-        const bool small = step_.norm() <= 1e-9 * beta_.norm() + 1e-16 * spread_;
-        done_            = !(decrement_ > 0.) || small || n_steps_++ == most_steps;
-        if (decrement_ > 0. && small)
-          beta_ = trial_;
-      }
-
-    private:
-      static constexpr unsigned int most_steps = 60;
-
-      Vec3         beta_, trial_, step_;
-      double       spread_ = 0., value_ = 0., decrement_ = 0., scale_ = 1.;
-      unsigned int n_steps_ = 0;
-      bool         first_ = true, done_ = false;
-    };
   } // namespace
 
   Vec3 solve_bubble(const CellGeometry<double> &geometry,
                     const CellValues<double>   &w,
                     const MaterialLaw<double>  &law)
   {
-    const Vec3          gradient  = pressure_gradient(geometry, w.P);
-    const double        grad_p[3] = {gradient[0], gradient[1], gradient[2]};
-    CellInput<double>   cell      = input_of(geometry, w.V, w.beta);
-    BubbleState<double> state;
-    BubbleSearch        search(w);
+    const Vec3             gradient  = pressure_gradient(geometry, w.P);
+    const double           grad_p[3] = {gradient[0], gradient[1], gradient[2]};
+    CellInput<double>      cell      = input_of(geometry, w.V, w.beta);
+    BubbleState<3, double> state;
+    BubbleSearch<3>        search(w.beta, w.V);
     while (!search.done())
     {
       for (unsigned int i = 0; i < 3; ++i)
@@ -129,18 +69,18 @@ namespace retroforge
                                           const std::array<CellValues<double>, n_lanes>   &w,
                                           const MaterialLaw<double>                       &law)
   {
-    CellInput<Pack>                   cells = input_of(geometry, w);
-    Pack                              grad_p[3];
-    std::array<BubbleSearch, n_lanes> searches;
+    CellInput<Pack>                      cells = input_of(geometry, w);
+    Pack                                 grad_p[3];
+    std::array<BubbleSearch<3>, n_lanes> searches;
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
     {
       const Vec3 gradient = pressure_gradient(geometry[lane], w[lane].P);
       for (unsigned int i = 0; i < 3; ++i)
         grad_p[i][lane] = gradient[i];
-      searches[lane] = BubbleSearch(w[lane]);
+      searches[lane] = BubbleSearch<3>(w[lane].beta, w[lane].V);
     }
-    BubbleState<Pack>   states;
-    BubbleState<double> state;
+    BubbleState<3, Pack>   states;
+    BubbleState<3, double> state;
     while (!std::all_of(searches.begin(), searches.end(), [](const auto &search) { return search.done(); }))
     {
       for (unsigned int lane = 0; lane < n_lanes; ++lane)

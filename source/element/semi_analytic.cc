@@ -6,17 +6,19 @@ namespace retroforge
 {
   namespace
   {
-    template <typename Scalar>
-    Four<Vec3> differences(const Four<Vec3> &X, const ShapeDerivatives &how, const Scalar &f)
+    /// @param f  of positions as X is
+    template <typename Positions, typename Scalar>
+    Positions
+    differences(const Positions &X, const double volume, const ShapeDerivatives &how, const Scalar &f)
     {
       const bool   central = how.method == ShapeDerivatives::Method::central;
-      const double step    = how.perturbation * std::cbrt(6. * std::abs(cell_geometry(X).volume));
+      const double step    = how.perturbation * std::cbrt(6. * std::abs(volume));
       const double here    = central ? 0. : f(X);
-      Four<Vec3>   slope;
-      for (unsigned int a = 0; a < 4; ++a)
+      Positions    slope   = X;
+      for (unsigned int a = 0; a < X.size(); ++a)
         for (unsigned int i = 0; i < 3; ++i)
         {
-          Four<Vec3> moved = X;
+          Positions moved = X;
           moved[a][i] += step;
           // The step as it was rounded, not as it was meant.
           const double plus = moved[a][i], there = f(moved);
@@ -48,6 +50,16 @@ namespace retroforge
         sum += r.P[a] * lambda.P[a];
       return sum;
     }
+
+    double contraction(const QuadratureValues<3, double> &r, const QuadratureValues<3, double> &lambda)
+    {
+      double sum = 0.;
+      for (unsigned int a = 0; a < r.V.size(); ++a)
+        sum += r.V[a] * lambda.V[a];
+      for (unsigned int a = 0; a < r.P.size(); ++a)
+        sum += r.P[a] * lambda.P[a];
+      return sum;
+    }
   } // namespace
 
   template <typename Values>
@@ -57,7 +69,7 @@ namespace retroforge
                                       const MaterialLaw<double> &law,
                                       const ShapeDerivatives    &how)
   {
-    return differences(X, how, [&](const Four<Vec3> &at) {
+    return differences(X, cell_geometry(X).volume, how, [&](const Four<Vec3> &at) {
       return contraction(cell_residual(cell_geometry(at), w, law), lambda);
     });
   }
@@ -69,8 +81,33 @@ namespace retroforge
                                          const double               weight,
                                          const ShapeDerivatives    &how)
   {
-    return differences(
-      X, how, [&](const Four<Vec3> &at) { return weight * cell_dissipation(cell_geometry(at), w, law); });
+    return differences(X, cell_geometry(X).volume, how, [&](const Four<Vec3> &at) {
+      return weight * cell_dissipation(cell_geometry(at), w, law);
+    });
+  }
+
+  CellVectors<3, double> difference_cell_residual(const QuadratureGeometry<3, double> &geometry,
+                                                  const QuadratureValues<3, double>   &w,
+                                                  const QuadratureValues<3, double>   &lambda,
+                                                  const MaterialLaw<double>           &law,
+                                                  const ShapeDerivatives              &how)
+  {
+    return differences(geometry.X, cell_volume(geometry), how, [&](const CellVectors<3, double> &at) {
+      const QuadratureGeometry<3, double> moved{geometry.element, at};
+      return contraction(cell_residual(moved, w, law), lambda);
+    });
+  }
+
+  CellVectors<3, double> difference_cell_dissipation(const QuadratureGeometry<3, double> &geometry,
+                                                     const QuadratureValues<3, double>   &w,
+                                                     const MaterialLaw<double>           &law,
+                                                     const double                         weight,
+                                                     const ShapeDerivatives              &how)
+  {
+    return differences(geometry.X, cell_volume(geometry), how, [&](const CellVectors<3, double> &at) {
+      const QuadratureGeometry<3, double> moved{geometry.element, at};
+      return weight * cell_dissipation(moved, w, law);
+    });
   }
 
 #define RETROFORGE_INSTANTIATE(Values)                                      \

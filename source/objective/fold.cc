@@ -18,7 +18,7 @@ namespace retroforge
     {
       const Scene &scene = view.stage.scene;
       return with_pair(scene.discretization, [&](const auto pair) -> Number {
-        return cell_strain_rate(geometry_of_cell(scene.discretization, view.stage.X, c),
+        return cell_strain_rate(cell_geometry(pair.positions(scene.discretization, view.stage.X, c)),
                                 pair.on_cell(scene.discretization, view.W, c));
       });
     }
@@ -28,16 +28,15 @@ namespace retroforge
     {
       const Scene &scene = view.stage.scene;
       with_pair(scene.discretization, [&](const auto pair) {
-        typename decltype(pair)::template Values<double> w_bar = {};
-        Four<Vec3>                                       X_bar = {};
-        reverse_cell_strain_rate(geometry_of_cell(scene.discretization, view.stage.X, c),
+        auto w_bar = pair.no_values();
+        auto X_bar = pair.no_positions();
+        reverse_cell_strain_rate(cell_geometry(pair.positions(scene.discretization, view.stage.X, c)),
                                  pair.on_cell(scene.discretization, view.W, c),
                                  weight,
                                  w_bar,
                                  X_bar);
         pair.add(scene.discretization, w_bar, c, bar.W);
-        for (unsigned int a = 0; a < 4; ++a)
-          bar.X[scene.mesh.cells[c][a]] += X_bar[a];
+        add_to_positions(scene.discretization, X_bar, c, bar.X);
       });
     }
 

@@ -1,130 +1,87 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/base/mpi.h>
+#include <deal.II/base/config.h>
+#include <deal.II/base/utilities.h>
 #include <deal.II/grid/reference_cell.h>
 
+#include <retroforge/element/cell_geometry.h>
 #include <retroforge/output/field_file.h>
 #include <retroforge/output/safe_file.h>
 
-#include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <sstream>
-#include <tuple>
 
 namespace retroforge
 {
   namespace
   {
-    namespace Interpretation = dealii::DataComponentInterpretation;
+    template <typename Number>
+    constexpr const char *vtk_type = nullptr;
+    template <>
+    constexpr const char *vtk_type<float> = "Float32";
+    template <>
+    constexpr const char *vtk_type<std::int32_t> = "Int32";
+    template <>
+    constexpr const char *vtk_type<std::uint8_t> = "UInt8";
 
-    /// Two runs of the same input write the same bytes.
-    dealii::DataOutBase::VtkFlags vtk_flags()
+#ifdef DEAL_II_WORDS_BIGENDIAN
+    constexpr const char *byte_order = "BigEndian";
+#else
+    constexpr const char *byte_order = "LittleEndian";
+#endif
+
+    /// As VTK has binary data within XML: the number of bytes, then these.
+    template <typename Number>
+    std::string encoded(const std::vector<Number> &values)
     {
-      dealii::DataOutBase::VtkFlags flags;
-      flags.print_date_and_time = false;
-      flags.compression_level   = dealii::DataOutBase::VtkFlags::best_speed;
-      return flags;
+      const std::uint32_t        n_bytes = values.size() * sizeof(Number);
+      std::vector<unsigned char> bytes(sizeof(n_bytes) + n_bytes);
+      std::memcpy(bytes.data(), &n_bytes, sizeof(n_bytes));
+      std::memcpy(bytes.data() + sizeof(n_bytes), values.data(), n_bytes);
+      return dealii::Utilities::encode_base64(bytes);
     }
-    /// The pieces of all ranks in their order, on the first. deal.II's gather() would compress once more what
-    /// is compressed.
-    std::string joined(const MPI_Comm comm, std::string piece)
+
+    template <typename Number>
+    void write_array(std::ostream              &out,
+                     const std::string         &name,
+                     const unsigned int         n_components,
+                     const std::vector<Number> &values)
     {
-      const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
-      if (dealii::Utilities::MPI::this_mpi_process(comm) > 0)
-      {
-        const int error = MPI_Send(piece.data(), piece.size(), MPI_CHAR, 0, 0, comm);
-        AssertThrowMPI(error);
-        return "";
-      }
-      for (unsigned int rank = 1; rank < n_ranks; ++rank)
-      {
-        MPI_Status status;
-        int        size  = 0;
-        int        error = MPI_Probe(rank, 0, comm, &status);
-        AssertThrowMPI(error);
-        error = MPI_Get_count(&status, MPI_CHAR, &size);
-        AssertThrowMPI(error);
-        const std::size_t begin = piece.size();
-        piece.resize(begin + size);
-        error = MPI_Recv(&piece[begin], size, MPI_CHAR, rank, 0, comm, MPI_STATUS_IGNORE);
-        AssertThrowMPI(error);
-      }
-      return piece;
+      out << "<DataArray type=\"" << vtk_type<Number> << "\" Name=\"" << name << "\" NumberOfComponents=\""
+          << n_components << "\" format=\"binary\">" << encoded(values) << "</DataArray>\n";
     }
   } // namespace
 
-  namespace
-  {
-    template <int dim>
-    std::vector<std::array<NodeIndex, dim + 1>> cells_of(const dealii::Triangulation<dim, 3> &triangulation)
-    {
-      std::vector<std::array<NodeIndex, dim + 1>> cells(triangulation.n_active_cells());
-      for (const auto &cell : triangulation.active_cell_iterators())
-        for (unsigned int a = 0; a <= dim; ++a)
-          cells[cell->active_cell_index()][a] = cell->vertex_index(a);
-      return cells;
-    }
-
-    /// Ends of the edges, in the order of deal.II's and VTK's quadratic simplices.
-    constexpr std::array<std::array<unsigned int, 2>, 6> edge_ends = {
-      {{{0, 1}}, {{1, 2}}, {{2, 0}}, {{0, 3}}, {{1, 3}}, {{2, 3}}}};
-  } // namespace
-
   template <int dim>
-  FieldFile<dim>::FieldFile(const NodalVectors<double> &X, const Cells &cells, const MPI_Comm comm)
-      : X_(X), cells_(cells), comm_(comm)
+  FieldFile<dim>::FieldFile(const NodalVectors<double>                        &X,
+                            const std::vector<std::array<NodeIndex, dim + 1>> &cells)
+      : n_nodes_(X.size()), n_cells_(cells.size()), n_points_per_cell_(dim + 1)
   {
-    const std::uint64_t rank    = dealii::Utilities::MPI::this_mpi_process(comm);
-    const std::uint64_t n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm), n = cells.size();
-    // Those with  c n_ranks / n = rank.
-    first_ = (rank * n + n_ranks - 1) / n_ranks;
-    last_  = ((rank + 1) * n + n_ranks - 1) / n_ranks;
-  }
-
-  template <int dim>
-  FieldFile<dim>::FieldFile(const dealii::Triangulation<dim, 3> &triangulation)
-      : FieldFile({triangulation.get_vertices().begin(), triangulation.get_vertices().end()},
-                  cells_of(triangulation),
-                  triangulation.get_communicator())
-  {
+    add_linear("", "", X);
+    X_ = std::move(point_data_.back());
+    point_data_.pop_back();
+    connectivity_.reserve(n_cells_ * n_points_per_cell_);
+    for (const auto &cell : cells)
+      connectivity_.insert(connectivity_.end(), cell.begin(), cell.end());
   }
 
   template <int dim>
   template <typename ValueAt>
-  void FieldFile<dim>::add(const std::string &name,
-                           const std::string &unit,
-                           const unsigned int n_points,
-                           const unsigned int n_components,
-                           const ValueAt     &value_at)
+  void FieldFile<dim>::add(std::vector<Array> &data,
+                           const std::string  &name,
+                           const std::string  &unit,
+                           const std::size_t   n,
+                           const unsigned int  n_components,
+                           const ValueAt      &value_at)
   {
-    const auto kind = n_components == 1   ? Interpretation::component_is_scalar
-                      : n_components == 3 ? Interpretation::component_is_part_of_vector
-                                          : Interpretation::component_is_part_of_tensor;
-    Array      array{unit.empty() ? name : name + " [" + unit + "]", kind, n_points, n_components, {}};
-    array.values.reserve(std::size_t(last_ - first_) * n_points * n_components);
-    for (CellIndex c = first_; c < last_; ++c)
-      for (unsigned int point = 0; point < n_points; ++point)
-        for (unsigned int component = 0; component < n_components; ++component)
-          array.values.push_back(value_at(c, point, component));
-    arrays_.push_back(std::move(array));
-    n_points_ = std::max(n_points_, n_points);
-  }
-
-  template <int dim>
-  double FieldFile<dim>::value(const Array       &array,
-                               const CellIndex    c,
-                               const unsigned int point,
-                               const unsigned int component) const
-  {
-    const auto at = [&](const unsigned int p) {
-      return array.values[(std::size_t(c - first_) * array.n_points + p) * array.n_components + component];
-    };
-    if (array.n_points == 1)
-      return at(0);
-    if (point < array.n_points)
-      return at(point);
-    const auto [a, b] = edge_ends[point - (dim + 1)];
-    return 0.5 * (at(a) + at(b));
+    Array array{unit.empty() ? name : name + " [" + unit + "]", n_components, {}};
+    array.values.reserve(n * n_components);
+    for (std::size_t i = 0; i < n; ++i)
+      for (unsigned int component = 0; component < n_components; ++component)
+        array.values.push_back(static_cast<float>(value_at(i, component)));
+    data.push_back(std::move(array));
   }
 
   template <int dim>
@@ -132,9 +89,8 @@ namespace retroforge
                                   const std::string         &unit,
                                   const std::vector<double> &values)
   {
-    add(name, unit, dim + 1, 1, [&](const CellIndex c, const unsigned int a, unsigned int) {
-      return values.at(cells_[c][a]);
-    });
+    AssertDimension(values.size(), n_nodes_);
+    add(point_data_, name, unit, n_nodes_, 1, [&](const std::size_t k, unsigned int) { return values[k]; });
   }
 
   template <int dim>
@@ -142,8 +98,9 @@ namespace retroforge
                                   const std::string          &unit,
                                   const NodalVectors<double> &values)
   {
-    add(name, unit, dim + 1, 3, [&](const CellIndex c, const unsigned int a, const unsigned int component) {
-      return values.at(cells_[c][a])[component];
+    AssertDimension(values.size(), n_nodes_);
+    add(point_data_, name, unit, n_nodes_, 3, [&](const std::size_t k, const unsigned int component) {
+      return values[k][component];
     });
   }
 
@@ -153,17 +110,29 @@ namespace retroforge
                                     const NodalVectors<double> &values,
                                     const MiddleNodes          *middles)
   {
-    const unsigned int n_points = middles ? dim + 1 + edge_ends.size() : dim + 1;
-    add(name,
-        unit,
-        n_points,
-        3,
-        [&](const CellIndex c, const unsigned int point, const unsigned int component) {
-          if (point <= dim)
-            return values.at(cells_[c][point])[component];
-          const auto [a, b] = edge_ends[point - (dim + 1)];
-          return values.at(middles->between(cells_[c][a], cells_[c][b]))[component];
-        });
+    if (middles)
+      make_quadratic(*middles);
+    AssertDimension(values.size(), n_nodes_ + edges_.size());
+    add(point_data_, name, unit, values.size(), 3, [&](const std::size_t k, const unsigned int component) {
+      return values[k][component];
+    });
+  }
+
+  template <int dim>
+  void FieldFile<dim>::make_quadratic(const MiddleNodes &middles)
+  {
+    // A triangle's edges are the first three of a tetrahedron's.
+    constexpr unsigned int          n_edges = dim * (dim + 1) / 2;
+    const std::vector<std::int32_t> corners = std::move(connectivity_);
+    edges_                                  = middles.ends();
+    n_points_per_cell_                      = dim + 1 + n_edges;
+    connectivity_.clear();
+    for (auto cell = corners.begin(); cell != corners.end(); cell += dim + 1)
+    {
+      connectivity_.insert(connectivity_.end(), cell, cell + dim + 1);
+      for (unsigned int e = 0; e < n_edges; ++e) // in VTK's order, too
+        connectivity_.push_back(middles.between(cell[tet_edge_corners[e][0]], cell[tet_edge_corners[e][1]]));
+    }
   }
 
   template <int dim>
@@ -171,7 +140,8 @@ namespace retroforge
                                     const std::string         &unit,
                                     const std::vector<double> &values)
   {
-    add(name, unit, 1, 1, [&](const CellIndex c, unsigned int, unsigned int) { return values.at(c); });
+    AssertDimension(values.size(), n_cells_);
+    add(cell_data_, name, unit, n_cells_, 1, [&](const std::size_t c, unsigned int) { return values[c]; });
   }
 
   template <int dim>
@@ -179,10 +149,11 @@ namespace retroforge
                                     const std::string                  &unit,
                                     const std::vector<SymmetricTensor> &values)
   {
+    AssertDimension(values.size(), n_cells_);
     // of SymmetricTensor: xx, yy, zz, yz, xz, xy
     constexpr unsigned int entry[9] = {0, 5, 4, 5, 1, 3, 4, 3, 2};
-    add(name, unit, 1, 9, [&](const CellIndex c, unsigned int, const unsigned int component) {
-      return values.at(c)[entry[component]];
+    add(cell_data_, name, unit, n_cells_, 9, [&](const std::size_t c, const unsigned int component) {
+      return values[c][entry[component]];
     });
   }
 
@@ -203,69 +174,50 @@ namespace retroforge
   }
 
   template <int dim>
-  dealii::DataOutBase::Patch<dim, 3> FieldFile<dim>::patch(const CellIndex c) const
+  void FieldFile<dim>::write_at_points(std::ostream &out, const Array &array) const
   {
-    unsigned int n_rows = 0;
-    for (const Array &array : arrays_)
-      n_rows += array.n_components;
-    dealii::DataOutBase::Patch<dim, 3> patch;
-    patch.reference_cell       = dealii::ReferenceCells::get_simplex<dim>();
-    patch.n_subdivisions       = n_points_ == dim + 1 ? 1 : 2;
-    patch.patch_index          = c - first_;
-    patch.points_are_available = true; // in the last rows
-    patch.data.reinit(n_rows + 3, n_points_);
-    for (unsigned int a = 0; a <= dim; ++a)
-      patch.vertices[a] = dealii::Point<3>(X_[cells_[c][a]]);
-    for (unsigned int point = 0; point < n_points_; ++point)
-    {
-      unsigned int row = 0;
-      for (const Array &array : arrays_)
-        for (unsigned int component = 0; component < array.n_components; ++component)
-          patch.data(row++, point) = value(array, c, point, component);
-      const dealii::Point<3> x = point <= dim ? patch.vertices[point]
-                                              : patch.vertices[edge_ends[point - (dim + 1)][0]] +
-                                                  0.5 * (patch.vertices[edge_ends[point - (dim + 1)][1]] -
-                                                         patch.vertices[edge_ends[point - (dim + 1)][0]]);
-      for (unsigned int d = 0; d < 3; ++d)
-        patch.data(row++, point) = x[d];
-    }
-    return patch;
+    const unsigned int n      = array.n_components;
+    std::vector<float> values = array.values;
+    if (values.size() == n_nodes_ * n)
+      for (const auto &[a, b] : edges_)
+        for (unsigned int component = 0; component < n; ++component)
+          values.push_back(0.5F * (values[a * n + component] + values[b * n + component]));
+    write_array(out, array.name, n, values);
   }
 
   template <int dim>
-  std::string FieldFile<dim>::piece() const
+  void FieldFile<dim>::write_cells(std::ostream &out) const
   {
-    if (first_ == last_)
-      return "";
-    std::vector<dealii::DataOutBase::Patch<dim, 3>> patches;
-    patches.reserve(last_ - first_);
-    for (CellIndex c = first_; c < last_; ++c)
-      patches.push_back(patch(c));
-    std::vector<std::string> names;
-    std::vector<
-      std::tuple<unsigned int, unsigned int, std::string, Interpretation::DataComponentInterpretation>>
-      ranges;
-    for (const Array &array : arrays_)
-    {
-      if (array.n_components > 1)
-        ranges.emplace_back(names.size(), names.size() + array.n_components - 1, array.name, array.kind);
-      names.insert(names.end(), array.n_components, array.name);
-    }
-    std::ostringstream out;
-    dealii::DataOutBase::write_vtu_main(patches, names, ranges, vtk_flags(), out);
-    return out.str();
+    std::vector<std::int32_t> ends(n_cells_);
+    for (std::size_t c = 0; c < n_cells_; ++c)
+      ends[c] = (c + 1) * n_points_per_cell_;
+    const auto         cell = dealii::ReferenceCells::get_simplex<dim>();
+    const std::uint8_t type = edges_.empty() ? cell.vtk_linear_type() : cell.vtk_quadratic_type();
+    out << "<Cells>\n";
+    write_array(out, "connectivity", 1, connectivity_);
+    write_array(out, "offsets", 1, ends);
+    write_array(out, "types", 1, std::vector<std::uint8_t>(n_cells_, type));
+    out << "</Cells>\n";
   }
 
   template <int dim>
-  void FieldFile<dim>::write(const std::string &file)
+  void FieldFile<dim>::write(const std::string &file) const
   {
-    const std::string pieces = joined(comm_, piece());
-    if (dealii::Utilities::MPI::this_mpi_process(comm_) > 0)
-      return;
     std::ostringstream out;
-    dealii::DataOutBase::write_vtu_header(out, vtk_flags());
-    out << planes_ << pieces;
-    dealii::DataOutBase::write_vtu_footer(out);
+    out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\""
+        << byte_order << "\">\n<UnstructuredGrid>\n"
+        << planes_ << "<Piece NumberOfPoints=\"" << n_nodes_ + edges_.size() << "\" NumberOfCells=\""
+        << n_cells_ << "\">\n<Points>\n";
+    write_at_points(out, X_);
+    out << "</Points>\n";
+    write_cells(out);
+    out << "<PointData>\n";
+    for (const Array &array : point_data_)
+      write_at_points(out, array);
+    out << "</PointData>\n<CellData>\n";
+    for (const Array &array : cell_data_)
+      write_array(out, array.name, array.n_components, array.values);
+    out << "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
     write_file(file, out.str());
   }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <deal.II/base/data_out_base.h>
+
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/mesh/whole_part.h>
 #include <retroforge/output/contact_fields.h>
@@ -97,6 +99,11 @@ namespace retroforge
       std::snprintf(text, sizeof text, "%06u", number);
       return text;
     }
+
+    std::string fields_file(const unsigned int increment)
+    {
+      return "fields_" + six_digits(increment) + ".vtu";
+    }
   } // namespace
 
   FieldWriter::FieldWriter(const MPI_Comm              comm,
@@ -105,7 +112,7 @@ namespace retroforge
                            const Process<double>      &process,
                            const TetMesh              &billet,
                            const NodalVectors<double> &X_0)
-      : comm_(comm)
+      : is_first_(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
       , directory_(directory)
       , model_(model)
       , process_(process)
@@ -115,12 +122,12 @@ namespace retroforge
   {
   }
 
-  void FieldWriter::write(const MPI_Comm comm, const std::string &file, const Workpiece &workpiece) const
+  void FieldWriter::write(const std::string &file, const Workpiece &workpiece) const
   {
     const TetMesh   &mesh = workpiece.mesh;
     const CellFields cells =
       cell_fields(mesh, workpiece.middles, workpiece.position, workpiece.V, workpiece.P, process_.law);
-    FieldFile<3> picture(workpiece.X, mesh.cells, comm);
+    FieldFile<3> picture(workpiece.X, mesh.cells);
     picture.add_linear("pressure", "MPa", workpiece.P);
     picture.add_velocity("velocity", "mm/s", workpiece.V, workpiece.middles);
     if (workpiece.displacement)
@@ -164,7 +171,7 @@ namespace retroforge
     while (!series_.empty() && series_.back().first == time)
       series_.pop_back();
     series_.emplace_back(time, file);
-    if (dealii::Utilities::MPI::this_mpi_process(comm_) != 0)
+    if (!is_first_)
       return;
     for (unsigned int d = 0; d < model_.dies.size(); ++d)
       series_.emplace_back(time, write_die(d, stroke, suffix, X));
@@ -173,21 +180,21 @@ namespace retroforge
     write_file(directory_ + "/fields.pvd", out.str());
   }
 
-  void FieldWriter::add_billet()
+  void FieldWriter::write_billet() const
   {
-    add_billet(comm_);
-  }
-
-  void FieldWriter::add_billet(const MPI_Comm comm)
-  {
-    const std::string          file = "fields_" + six_digits(0) + ".vtu";
-    const Discretization<3>    discretization(billet_, model_.discretization, comm);
+    const Discretization<3>    discretization(billet_, model_.discretization, MPI_COMM_SELF);
     const std::vector<double>  zero(billet_.n_nodes(), 0.), strain(billet_.n_cells(), 0.);
     const NodalVectors<double> still(billet_.n_nodes()), at_rest(discretization.condensed_nodes()->n());
     const ContactFields        contact{zero, zero, still};
-    write(
-      comm, file, {billet_, discretization.middles(), X_0_, X_0_, at_rest, zero, strain, &still, &contact});
-    add_step(0., file, six_digits(0), X_0_);
+    write(fields_file(0),
+          {billet_, discretization.middles(), X_0_, X_0_, at_rest, zero, strain, &still, &contact});
+  }
+
+  void FieldWriter::add_billet()
+  {
+    if (is_first_)
+      write_billet();
+    add_step(0., fields_file(0), six_digits(0), X_0_);
   }
 
   void FieldWriter::follow(const IncrementEvent &event)
@@ -201,23 +208,24 @@ namespace retroforge
 
   void FieldWriter::add(const IncrementEvent &event)
   {
-    const ForgingState &run     = event.state;
-    const Scene        &scene   = run.leg->scene;
-    const SolvedStage  &last    = event.solved.last();
-    const ContactFields contact = contact_fields(last.stage, last.W, last.active);
-    const std::string   number = six_digits(run.increments), file = "fields_" + number + ".vtu";
-    write(comm_,
-          file,
-          {scene.mesh,
-           scene.discretization.middles(),
-           run.X,
-           last.X,
-           run.solution.V,
-           run.solution.P,
-           run.strain,
-           &displacement_,
-           &contact});
-    add_step(run.stroke, file, number, run.X);
+    const ForgingState &run   = event.state;
+    const Scene        &scene = run.leg->scene;
+    const SolvedStage  &last  = event.solved.last();
+    if (is_first_)
+    {
+      const ContactFields contact = contact_fields(last.stage, last.W, last.active);
+      write(fields_file(run.increments),
+            {scene.mesh,
+             scene.discretization.middles(),
+             run.X,
+             last.X,
+             run.solution.V,
+             run.solution.P,
+             run.strain,
+             &displacement_,
+             &contact});
+    }
+    add_step(run.stroke, fields_file(run.increments), six_digits(run.increments), run.X);
   }
 
   void FieldWriter::add_failed(const ForgingState &state)
@@ -225,15 +233,17 @@ namespace retroforge
     // The increment that failed may have begun with a remeshing, which nobody was told of.
     const auto *displacement = state.remeshed.size() == n_remeshings_ ? &displacement_ : nullptr;
     if (series_.empty())
-      add_billet(MPI_COMM_SELF);
+    {
+      write_billet();
+      add_step(0., fields_file(0), six_digits(0), X_0_);
+    }
     const auto         &discretization = state.leg->scene.discretization;
     const LastSolution  at_rest        = {NodalVectors<double>(discretization.condensed_nodes()->n()),
                                           std::vector<double>(discretization.n_vertices(), 0.)};
     const LastSolution &solution       = state.solution.V.empty() ? at_rest : state.solution;
-    write(MPI_COMM_SELF,
-          "failed.vtu",
+    write("failed.vtu",
           {state.leg->scene.mesh,
-           state.leg->scene.discretization.middles(),
+           discretization.middles(),
            state.X,
            state.X,
            solution.V,

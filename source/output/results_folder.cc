@@ -85,12 +85,13 @@ namespace retroforge
                         const std::string              &parameters)
     {
       for (const auto &[parameter, value] : parameter_values(parameter_lines_of(parameters, "parameters")))
-        for (const std::string &name : names)
-          if (std::error_code ignored; fs::equivalent(value, fs::path(directory) / name, ignored))
-            throw Error(parameter,
-                        "is " + value + ", a result that --overwrite would remove",
-                        "a run does not remove what it reads",
-                        "write to another folder with --output DIR");
+        if (std::error_code ignored; fs::exists(value, ignored)) // which most are not
+          for (const std::string &name : names)
+            if (fs::equivalent(value, fs::path(directory) / name, ignored))
+              throw Error(parameter,
+                          "is " + value + ", a result that --overwrite would remove",
+                          "a run does not remove what it reads",
+                          "write to another folder with --output DIR");
     }
   } // namespace
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/discretization/triangulation.h>
+#include <deal.II/base/data_out_base.h>
+
 #include <retroforge/mesh/whole_part.h>
 #include <retroforge/output/die_pictures.h>
 #include <retroforge/output/field_file.h>
@@ -25,9 +26,7 @@ namespace retroforge
           gap[k]     = distance;
           nearest[k] = d + 1.;
         }
-    dealii::Triangulation<3> triangulation;
-    make_triangulation(mesh, X, triangulation);
-    FieldFile<3> picture(triangulation);
+    FieldFile<3> picture(X, mesh.cells);
     picture.add_linear("gap", "mm", gap);
     picture.add_linear("nearest_die", "", nearest);
     picture.add_symmetry_planes(symmetry_planes(mesh));
@@ -37,10 +36,9 @@ namespace retroforge
 
   void ScenePictures::add_die(const Die &die, const Vec3 &displacement, const NodalVectors<double> &around)
   {
-    dealii::Triangulation<2, 3> facets;
-    make_triangulation(die_picture(die, displacement, around), facets);
+    const TriangleSurface picture = die_picture(die, displacement, around);
     add("scene_die_" + die.name + ".vtu");
-    FieldFile<2>(facets).write(directory_ + "/" + files_.back().second);
+    FieldFile<2>(picture.vertices(), picture.triangles()).write(directory_ + "/" + files_.back().second);
   }
 
   void ScenePictures::write_list() const

@@ -63,11 +63,15 @@ namespace retroforge
                         {"point", in_json(die.point)},
                         {"facing", in_json(die.facing)},
                         {"velocity", in_json(die.velocity)},
+                        {"travel", in_json(die.travel)},
                         {"friction", die.friction},
                         {"leads", die.leads},
                         {"smallest_size", die.smallest_size},
                         {"gap", in_json(die.gap)},
-                        {"touches", die.touches}};
+                        {"touches", die.touches},
+                        {"mirrored_by", die.mirrored_by}};
+      if (die.touches)
+        json["contact_area"] = die.contact_area;
       if (die.overlap)
       {
         json["overlap"]               = in_json(*die.overlap);
@@ -114,26 +118,35 @@ namespace retroforge
       return text + " mm";
     }
 
+    /// The part's first, which is what one knows.
+    void list_volumes(std::ostream &out, const SceneSummary::Billet &billet)
+    {
+      const bool   has_measures = std::isfinite(billet.volume_of_shape);
+      const double shape        = has_measures ? billet.volume_of_shape : billet.volume;
+      if (!billet.whole.is_model() && !std::isnan(billet.whole.copies))
+        out << "volume of the part " << as_text(billet.whole.copies * shape) << " mm^3; the model is 1/"
+            << as_text(billet.whole.copies) << " of the part, " << as_text(shape) << " mm^3";
+      else
+        out << "volume " << as_text(shape) << " mm^3";
+      if (has_measures)
+      {
+        out << "; its mesh has " << as_text(billet.volume) << " mm^3";
+        const double percent = 100. * (billet.volume / shape - 1.);
+        if (std::abs(percent) >= 0.005) // what chords of round sides lack
+          out << " (" << as_text(std::round(100. * percent) / 100.) << " %)";
+      }
+      if (std::isnan(billet.whole.copies))
+        out << "; the symmetry planes bound no whole part";
+    }
+
     void list(std::ostream &out, const SceneSummary::Billet &billet)
     {
       out << "  billet, " << billet.shape << "\n    " << range(billet.extents) << "\n    " << billet.n_nodes
           << " nodes, " << billet.n_cells << " tetrahedra; edges of the surface from "
           << rounded_text(billet.shortest_edge, 3) << " to " << rounded_text(billet.longest_edge, 3)
           << " mm, wanted " << rounded_text(billet.element_size, 3) << " mm; smallest angle "
-          << rounded_text(billet.smallest_angle, 3) << " degrees\n    volume of the mesh "
-          << as_text(billet.volume) << " mm^3";
-      if (std::isfinite(billet.volume_of_shape))
-      {
-        out << ", of the shape " << as_text(billet.volume_of_shape) << " mm^3";
-        const double percent = 100. * (billet.volume / billet.volume_of_shape - 1.);
-        if (std::abs(percent) >= 0.005) // what chords of round sides lack
-          out << " (" << as_text(std::round(100. * percent) / 100.) << " %)";
-      }
-      if (std::isnan(billet.whole.copies))
-        out << "; the symmetry planes bound no whole part";
-      else if (!billet.whole.is_model())
-        out << "; 1/" << as_text(billet.whole.copies) << " of the part, which has "
-            << as_text(billet.whole.copies * billet.volume) << " mm^3";
+          << rounded_text(billet.smallest_angle, 3) << " degrees\n    ";
+      list_volumes(out, billet);
       out << "\n    patches:";
       for (const auto &[name, area] : billet.patches)
         out << (name == billet.patches.front().first ? " " : ", ") << name << " (" << as_text(area)
@@ -153,7 +166,8 @@ namespace retroforge
             << (die.frees.norm() > 0. ? "; free when the die moves by " + point(die.frees) + " mm" : "")
             << '\n';
       else if (die.touches)
-        out << "    touches the billet at the start, at " << point(die.gap.place) << '\n';
+        out << "    touches the billet at the start, at " << point(die.gap.place)
+            << (die.contact_area > 0. ? ", on " + rounded_text(die.contact_area, 4) + " mm^2" : "") << '\n';
       else if (std::isfinite(die.gap.distance))
         out << "    stands " << as_text(die.gap.distance) << " mm away from the billet, nearest to "
             << point(die.gap.place) << '\n';
@@ -181,7 +195,10 @@ namespace retroforge
           out << (die.moves_away ? "; moves away from the billet"
                                  : "; does not touch the billet, as that stands now, within the stroke");
       }
-      out << '\n';
+      if (die.extents)
+        out << "; ends " << point(die.travel) << " mm from there\n";
+      else
+        out << "; ends through " << point(die.point + die.travel) << '\n';
     }
 
     void list(std::ostream &out, const SceneSummary::Die &die, const bool with_billet)
@@ -192,6 +209,9 @@ namespace retroforge
         out << "    " << range(*die.extents) << ", " << die.n_facets << " facets\n";
       else
         out << "    through " << point(die.point) << ", facing " << point(die.facing) << '\n';
+      for (const std::string &plane : die.mirrored_by)
+        out << "    all of it on one side of plane `" << plane
+            << "': the whole part has its mirror image, too, as another die\n";
       if (with_billet)
         list_place(out, die);
       list_path(out, die, with_billet);
@@ -210,8 +230,9 @@ namespace retroforge
       out << "  press\n    stroke " << as_text(press.stroke) << " mm of die " << press.leading_die << ", "
           << as_text(press.seconds) << " s";
       if (press.increments > 0) // else they follow from the billet
-        out << "; " << press.increments << " increments of " << as_text(press.stroke / press.increments)
-            << " mm, " << as_text(press.seconds / press.increments) << " s each";
+        out << "; " << press.increments << " increments" << (press.is_free ? " (chosen by the program)" : "")
+            << " of " << as_text(press.stroke / press.increments) << " mm, "
+            << as_text(press.seconds / press.increments) << " s each";
       out << '\n';
     }
 
@@ -222,7 +243,9 @@ namespace retroforge
           << rounded_text(estimate.stress, 3) << " MPa\n    force on the whole part "
           << rounded_text(estimate.first_force, 3) << " N where the dies first press, "
           << rounded_text(estimate.final_force, 3)
-          << " N after the stroke: to a factor of two in open upsetting, more with flash\n";
+          << " N after the stroke:\n    to a factor of two in open upsetting; metal that a bore or a cavity "
+             "holds "
+             "together, and flash, take three times as much and more\n";
     }
   } // namespace
 
@@ -246,7 +269,8 @@ namespace retroforge
       json["press"] = {{"leading_die", press->leading_die},
                        {"stroke", press->stroke},
                        {"seconds", press->seconds},
-                       {"increments", press->increments}};
+                       {"increments", press->increments},
+                       {"increments_chosen", press->is_free}};
     if (estimate)
       json["estimate"] = {{"name", estimate->name},
                           {"speed", estimate->speed},

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/discretization/triangulation.h>
 #include <retroforge/mesh/whole_part.h>
 #include <retroforge/output/field_file.h>
 #include <retroforge/output/sensitivity.h>
@@ -27,9 +26,7 @@ namespace retroforge
                          const std::vector<Die>     &dies,
                          const std::vector<Judged>  &judged)
   {
-    dealii::Triangulation<3> initial;
-    make_triangulation(billet, X_0, initial);
-    FieldFile<3> of_billet(initial);
+    FieldFile<3> of_billet(X_0, billet.cells);
     for (const Judged &objective : judged)
       of_billet.add_linear("d" + as_identifier(objective.name) + "_dX0", "", objective.shape.X_0);
     of_billet.add_symmetry_planes(symmetry_planes(billet));
@@ -37,9 +34,7 @@ namespace retroforge
     for (std::size_t d = 0; d < dies.size(); ++d)
       if (const TriangleSurface *surface = dies[d].surface())
       {
-        dealii::Triangulation<2, 3> facets;
-        make_triangulation(*surface, facets);
-        FieldFile<2> of_die(facets);
+        FieldFile<2> of_die(surface->vertices(), surface->triangles());
         for (const Judged &objective : judged)
           of_die.add_linear("d" + as_identifier(objective.name) + "_dXdie", "", objective.shape.dies[d]);
         of_die.write(directory + "/sensitivity_die_" + dies[d].name + ".vtu");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/solver/saddle_matrix.h>
+#include <retroforge/solver/velocity_pattern.h>
 
 #include <map>
 
@@ -97,7 +98,7 @@ namespace retroforge
   {
     const auto              &discretization = scene_.discretization;
     const NodeRange         &v = velocities_.range(), &p = pressures_.range();
-    const Rows<unsigned int> met = discretization.velocity_pattern();
+    const Rows<unsigned int> met = velocity_pattern(discretization);
     const auto pattern           = [](const NodeRange &rows, const NodeRange &columns, const auto &of_rows) {
       return std::make_shared<const NodePattern>(rows, columns, of_rows);
     };

@@ -64,8 +64,9 @@ namespace retroforge
     with_pair(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.visited_cells())
         pair.add(discretization,
-                 cell_residual(
-                   geometry_of_cell(discretization, X, c), pair.on_cell(discretization, W, c), physics.law),
+                 cell_residual(cell_geometry(pair.positions(discretization, X, c)),
+                               pair.on_cell(discretization, W, c),
+                               physics.law),
                  c,
                  r);
     });
@@ -83,8 +84,9 @@ namespace retroforge
     std::pair<Number, Number> power{Number(0.), Number(0.)};
     with_pair(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
-        power.first += cell_dissipation(
-          geometry_of_cell(discretization, X, c), pair.on_cell(discretization, W, c), physics.law);
+        power.first += cell_dissipation(cell_geometry(pair.positions(discretization, X, c)),
+                                        pair.on_cell(discretization, W, c),
+                                        physics.law);
     });
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (discretization.owns(contact.pairs[p].point.nodes[0]))
@@ -104,11 +106,10 @@ namespace retroforge
     with_pair(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.visited_cells())
       {
-        const auto   geometry = geometry_of_cell(discretization, stage.X, c);
+        const auto   geometry = cell_geometry(pair.positions(discretization, stage.X, c));
         const auto   w        = pair.on_cell(discretization, W, c);
         const auto   r        = cell_residual(geometry, w, stage.physics.law);
-        const auto   rates    = cell_strain_rates(geometry, w);
-        const double flow_c   = 0.25 * geometry.volume * 0.25 * (rates[0] + rates[1] + rates[2] + rates[3]);
+        const double flow_c   = 0.25 * cell_volume(geometry) * cell_strain_rate(geometry, w);
         for (unsigned int a = 0; a < r.V.size(); ++a)
           force[discretization.velocity_places(c)[a]] += r.V[a].norm();
         for (unsigned int a = 0; a < 4; ++a)
@@ -137,7 +138,15 @@ namespace retroforge
     const Discretization<3> &discretization = stage.scene.discretization;
     if (!discretization.has_bubbles())
       return;
-    const auto                               &visited = discretization.visited_cells();
+    const auto &visited = discretization.visited_cells();
+    if (discretization.quadrature())
+    {
+      const QuadraturePair pair{discretization.quadrature()};
+      for (const CellIndex c : visited)
+        MiniPair::bubble(discretization, W, c) = solve_bubble(
+          pair.positions(discretization, stage.X, c), pair.on_cell(discretization, W, c), stage.physics.law);
+      return;
+    }
     std::array<CellGeometry<double>, n_lanes> geometry;
     std::array<CellValues<double>, n_lanes>   w;
     for (std::size_t begin = 0; begin < visited.size(); begin += n_lanes)
@@ -173,10 +182,10 @@ namespace retroforge
     with_pair(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
       {
-        const auto      X        = positions_of_cell(discretization, stage.X, c);
-        const auto      w        = pair.on_cell(discretization, view.W, c);
-        const auto      lambda_c = pair.on_cell(discretization, lambda, c);
-        CellSensitivity s        = reverse_cell_residual(cell_geometry(X), w, lambda_c, stage.physics.law);
+        const auto X        = pair.positions(discretization, stage.X, c);
+        const auto w        = pair.on_cell(discretization, view.W, c);
+        const auto lambda_c = pair.on_cell(discretization, lambda, c);
+        auto       s        = reverse_cell_residual(cell_geometry(X), w, lambda_c, stage.physics.law);
         if (bar.shape.method != ShapeDerivatives::Method::exact)
           s.X = difference_cell_residual(X, w, lambda_c, stage.physics.law, bar.shape);
         add_to_positions(discretization, s.X, c, bar.X);
@@ -202,11 +211,10 @@ namespace retroforge
     with_pair(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
       {
-        const auto                                       X = positions_of_cell(discretization, stage.X, c);
-        const auto                                       w = pair.on_cell(discretization, view.W, c);
-        typename decltype(pair)::template Values<double> w_bar = {};
-        CellSensitivity                                  s =
-          reverse_cell_dissipation(cell_geometry(X), w, stage.physics.law, deformation, w_bar);
+        const auto X     = pair.positions(discretization, stage.X, c);
+        const auto w     = pair.on_cell(discretization, view.W, c);
+        auto       w_bar = pair.no_values();
+        auto       s = reverse_cell_dissipation(cell_geometry(X), w, stage.physics.law, deformation, w_bar);
         if (bar.shape.method != ShapeDerivatives::Method::exact)
           s.X = difference_cell_dissipation(X, w, stage.physics.law, deformation, bar.shape);
         add_to_positions(discretization, s.X, c, bar.X);

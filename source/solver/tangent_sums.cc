@@ -14,10 +14,43 @@ namespace retroforge
     /// Of edge length h, in h^3: a regular tetrahedron has the volume h^3 / (6 sqrt 2).
     constexpr double regular_tetrahedra = 8.5;
 
+    /// Into one lane of a pack, of the blocks that both pairs have.
+    template <typename Blocks>
+    void fill_lane(const QuadratureTangent<3> &t, const unsigned int lane, Blocks &blocks)
+    {
+      for (unsigned int a = 0; a < t.A.n_rows(); ++a)
+        for (unsigned int i = 0; i < 3; ++i)
+        {
+          for (unsigned int b = 0; b < t.A.n_cols(); ++b)
+            for (unsigned int j = 0; j < 3; ++j)
+              blocks.A[a][b][i][j][lane] = t.A(a, b)[i][j];
+          for (unsigned int b = 0; b < 4; ++b)
+            blocks.B[a][b][i][lane] = t.B(a, b)[i];
+        }
+      blocks.viscosity[lane] = t.viscosity;
+      blocks.volume[lane]    = t.volume;
+    }
+
+    BubbleElimination<double> elimination_of(const EliminatedBubble<3> &bubble)
+    {
+      BubbleElimination<double> elimination;
+      for (unsigned int i = 0; i < 3; ++i)
+      {
+        for (unsigned int a = 0; a < 4; ++a)
+        {
+          elimination.Pb[a][i] = bubble.Pb[a][i];
+          for (unsigned int j = 0; j < 3; ++j)
+            elimination.Vb[a][i][j] = bubble.Vb[a][i][j];
+        }
+        for (unsigned int j = 0; j < 3; ++j)
+          elimination.M[i][j] = bubble.M[i][j];
+      }
+      return elimination;
+    }
+
     /// Tangents of n_lanes cells of the mini element, with what the elimination of their bubbles needs.
     struct MiniTangents : TangentPack
     {
-      using Pair                            = MiniPair;
       static constexpr unsigned int n_nodes = 4;
 
       void compute(const std::array<CellGeometry<double>, n_lanes> &geometry,
@@ -32,6 +65,23 @@ namespace retroforge
         compute_cell_tangents(geometry, w, law, linearisation, *this, of_lanes);
       }
 
+      void compute(const std::array<QuadratureGeometry<3, double>, n_lanes> &geometry,
+                   const std::array<QuadratureValues<3, double>, n_lanes>   &w,
+                   const MaterialLaw<double>                                &law,
+                   const Linearisation                                       linearisation,
+                   BubbleElimination<double>                                *elimination)
+      {
+        for (unsigned int lane = 0; lane < n_lanes; ++lane)
+        {
+          QuadratureTangent<3> t = cell_tangent(geometry[lane], w[lane], law, linearisation);
+          elimination[lane]      = elimination_of(eliminate_bubble(t));
+          fill_lane(t, lane, *this);
+          for (unsigned int a = 0; a < 4; ++a)
+            for (unsigned int b = 0; b < 4; ++b)
+              C[a][b][lane] = t.C(a, b);
+        }
+      }
+
       RETROFORGE_INLINE Pack of_pressures(const unsigned int a, const unsigned int b) const
       {
         return C[a][b];
@@ -40,7 +90,6 @@ namespace retroforge
 
     struct TaylorHoodTangents : TaylorHoodPack
     {
-      using Pair                            = TaylorHoodPair;
       static constexpr unsigned int n_nodes = 10;
 
       void compute(const std::array<CellGeometry<double>, n_lanes>     &geometry,
@@ -50,6 +99,16 @@ namespace retroforge
                    BubbleElimination<double> *)
       {
         compute_cell_tangents(geometry, w, law, linearisation, *this);
+      }
+
+      void compute(const std::array<QuadratureGeometry<3, double>, n_lanes> &geometry,
+                   const std::array<QuadratureValues<3, double>, n_lanes>   &w,
+                   const MaterialLaw<double>                                &law,
+                   const Linearisation                                       linearisation,
+                   BubbleElimination<double> *)
+      {
+        for (unsigned int lane = 0; lane < n_lanes; ++lane)
+          fill_lane(cell_tangent(geometry[lane], w[lane], law, linearisation), lane, *this);
       }
 
       RETROFORGE_INLINE Pack of_pressures(unsigned int, unsigned int) const { return Pack{}; }
@@ -153,18 +212,19 @@ namespace retroforge
     }
   }
 
-  template <typename Tangents>
-  void TangentSums::add_cells(const Stage<double> &stage,
+  template <typename Tangents, typename Pair>
+  void TangentSums::add_cells(const Pair          &pair,
+                              const Stage<double> &stage,
                               const Field<double> &W,
                               const Linearisation  linearisation)
   {
-    using Pair                        = typename Tangents::Pair;
     const auto        &discretization = scene_.discretization;
     const auto        &visited        = discretization.visited_cells();
     const unsigned int pack_width     = Tangents::n_nodes * Tangents::n_nodes * n_lanes;
     double             log_viscosity = 0., volume = 0.;
 
-    std::array<CellGeometry<double>, n_lanes>                   geometry;
+    using Geometry = std::decay_t<decltype(cell_geometry(pair.positions(discretization, stage.X, 0)))>;
+    std::array<Geometry, n_lanes>                               geometry;
     std::array<typename Pair::template Values<double>, n_lanes> w;
     Tangents                                                    tangents;
     for (unsigned int pack = 0; pack < n_packs(discretization); ++pack)
@@ -174,8 +234,8 @@ namespace retroforge
       {
         // Lanes without a cell repeat the last one.
         const CellIndex c = visited[begin + std::min(lane, n - 1)];
-        geometry[lane]    = geometry_of_cell(discretization, stage.X, c);
-        w[lane]           = Pair::on_cell(discretization, W, c);
+        geometry[lane]    = cell_geometry(pair.positions(discretization, stage.X, c));
+        w[lane]           = pair.on_cell(discretization, W, c);
       }
       tangents.compute(geometry,
                        w,
@@ -200,9 +260,14 @@ namespace retroforge
   {
     std::fill(blocks_.begin(), blocks_.end(), Block{});
     std::fill(schur_.begin(), schur_.end(), 0.);
-    if (scene_.discretization.pair() == ElementPair::mini)
-      add_cells<MiniTangents>(stage, W, linearisation);
-    else
-      add_cells<TaylorHoodTangents>(stage, W, linearisation);
+    with_pair(scene_.discretization, [&](const auto &pair) {
+      // By quadrature, too, either pair's tangents are those that its blocks are made for.
+      using Pair = std::decay_t<decltype(pair)>;
+      if constexpr (!std::is_same_v<Pair, TaylorHoodPair>)
+        if (scene_.discretization.pair() == ElementPair::mini)
+          return add_cells<MiniTangents>(pair, stage, W, linearisation);
+      if constexpr (!std::is_same_v<Pair, MiniPair>)
+        add_cells<TaylorHoodTangents>(pair, stage, W, linearisation);
+    });
   }
 } // namespace retroforge

@@ -77,23 +77,18 @@ def array(name, values, encoding):
             f'format="{"ascii" if encoding == "ascii" else "binary"}">{text}</DataArray>\n')
 
 
-def write_vtu(path, points, cells, point_data, cell_data, encoding, n_pieces=1):
-    """@param n_pieces  that the cells are shared out to; each piece has all points"""
+def write_vtu(path, points, cells, point_data, cell_data, encoding):
     def block(tag, arrays):
         return f"<{tag}>" + "".join(array(name, values, encoding) for name, values in arrays.items()) + f"</{tag}>\n"
 
-    def piece(chosen):
-        n, corners = cells[chosen].shape
-        return (f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{n}">\n' + block("Points", {"points": points})
-                + block("Cells", {"connectivity": cells[chosen].astype("i8").reshape(-1), "offsets": corners * np.arange(1, n + 1),
-                                  "types": np.full(n, {3: 5, 4: 10, 10: 24}[corners], "u1")})
-                + block("PointData", point_data) + block("CellData", {name: values[chosen] for name, values in cell_data.items()})
-                + "</Piece>")
+    n, corners = cells.shape
     compressor = ' compressor="vtkZLibDataCompressor"' if encoding == "zlib" else ""
     path.write_text(
         f'<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian"{compressor}>'
-        '<UnstructuredGrid>' + "".join(piece(chosen) for chosen in np.array_split(np.arange(len(cells)), n_pieces))
-        + "</UnstructuredGrid></VTKFile>\n", encoding="utf-8")
+        f'<UnstructuredGrid><Piece NumberOfPoints="{len(points)}" NumberOfCells="{n}">\n' + block("Points", {"points": points})
+        + block("Cells", {"connectivity": cells.astype("i8").reshape(-1), "offsets": corners * np.arange(1, n + 1),
+                          "types": np.full(n, {3: 5, 4: 10, 10: 24}[corners], "u1")})
+        + block("PointData", point_data) + block("CellData", cell_data) + "</Piece></UnstructuredGrid></VTKFile>\n", encoding="utf-8")
 
 
 def write_fields(directory, n):

@@ -27,11 +27,10 @@ class Report(ScratchTest):
         for encoding in ("ascii", "binary", "zlib"):
             with self.subTest(encoding=encoding):
                 path = self.root / "a.vtu"
-                # each cell with nodes of its own, as deal.II's DataOut writes
-                synthetic_run.write_vtu(path, points[cells].reshape(-1, 3), np.arange(cells.size).reshape(-1, 4),
-                                        {"x": points[cells].reshape(-1, 3)}, {"c": np.arange(len(cells)) * 1.0}, encoding)
+                synthetic_run.write_vtu(path, points, cells, {"x": points}, {"c": np.arange(len(cells)) * 1.0}, encoding)
                 mesh = vtu.read(path)
-                self.assertEqual(len(mesh.points), len(points))
+                np.testing.assert_array_equal(mesh.points, points)
+                np.testing.assert_array_equal(mesh.cells, cells)
                 np.testing.assert_array_equal(mesh.point_data["x"], mesh.points)
                 np.testing.assert_array_equal(mesh.cell_data["c"], np.arange(len(cells)))
                 surface = mesh.surface()
@@ -41,23 +40,31 @@ class Report(ScratchTest):
                 outward = np.einsum("ij,ij->i", areas, surface.to_triangles(surface.points) - synthetic_run.SIDE / 2)
                 self.assertGreater(outward.min(), 0)
 
-    def test_pieces_of_quadratic_cells(self):
-        """All fields are at points: those of nodes have one value at each place, those of cells at the points of one cell."""
+    def test_quadratic_cells(self):
+        """The middles of the edges are points behind the corners, and left out."""
         points, cells = synthetic_run.cube(2)
-        edges = np.array([(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)])
-        places = np.concatenate([points[cells], points[cells][:, edges].mean(axis=2)], axis=1).reshape(-1, 3)
-        number = np.repeat(np.arange(len(cells)) * 1.0, 10)
-        synthetic_run.write_vtu(self.root / "a.vtu", places, np.arange(len(places)).reshape(-1, 10),
-                                {"x": places, "number": number, "tensor": number[:, None] * np.arange(9), "same": 0 * number,
-                                 "neither": np.arange(len(places)) * 1.0}, {}, "zlib", n_pieces=3)
+        edges, of_cells = np.unique(np.sort(cells[:, [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]].reshape(-1, 2), axis=1), axis=0,
+                                    return_inverse=True)
+        places = np.concatenate([points, points[edges].mean(axis=1)])
+        number = np.arange(len(cells)) * 1.0
+        synthetic_run.write_vtu(self.root / "a.vtu", places, np.concatenate([cells, len(points) + of_cells.reshape(-1, 6)], axis=1),
+                                {"x": places}, {"number": number, "tensor": number[:, None] * np.arange(9)}, "zlib")
         mesh = vtu.read(self.root / "a.vtu")
-        self.assertEqual((len(mesh.points), mesh.cells.shape), (len(points), cells.shape))
-        self.assertEqual((sorted(mesh.point_data), sorted(mesh.cell_data)), (["same", "x"], ["number", "same", "tensor"]))
-        np.testing.assert_array_equal(mesh.points[mesh.cells], points[cells])
-        np.testing.assert_array_equal(mesh.point_data["x"], mesh.points)
-        np.testing.assert_array_equal(mesh.cell_data["number"], np.arange(len(cells)))
-        np.testing.assert_array_equal(mesh.cell_data["tensor"], np.outer(np.arange(len(cells)), np.arange(9)))
+        self.assertEqual((list(mesh.point_data), list(mesh.cell_data)), (["x"], ["number", "tensor"]))
+        for found, wanted in ((mesh.points, points), (mesh.cells, cells), (mesh.point_data["x"], points), (mesh.cell_data["number"], number),
+                              (mesh.cell_data["tensor"], np.outer(number, np.arange(9)))):
+            np.testing.assert_array_equal(found, wanted)
         self.assertEqual(len(mesh.surface().triangles), 12 * 2**2)
+
+    def test_pieces(self):
+        """Of several the nodes in between would be counted twice."""
+        path = self.root / "a.vtu"
+        synthetic_run.write_vtu(path, *synthetic_run.cube(1), {}, {}, "ascii")
+        text = path.read_text()
+        piece = text[text.index("<Piece"):text.index("</Piece>") + len("</Piece>")]
+        path.write_text(text.replace(piece, piece + piece))
+        with self.assertRaisesRegex(ValueError, "2 pieces"):
+            vtu.read(path)
 
     def test_triangles(self):
         points, triangles = synthetic_run.dome(4, depth=0.0)
@@ -326,7 +333,7 @@ class Report(ScratchTest):
         for text in ("Material/consistency = 200", "Cut through the deepest overlap", "Red: inside a die.",
                      "1 mm inside the die, at (50, 50, 0); free when the die moves by (0, 0, -1) mm",
                      "2 mm away, nearest to (25, 25, 50)", "after 2 mm, at stroke 2 mm, at (25, 25, 50)", "(0, 0, -100) mm/s, leads",
-                     "126250; the mesh lacks 0.99 %", "4 times the model, 500000 mm³", "through (0, 0, 0), outward normal (-1, 0, 0)",
+                     "126250; the mesh lacks 0.99 %", "4 times the model, 505000 mm³", "through (0, 0, 0), outward normal (-1, 0, 0)",
                      "20 of 0.5 mm, 0.005 s each", "first press, whole part [kN]", '<td class="n">125</td>', "slab method", "case box.prm"):
             self.assertIn(text, page)
         page, pictures = self.scene(refused=False)

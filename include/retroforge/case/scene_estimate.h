@@ -11,15 +11,16 @@ namespace retroforge
   /// Forces are those of the slab method on a disc of the billet's volume V between flat dies, of the whole
   /// part:  F = A (sigma + sum over the faces of tau R / ((m + 3) h)),  A = V/h,  R^2 = A/pi,  with the
   /// traction of Norton friction at the rim, tau = alpha K (e R/2)^m, and at most that of sticking,
-  /// sigma/sqrt3. At m = 0 it is Siebel's  F = A sigma (1 + mu d/(3 h)).
+  /// sigma/sqrt3. At m = 0 it is Siebel's  F = A sigma (1 + mu d/(3 h)). What a bore or a cavity holds
+  /// together takes several times that.
   struct SceneEstimate
   {
-    double speed       = 0.; ///< at which the dies close [mm/s]
-    double height      = 0.; ///< of the model along the leading die's path [mm]
+    double speed  = 0.; ///< at which the dies close, in the direction in which they face the billet [mm/s]
+    double height = 0.; ///< of the model in that direction [mm]
     double strain_rate = 0.; ///< e = speed / height [1/s]
     double flow_stress = 0.; ///< sigma, of the law at that rate [MPa]
     double first_force = 0.; ///< where the dies first press [N]
-    double final_force = 0.; ///< after the stroke, if the metal is free to spread [N]
+    double final_force = 0.; ///< at the height that the dies leave it, if the metal is free to spread [N]
 
     /// What is out of all proportion, a sentence each, which begins with the name of the setting.
     std::vector<std::string> warnings;

@@ -45,7 +45,9 @@ namespace retroforge
 
     /// Who leads, how far and how long, while all dies are there.
     static void lead(Parts &parts);
-    void        warn(const std::vector<std::string> &warnings);
+    /// Whether the number of increments is left to the program.
+    bool chooses_increments() const;
+    void warn(const std::vector<std::string> &warnings);
 
     void estimate(const Scene &scene);
     void describe_billet();

@@ -9,6 +9,7 @@
 #include <retroforge/discretization/middle_nodes.h>
 #include <retroforge/discretization/node_numbering.h>
 #include <retroforge/discretization/triangulation.h>
+#include <retroforge/element/reference_element.h>
 
 #include <memory>
 
@@ -21,11 +22,19 @@ namespace retroforge
     taylor_hood ///< P2; P1  (element/taylor_hood.h)
   };
 
+  /// How integrals over cells are computed.
+  enum class Assembly
+  {
+    closed_form, ///< by the kernels of the pair
+    quadrature   ///< by those of any element (element/quadrature_cell.h), which are slower
+  };
+
   /// What a discretisation is made of, besides the mesh.
   struct DiscretizationChoice
   {
     ElementPair       pair          = ElementPair::mini;
     TriangulationKind triangulation = TriangulationKind::shared;
+    Assembly          assembly      = Assembly::closed_form;
   };
 
   /// A mesh and the spaces on it, as deal.II defines them: a triangulation whose cells METIS gives to ranks;
@@ -56,6 +65,8 @@ namespace retroforge
 
     ElementPair pair() const { return choice_.pair; }
     MPI_Comm    comm() const { return comm_; }
+    /// The pair at the points of a quadrature rule; null where cells are integrated in closed form.
+    const ReferenceElement<dim> *quadrature() const { return quadrature_.get(); }
 
     /// @name Nodes
     /// @{
@@ -118,9 +129,6 @@ namespace retroforge
     /// Sum over ranks of one number per rank.
     double sum(double x) const;
 
-    /// For each of this rank's velocity nodes the indices of those that it meets in a cell, without bubbles.
-    Rows<unsigned int> velocity_pattern() const;
-
   private:
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
@@ -136,15 +144,16 @@ namespace retroforge
     void                   make_tables(const SimplexMesh<dim> &mesh);
     void                   constrain(const SimplexMesh<dim> &mesh);
 
-    DiscretizationChoice                        choice_;
-    MPI_Comm                                    comm_;
-    unsigned int                                n_vertices_, nodes_per_cell_, places_per_cell_;
-    std::unique_ptr<dealii::Triangulation<dim>> triangulation_;
-    dealii::DoFHandler<dim>                     velocity_dofs_, pressure_dofs_, geometry_dofs_;
-    MiddleNodes                                 middles_;
-    ReplicatedEntries                           cells_;
-    std::vector<CellIndex>                      visited_;
-    std::vector<NodeIndex>                      nodes_of_visited_; ///< velocities, numbers
+    DiscretizationChoice                         choice_;
+    MPI_Comm                                     comm_;
+    unsigned int                                 n_vertices_, nodes_per_cell_, places_per_cell_;
+    std::unique_ptr<dealii::Triangulation<dim>>  triangulation_;
+    dealii::DoFHandler<dim>                      velocity_dofs_, pressure_dofs_, geometry_dofs_;
+    std::unique_ptr<const ReferenceElement<dim>> quadrature_;
+    MiddleNodes                                  middles_;
+    ReplicatedEntries                            cells_;
+    std::vector<CellIndex>                       visited_;
+    std::vector<NodeIndex>                       nodes_of_visited_; ///< velocities, numbers
     std::vector<unsigned int>            place_of_cell_; ///< among the visited ones; empty: the cell's index
     std::shared_ptr<const NodeNumbering> velocity_nodes_, condensed_nodes_, pressure_nodes_;
     std::vector<unsigned int>            velocity_places_, pressure_places_;

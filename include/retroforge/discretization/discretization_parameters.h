@@ -12,6 +12,7 @@ namespace retroforge
   {
     std::string element       = "mini";
     std::string triangulation = "shared";
+    std::string assembly      = "closed form";
 
     void                 add_parameters(dealii::ParameterHandler &prm);
     DiscretizationChoice choice() const;

@@ -4,20 +4,53 @@
 
 #include <retroforge/discretization/field.h>
 #include <retroforge/element/mini_element.h>
+#include <retroforge/element/quadrature_cell.h>
 #include <retroforge/element/taylor_hood.h>
 
 /// @file
 /// Cells of fields. What is done cell by cell is written once, as a function of a pair,
 ///   with_pair(discretization, [&](const auto pair) {
+///     const auto geometry = cell_geometry(pair.positions(discretization, X, c));
 ///     ... cell_residual(geometry, pair.on_cell(discretization, W, c), law) ...
 ///   });
 /// for the kernels of all pairs have the same names. A rank does so with the cells that it visits.
 namespace retroforge
 {
-  struct MiniPair
+  /// Where the geometry nodes of a visited cell are.
+  template <typename Number>
+  Four<Vector3<Number>>
+  positions_of_cell(const Discretization<3> &discretization, const NodalVectors<Number> &X, const CellIndex c)
+  {
+    const NodeIndex *nodes = discretization.geometry_nodes(c);
+    return {{X[nodes[0]], X[nodes[1]], X[nodes[2]], X[nodes[3]]}};
+  }
+
+  template <typename Number>
+  CellGeometry<Number>
+  geometry_of_cell(const Discretization<3> &discretization, const NodalVectors<Number> &X, const CellIndex c)
+  {
+    return cell_geometry(positions_of_cell(discretization, X, c));
+  }
+
+  /// Cells in closed form are known by their corners.
+  struct StraightCells
+  {
+    template <typename Number>
+    static Four<Vector3<Number>>
+    positions(const Discretization<3> &discretization, const NodalVectors<Number> &X, const CellIndex c)
+    {
+      return positions_of_cell(discretization, X, c);
+    }
+
+    static Four<Vec3> no_positions() { return {}; }
+  };
+
+  struct MiniPair : StraightCells
   {
     template <typename Number>
     using Values = CellValues<Number>;
+
+    static CellValues<double> no_values() { return {}; }
 
     /// Of a cell, its bubble left out: zero.
     template <typename Number>
@@ -69,10 +102,12 @@ namespace retroforge
     }
   };
 
-  struct TaylorHoodPair
+  struct TaylorHoodPair : StraightCells
   {
     template <typename Number>
     using Values = TaylorHoodValues<Number>;
+
+    static TaylorHoodValues<double> no_values() { return {}; }
 
     template <typename Number>
     static TaylorHoodValues<Number>
@@ -111,37 +146,81 @@ namespace retroforge
     }
   };
 
-  /// f(MiniPair()) or f(TaylorHoodPair()).
+  /// Either of them by quadrature.
+  struct QuadraturePair
+  {
+    template <typename Number>
+    using Values = QuadratureValues<3, Number>;
+
+    const ReferenceElement<3> *element;
+
+    template <typename Number>
+    QuadratureGeometry<3, Number>
+    positions(const Discretization<3> &discretization, const NodalVectors<Number> &X, const CellIndex c) const
+    {
+      QuadratureGeometry<3, Number> geometry{element, {}};
+      for (unsigned int a = 0; a < element->n_positions(); ++a)
+        geometry.X.push_back(X[discretization.geometry_nodes(c)[a]]);
+      return geometry;
+    }
+
+    CellVectors<3, double> no_positions() const { return CellVectors<3, double>(element->n_positions()); }
+    QuadratureValues<3, double> no_values() const { return QuadratureValues<3, double>(*element); }
+
+    template <typename Number>
+    QuadratureValues<3, Number>
+    at_nodes(const Discretization<3> &discretization, const Field<Number> &W, const CellIndex c) const
+    {
+      QuadratureValues<3, Number> w = on_cell(discretization, W, c);
+      if (element->has_bubble())
+        w.V.back() = Vector3<Number>();
+      return w;
+    }
+
+    template <typename Number>
+    QuadratureValues<3, Number>
+    on_cell(const Discretization<3> &discretization, const Field<Number> &W, const CellIndex c) const
+    {
+      QuadratureValues<3, Number> w(*element);
+      for (unsigned int a = 0; a < w.V.size(); ++a)
+        w.V[a] = W.V.at_place(discretization.velocity_places(c)[a]);
+      for (unsigned int a = 0; a < w.P.size(); ++a)
+        w.P[a] = W.P.at_place(discretization.pressure_places(c)[a]);
+      return w;
+    }
+
+    /// The transpose of on_cell.
+    template <typename Number>
+    void add(const Discretization<3>           &discretization,
+             const QuadratureValues<3, Number> &w,
+             const CellIndex                    c,
+             Field<Number>                     &W) const
+    {
+      for (unsigned int a = 0; a < w.V.size(); ++a)
+        W.V.at_place(discretization.velocity_places(c)[a]) += w.V[a];
+      for (unsigned int a = 0; a < w.P.size(); ++a)
+        W.P.at_place(discretization.pressure_places(c)[a]) += w.P[a];
+    }
+  };
+
+  /// f(pair), of the one that the discretisation is made for.
   template <typename F>
   decltype(auto) with_pair(const Discretization<3> &discretization, const F &f)
   {
+    if (discretization.quadrature())
+      return f(QuadraturePair{discretization.quadrature()});
     return discretization.pair() == ElementPair::mini ? f(MiniPair()) : f(TaylorHoodPair());
   }
 
-  /// Where the geometry nodes of a visited cell are.
-  template <typename Number>
-  Four<Vector3<Number>>
-  positions_of_cell(const Discretization<3> &discretization, const NodalVectors<Number> &X, const CellIndex c)
-  {
-    const NodeIndex *nodes = discretization.geometry_nodes(c);
-    return {{X[nodes[0]], X[nodes[1]], X[nodes[2]], X[nodes[3]]}};
-  }
-
-  template <typename Number>
-  CellGeometry<Number>
-  geometry_of_cell(const Discretization<3> &discretization, const NodalVectors<Number> &X, const CellIndex c)
-  {
-    return cell_geometry(positions_of_cell(discretization, X, c));
-  }
-
   /// The transpose of positions_of_cell.
-  inline void add_to_positions(const Discretization<3> &discretization,
-                               const Four<Vec3>        &of_cell,
-                               const CellIndex          c,
-                               NodalVectors<double>    &X)
+  template <typename CellPositions>
+  void add_to_positions(const Discretization<3> &discretization,
+                        const CellPositions     &of_cell,
+                        const CellIndex          c,
+                        NodalVectors<double>    &X)
   {
     const NodeIndex *nodes = discretization.geometry_nodes(c);
-    for (unsigned int a = 0; a < 4; ++a)
+    for (unsigned int a = 0; a < of_cell.size(); ++a)
       X[nodes[a]] += of_cell[a];
   }
 } // namespace retroforge

@@ -33,6 +33,13 @@ namespace retroforge
   template <typename Number>
   CellGeometry<Number> cell_geometry(const Four<Vector3<Number>> &X);
 
+  /// [mm^3]
+  template <typename Number>
+  Number cell_volume(const CellGeometry<Number> &geometry)
+  {
+    return geometry.volume;
+  }
+
   /// Adds to X_bar the pull-back of (volume_bar, g_bar) through cell_geometry:  dg_a = -sum_c (g_a·dX_c) g_c.
   void reverse_cell_geometry(const CellGeometry<double> &geometry,
                              double                      volume_bar,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/element/mini_element.h>
+#include <retroforge/element/quadrature_cell.h>
 #include <retroforge/element/taylor_hood.h>
 
 namespace retroforge
@@ -37,4 +38,18 @@ namespace retroforge
                                          const MaterialLaw<double> &law,
                                          double                     weight,
                                          const ShapeDerivatives    &how);
+
+  /// @name By quadrature
+  /// @{
+  CellVectors<3, double> difference_cell_residual(const QuadratureGeometry<3, double> &geometry,
+                                                  const QuadratureValues<3, double>   &w,
+                                                  const QuadratureValues<3, double>   &lambda,
+                                                  const MaterialLaw<double>           &law,
+                                                  const ShapeDerivatives              &how);
+  CellVectors<3, double> difference_cell_dissipation(const QuadratureGeometry<3, double> &geometry,
+                                                     const QuadratureValues<3, double>   &w,
+                                                     const MaterialLaw<double>           &law,
+                                                     double                               weight,
+                                                     const ShapeDerivatives              &how);
+  /// @}
 } // namespace retroforge

@@ -2,40 +2,34 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <deal.II/base/data_out_base.h>
-#include <deal.II/grid/tria.h>
-
 #include <retroforge/core/types.h>
 #include <retroforge/discretization/middle_nodes.h>
 #include <retroforge/element/cell_stress.h>
+#include <retroforge/mesh/tet_mesh.h>
 
 #include <array>
+#include <cstdint>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
 namespace retroforge
 {
-  /// A picture of tetrahedra (dim = 3) or triangles (2) and fields on them, as deal.II's DataOutBase writes
-  /// it: one VTK unstructured grid (.vtu, XML, compressed) with one piece for each rank that has cells. Its
-  /// patches are filled here: to make degrees of freedom for each picture takes five times as long as all
-  /// else.
+  /// A picture of tetrahedra (dim = 3) or triangles (2) and fields on them: one VTK unstructured grid (.vtu,
+  /// XML). Cells share their points, which are the nodes in their order, so that nodal fields have one value
+  /// at each; fields of cells are data of cells. (deal.II's DataOut gives every cell points of its own, of
+  /// which there are twenty times as many, with the fields of cells on them, too.)
   ///
-  /// The picture is for the eye: places and values are in single precision; all fields are values at points,
-  /// and every cell has points of its own, so that fields which are constant in cells jump between them. With
-  /// a quadratic field the cells have ten points, VTK's quadratic tetrahedra.
+  /// The picture is for the eye: places and values are in single precision. Nothing is compressed: of such
+  /// numbers zlib takes a third off, in more time than all else of a picture takes. With a quadratic velocity
+  /// the cells are VTK's quadratic tetrahedra, and the middles of the edges are points behind the nodes.
   template <int dim>
   class FieldFile
   {
   public:
     /// @param X      positions of the nodes [mm]
-    /// @param cells  by their nodes, which all ranks know; those that a rank writes are an equal share
-    /// @param comm   of the ranks that call every function, with all nodes' values
-    FieldFile(const NodalVectors<double>                        &X,
-              const std::vector<std::array<NodeIndex, dim + 1>> &cells,
-              MPI_Comm                                           comm = MPI_COMM_SELF);
-
-    /// The same of a triangulation, shared or serial.
-    explicit FieldFile(const dealii::Triangulation<dim, 3> &triangulation);
+    /// @param cells  by their nodes
+    FieldFile(const NodalVectors<double> &X, const std::vector<std::array<NodeIndex, dim + 1>> &cells);
 
     /// Fields that are linear in each cell, by their values at the nodes.
     /// @param name  of letters, digits and underscores     @param unit  empty: none
@@ -60,44 +54,41 @@ namespace retroforge
     /// outward normal. Nothing where there is none.
     void add_symmetry_planes(const std::vector<Plane> &planes);
 
-    /// Each rank makes the piece of its cells, the first writes them all in one step.
-    /// @throws Error  when the file cannot be written, on the first rank
-    void write(const std::string &file);
+    /// @throws Error  when the file cannot be written
+    void write(const std::string &file) const;
 
   private:
-    using Cells = std::vector<std::array<NodeIndex, dim + 1>>;
-
-    /// What is written as one array. Values by cell of this rank, point and component; the points of a cell
-    /// are one, its corners, or these and the middles of its edges.
+    /// Values by point or cell, and component.
     struct Array
     {
-      std::string                                                      name;
-      dealii::DataComponentInterpretation::DataComponentInterpretation kind;
-      unsigned int                                                     n_points, n_components;
-      std::vector<double>                                              values;
+      std::string        name;
+      unsigned int       n_components;
+      std::vector<float> values;
     };
 
-    /// @param value_at  of a cell, one of its points and a component
+    /// @param data      that the array becomes the last of
+    /// @param value_at  of a point or cell, of n, and a component
     template <typename ValueAt>
-    void add(const std::string &name,
-             const std::string &unit,
-             unsigned int       n_points,
-             unsigned int       n_components,
-             const ValueAt     &value_at);
+    void add(std::vector<Array> &data,
+             const std::string  &name,
+             const std::string  &unit,
+             std::size_t         n,
+             unsigned int        n_components,
+             const ValueAt      &value_at);
 
-    /// At a point of the picture, which may have more points than the array.
-    double value(const Array &array, CellIndex c, unsigned int point, unsigned int component) const;
+    /// The middles of the edges become points.
+    void make_quadratic(const MiddleNodes &middles);
 
-    dealii::DataOutBase::Patch<dim, 3> patch(CellIndex c) const;
-    /// The cells of this rank in VTK's format; empty where it has none.
-    std::string piece() const;
+    /// Nodal values have their means in the middles of the edges where these are points.
+    void write_at_points(std::ostream &out, const Array &array) const;
+    void write_cells(std::ostream &out) const;
 
-    NodalVectors<double> X_;
-    Cells                cells_;
-    MPI_Comm             comm_;
-    CellIndex            first_ = 0, last_ = 0; ///< cells of this rank, without the last
-    std::string          planes_;
-    unsigned int         n_points_ = dim + 1; ///< of a cell
-    std::vector<Array>   arrays_;
+    std::size_t                           n_nodes_, n_cells_;
+    unsigned int                          n_points_per_cell_;
+    std::vector<std::int32_t>             connectivity_;
+    std::vector<std::array<NodeIndex, 2>> edges_; ///< whose middles are points
+    Array                                 X_;
+    std::vector<Array>                    point_data_, cell_data_;
+    std::string                           planes_;
   };
 } // namespace retroforge

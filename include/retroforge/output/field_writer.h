@@ -14,7 +14,7 @@ namespace retroforge
   {
   public:
     /// What is passed must live as long.
-    /// @param comm  of the ranks that write: each the cells that are its own, the first all else
+    /// @param comm  of the ranks that follow the run, of which the first writes
     FieldWriter(MPI_Comm                    comm,
                 const std::string          &directory,
                 const ForgingModel         &model,
@@ -22,7 +22,7 @@ namespace retroforge
                 const TetMesh              &billet,
                 const NodalVectors<double> &X_0);
 
-    /// The workpiece before it is forged, the first picture. Collective.
+    /// The workpiece before it is forged, the first picture.
     /// @throws Error  if a file cannot be written
     void add_billet();
 
@@ -30,19 +30,19 @@ namespace retroforge
     /// remeshings as other nodal values are.
     void follow(const IncrementEvent &event);
 
-    /// The end of the increment followed last, with what its last stage found. Collective.
+    /// The end of the increment followed last, with what its last stage found.
     /// @throws Error  if a file cannot be written
     void add(const IncrementEvent &event);
 
     /// The workpiece where the run failed, with the fields of the last equilibrium. The rank that calls this
-    /// writes all of it, for the others may have failed elsewhere.
+    /// writes it, for the others may have failed elsewhere.
     void add_failed(const ForgingState &state);
 
   private:
     struct Workpiece;
 
-    void add_billet(MPI_Comm comm);
-    void write(MPI_Comm comm, const std::string &file, const Workpiece &workpiece) const;
+    void write(const std::string &file, const Workpiece &workpiece) const;
+    void write_billet() const;
     /// @param suffix  of the file's name
     /// @param X       of the workpiece, which the picture of a plane covers
     /// @returns the file
@@ -54,7 +54,7 @@ namespace retroforge
                   const std::string          &suffix,
                   const NodalVectors<double> &X);
 
-    MPI_Comm                    comm_;
+    bool                        is_first_;
     std::string                 directory_;
     const ForgingModel         &model_;
     const Process<double>      &process_;

@@ -54,6 +54,7 @@ namespace retroforge
       unsigned int           n_facets = 0;
       Vec3                   point, facing; ///< of a plane: where it stands; facing of length one
       Vec3                   velocity;      ///< [mm/s]
+      Vec3                   travel;        ///< over the stroke [mm]
       double                 friction      = 0.;
       std::string            friction_name = "alpha"; ///< of the coefficient in its law
       bool                   leads         = false;
@@ -64,9 +65,13 @@ namespace retroforge
         double distance = unknown; ///< [mm]
         Vec3   place;              ///< of the billet, at the start [mm]
       };
+      /// Planes of symmetry on whose inner side all of it stands: the whole part has its images beside it.
+      std::vector<std::string> mirrored_by;
+
       /// The nearest point of the billet, at the start.
-      Place gap;
-      bool  touches = false;
+      Place  gap;
+      bool   touches      = false;
+      double contact_area = unknown; ///< of the faces of the billet that it touches [mm^2]
       /// The deepest point of the billet in it, or of it in the billet.
       std::optional<Place> overlap;
       bool                 is_of_die = false; ///< whether it is the latter
@@ -89,6 +94,7 @@ namespace retroforge
       std::string  leading_die;
       double       stroke = unknown, seconds = unknown; ///< [mm], [s]
       unsigned int increments = 0;
+      bool         is_free    = false; ///< whether the increments are the program's choice
     };
 
     /// What to expect, to a factor of two and without any forging.

@@ -39,8 +39,11 @@ namespace retroforge
     const std::vector<BubbleElimination<double>> &eliminations() const { return eliminations_; }
 
   private:
-    template <typename Tangents>
-    void add_cells(const Stage<double> &stage, const Field<double> &W, Linearisation linearisation);
+    template <typename Tangents, typename Pair>
+    void add_cells(const Pair          &pair,
+                   const Stage<double> &stage,
+                   const Field<double> &W,
+                   Linearisation        linearisation);
 
     const Scene                           &scene_;
     std::vector<unsigned int>              begin_; ///< first pair of each local row, and the end

@@ -29,9 +29,13 @@ Json as_json(const std::vector<Vec3> &vectors)
   return list;
 }
 
-Json as_json(const Field<double> &W)
+Json as_json(const Field<double> &W, const Discretization<3> &discretization)
 {
-  return {{"V", as_json(W.V)}, {"beta", as_json(W.beta)}, {"P", W.P}};
+  NodalVectors<double> V       = W.V.complete(*discretization.velocity_nodes());
+  const auto           bubbles = V.begin() + discretization.condensed_nodes()->n();
+  return {{"V", as_json({V.begin(), bubbles})},
+          {"beta", as_json({bubbles, V.end()})},
+          {"P", W.P.complete(*discretization.pressure_nodes())}};
 }
 
 /// All faces are surface; the first is the one below.
@@ -85,16 +89,17 @@ MadeDie cap(RandomNumbers &random, const double radius)
 }
 
 /// @param sinking  whether the middles of edges go into the die below and its vertices out of it
-Field<double> random_field(RandomNumbers &random, const Spaces &spaces, const bool sinking)
+Field<double> random_field(RandomNumbers &random, const Discretization<3> &discretization, const bool sinking)
 {
-  Field<double> W(spaces);
-  for (Vec3 &v : W.V)
-    v = 0.6 * random.vector() - Vec3({0., 0., 0.3});
+  Field<double>      W(discretization);
+  const unsigned int n_nodes = discretization.condensed_nodes()->n();
+  for (NodeIndex k = 0; k < n_nodes; ++k)
+    W.V[k] = 0.6 * random.vector() - Vec3({0., 0., 0.3});
   if (sinking)
-    for (NodeIndex k = 0; k < spaces.n_velocity_nodes(); ++k)
-      W.V[k] += Vec3({0., 0., k < spaces.n_pressure_nodes() ? 1. : -4.});
-  for (Vec3 &beta : W.beta)
-    beta = 0.2 * random.vector();
+    for (NodeIndex k = 0; k < n_nodes; ++k)
+      W.V[k] += Vec3({0., 0., k < discretization.n_vertices() ? 1. : -4.});
+  for (NodeIndex k = n_nodes; k < W.V.size(); ++k)
+    W.V[k] = 0.2 * random.vector();
   for (double &p : W.P)
     p = random.scalar();
   return W;
@@ -107,7 +112,7 @@ void print_case(RandomNumbers    &random,
                 const bool        sinking,
                 const MadeDie    &made)
 {
-  const Scene     scene(one_cell(random), pair, {made.die}, MPI_COMM_WORLD, Bubbles::all);
+  const Scene     scene(one_cell(random), {pair}, {made.die}, MPI_COMM_WORLD);
   const auto     &X       = scene.mesh.X;
   Physics<double> physics = {{1.7, m, 0.1}, {20., 0.05}, {{}}};
   physics.dies            = {{0.2 * random.vector(), 0.05 * random.vector(), 0.4, {}}};
@@ -119,32 +124,34 @@ void print_case(RandomNumbers    &random,
                              find_contact_pairs(view, ramp, reach, true),
                              ContactApproach<double>{ramp, tau, ApproachLaw(layer, part), edge_stiffness});
   const Stage<double> stage(scene, physics, contact, X);
-  const Field<double> W   = random_field(random, scene.spaces, sinking);
+  const Field<double> W   = random_field(random, scene.discretization, sinking);
   Json                die = made.json;
   die["velocity"]         = as_json(physics.dies[0].velocity);
   die["displacement"]     = as_json(physics.dies[0].displacement);
   Json faces              = Json::array();
   for (const BoundaryFace &face : scene.mesh.faces)
     faces.push_back(face.nodes);
-  const Json line = {{"pair", pair == ElementPair::mini ? "P1+/P1" : "P2/P1"},
-                     {"X", as_json(std::vector<Vec3>(X.begin(), X.end()))},
-                     {"faces", faces},
-                     {"middles", scene.spaces.edges() ? Json(scene.spaces.edges()->nodes) : Json::array()},
-                     {"W", as_json(W)},
-                     {"K", physics.law.K},
-                     {"m", m},
-                     {"e_0", physics.law.e0},
-                     {"rho", physics.contact.rho},
-                     {"v_0", physics.contact.v0},
-                     {"alpha", physics.dies[0].friction},
-                     {"die", die},
-                     {"tau", tau},
-                     {"l", layer},
-                     {"theta", part},
-                     {"b", ramp.width},
-                     {"kappa", edge_stiffness},
-                     {"reach", reach},
-                     {"R", as_json(stage.residual(W, {}))}};
+  const Json line = {
+    {"pair", pair == ElementPair::mini ? "P1+/P1" : "P2/P1"},
+    {"X", as_json(std::vector<Vec3>(X.begin(), X.end()))},
+    {"faces", faces},
+    {"middles",
+     scene.discretization.middles() ? Json(scene.discretization.middles()->ends()) : Json::array()},
+    {"W", as_json(W, scene.discretization)},
+    {"K", physics.law.K},
+    {"m", m},
+    {"e_0", physics.law.e0},
+    {"rho", physics.contact.rho},
+    {"v_0", physics.contact.v0},
+    {"alpha", physics.dies[0].friction},
+    {"die", die},
+    {"tau", tau},
+    {"l", layer},
+    {"theta", part},
+    {"b", ramp.width},
+    {"kappa", edge_stiffness},
+    {"reach", reach},
+    {"R", as_json(stage.residual(W, {}), scene.discretization)}};
   std::cout << line << std::endl;
 }
 

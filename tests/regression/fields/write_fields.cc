@@ -2,9 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 
 // Writes pictures of fields that are known functions of the place, for fields.py to read: linear.vtu and
-// quadratic.vtu of a box of tetrahedra, one_cell.vtu, and surface.vtu. Run it on any number of ranks.
+// quadratic.vtu of a box of tetrahedra, one_cell.vtu, and surface.vtu.
 
-#include <retroforge/discretization/triangulation.h>
 #include <retroforge/output/field_file.h>
 
 #include "../../unit/remeshing/remeshing_test_tools.h"
@@ -30,14 +29,17 @@ auto at_nodes(const NodalVectors<double> &X, const F &f)
   return values;
 }
 
-void write_box(const std::string &file, const TetMesh &mesh, const ElementPair pair)
+void write_box(const std::string &file, const TetMesh &mesh, const bool is_quadratic)
 {
-  const Spaces        spaces(mesh, Topology(mesh), pair);
-  SharedTriangulation triangulation(MPI_COMM_WORLD);
-  make_triangulation(mesh, mesh.X, triangulation);
-  NodalVectors<double> velocity = at_nodes(mesh.X, quadratic);
-  if (spaces.edges())
-    for (const auto &[a, b] : spaces.edges()->nodes)
+  NodalVectors<double>           velocity = at_nodes(mesh.X, quadratic);
+  std::vector<MiddleNodes::Ends> edges;
+  for (const auto &cell : mesh.cells)
+    for (unsigned int a = 0; a < 4; ++a)
+      for (unsigned int b = 0; b < a; ++b)
+        edges.push_back({{std::min(cell[a], cell[b]), std::max(cell[a], cell[b])}});
+  const MiddleNodes middles(mesh.n_nodes(), edges);
+  if (is_quadratic)
+    for (const auto &[a, b] : middles.ends())
       velocity.push_back(quadratic(0.5 * (mesh.X[a] + mesh.X[b])));
   std::vector<double>          numbers;
   std::vector<SymmetricTensor> stress;
@@ -46,11 +48,11 @@ void write_box(const std::string &file, const TetMesh &mesh, const ElementPair p
     numbers.push_back(c);
     stress.push_back({{1. * c, 1., 2., 3., 4., 5.}}); // xx, yy, zz, yz, xz, xy
   }
-  FieldFile<3> picture(triangulation);
+  FieldFile<3> picture(mesh.X, mesh.cells);
   picture.add_linear("pressure", "MPa", at_nodes(mesh.X, linear));
   picture.add_linear("displacement", "mm", mesh.X);
   picture.add_linear("label", "", std::vector<double>(mesh.n_nodes(), 1e300));
-  picture.add_velocity("velocity", "mm/s", velocity, spaces);
+  picture.add_velocity("velocity", "mm/s", velocity, is_quadratic ? &middles : nullptr);
   picture.add_constant("number", "", numbers);
   picture.add_constant("stress", "MPa", stress);
   picture.add_symmetry_planes(
@@ -65,9 +67,7 @@ void write_surface()
     "roof",
     {Vec3({0., 0., 0.}), Vec3({2., 0., 0.}), Vec3({2., 2., 0.}), Vec3({0., 2., 0.}), Vec3({1., 1., 1.})},
     {{{0, 1, 4}}, {{1, 2, 4}}, {{2, 3, 4}}, {{3, 0, 4}}});
-  dealii::Triangulation<2, 3> triangulation;
-  make_triangulation(surface, triangulation);
-  FieldFile<2> picture(triangulation);
+  FieldFile<2> picture(surface.vertices(), surface.triangles());
   picture.add_linear("gradient", "", at_nodes(surface.vertices(), quadratic));
   picture.write("surface.vtu");
 }
@@ -76,12 +76,11 @@ int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const TetMesh                            box = kuhn_box(3, 0.1);
-  write_box("linear.vtu", box, ElementPair::mini);
-  write_box("quadratic.vtu", box, ElementPair::taylor_hood);
+  write_box("linear.vtu", box, false);
+  write_box("quadratic.vtu", box, true);
   TetMesh one;
   one.X     = {Vec3({0., 0., 0.}), Vec3({1., 0., 0.}), Vec3({0., 1., 0.}), Vec3({0., 0., 1.})};
   one.cells = {{{0, 1, 2, 3}}};
-  write_box("one_cell.vtu", one, ElementPair::mini);
-  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-    write_surface();
+  write_box("one_cell.vtu", one, false);
+  write_surface();
 }

@@ -87,8 +87,11 @@ def sound():
     judge("both dies touch", all(die["touches"] and "overlap" not in die for die in scene["dies"]))
     same("the moving die has no way to go", die_of(scene, "upper")["first_touch"]["distance"], 0)
     judge("of a die at rest no way is told", "first_touch" not in die_of(scene, "lower"))
+    same("areas on which they touch", [die["contact_area"] for die in scene["dies"]], [25, 25])
+    same("where they go", [die["travel"] for die in scene["dies"]], [[0, 0, 0], [0, 0, -1]])
+    judge("increments that are given", not scene["press"]["increments_chosen"])
     same("press", [scene["press"][key] for key in ("stroke", "increments", "seconds")], [1, 3, 0.01])
-    for words in ("1/4 of the part", "symmetry plane `symmetry 1' through (0, 0, 0)", "die lower, plane", "touches the billet at the start", "stands still",
+    for words in ("volume of the part 1000 mm^3; the model is 1/4 of the part, 250 mm^3; its mesh has 250 mm^3", ", on 25 mm^2", "ends through (0, 0, 9)", "symmetry plane `symmetry 1' through (0, 0, 0)", "die lower, plane", "touches the billet at the start", "stands still",
                   "stroke 1 mm of die upper, 0.01 s; 3 increments of 0.333333 mm, 0.00333333 s each"):
         judge(f"the listing says: {words}", words in done.stdout, done.stdout)
     mesh = vtu.read("scene/scene_billet.vtu")
@@ -130,6 +133,10 @@ def gaps():
     same("gap of a tip above the middle of a face", upper["gap"]["distance"], 2.5, 1e-6)
     same("its way", upper["first_touch"]["distance"], 2.5, 1e-6)
     same("its place", upper["first_touch"]["place"], [1.5, 2, 10], 1e-5)
+    judge("it stands on the planes of symmetry", upper["mirrored_by"] == [], upper)
+    done, scene = look("tip beside a plane", *pyramid(12.5, ["Die upper/point=3, 0, 12.5"]), "Press/stroke=4")
+    judge("beside one its image is another die", die_of(scene, "upper")["mirrored_by"] == ["symmetry 1"]
+          and "all of it on one side of plane `symmetry 1'" in done.stdout, done.stdout)
     judge("extents of a surface", near(upper["extents"], [[-2.5, -2, 12.5], [5.5, 6, 16.5]], 1e-6) and upper["facets"] == 4, upper)
 
     done, scene = look("two dies that move", "Die upper/point=0, 0, 13", "Die lower/point=0, 0, -1", "Die lower/velocity=0, 0, 50",
@@ -138,6 +145,22 @@ def gaps():
     same("ways of both", [upper["first_touch"]["distance"], lower["first_touch"]["distance"]], [3, 1])
     same("strokes of the leading die then", [upper["first_touch"]["stroke"], lower["first_touch"]["stroke"]], [3, 2])
     judge("which leads", upper["leads"] and not lower["leads"] and done.returncode == 0, done.stderr)
+
+
+def estimates():
+    """Speed and height are those along what the upper die faces, and the force at the end is that of the distance of the dies there."""
+    _, straight = look("straight down")
+    _, oblique = look("oblique", "Die upper/velocity=0, -100, -10", "Press/stroke=5")
+    same("speed of an oblique die", [oblique["estimate"][key] for key in ("speed", "strain_rate")], [10, 1])
+    judge("its force is that of the rate", oblique["estimate"]["stress"] < straight["estimate"]["stress"], oblique["estimate"])
+    below, above = (look(f"2 mm {name}", setting, "Press/stroke=5")[1]["estimate"]
+                    for name, setting in (("below", "Die lower/point=0, 0, -2"), ("above", "Die upper/point=0, 0, 12")))
+    _, shorter = look("as far from touch on", "Press/stroke=3")
+    for key in ("first_force", "final_force"):
+        same(f"{key}, whichever die has the gap", [below[key], above[key]], [shorter["estimate"][key]] * 2)
+    judge("which grows with the way from touch on", straight["estimate"]["final_force"] < below["final_force"], below)
+    done, free = look("increments left free", "Press/increments=0")
+    judge("who chose them is told", free["press"]["increments_chosen"] and "increments (chosen by the program) of" in done.stdout, done.stdout)
 
 
 # name: (settings, what the message says, dies that are drawn, whether the billet is)
@@ -258,7 +281,7 @@ def main():
         with open("tip.stl", "wb") as file:
             file.write(stl(*tip(1.5, 2, 8, 4)))
 
-    whole_runs.main(files, (dies, sound, cylinder, gaps, refused, overlaps, folders, ranks, tutorial, manual))
+    whole_runs.main(files, (dies, sound, cylinder, gaps, estimates, refused, overlaps, folders, ranks, tutorial, manual))
 
 
 main()

@@ -27,7 +27,7 @@ def plate(side, unit=1.0):
 
 
 FILES = {"plate.stl": plate(120), "plate_in_inches.stl": plate(120, 25.4), "plate_in_metres.stl": plate(120, 1000.0),
-         "plate_in_microns.stl": plate(120, 1e-3), "empty.stl": b""}
+         "plate_in_microns.stl": plate(120, 1e-3), "eighth.stl": plate(40 * 3**0.5 / 2**0.5 / 8), "empty.stl": b""}
 
 
 def stl(name, *more):
@@ -61,6 +61,8 @@ WARNED = {
                                        "Die upper/point"),
     "punch off the symmetry planes": (settings("Die upper/shape=punch", "Die upper/point=0, -6, 40", "Die upper/Punch/radius=10"),
                                       "Die upper/point"),
+    "die beyond a symmetry plane": (settings("Dies/names=lower, upper, beside", "Die beside/shape=punch", "Die beside/facing=0, 0, -1",
+                                             "Die beside/point=8, -22, 40", "Die beside/Punch/radius=10"), "Die beside/point"),
     "die in inches": (stl("plate_in_inches.stl"), "Die lower/scale"),
     "die scaled to inches twice": (stl("plate.stl", "Die lower/scale=25.4"), "Die lower/scale"),
 }
@@ -142,6 +144,8 @@ def refused():
 def sound():
     """Nobody is told of what is right."""
     judge("sound scene", not [line for line in before_increments(simulate()) if line.startswith("warning")])
+    judge("die of an eighth of the billet's size is not taken for a file in inches",
+          not [line for line in before_increments(simulate(*stl("eighth.stl"))) if "inches" in line])
     judge("sound die of a file", not [line for line in before_increments(simulate(*stl("plate.stl"))) if line.startswith("warning")])
     for case in sorted((ROOT / "prm").glob("**/*.prm")):
         if "Die " not in case.read_text(encoding="utf-8"):

@@ -282,12 +282,12 @@ namespace retroforge
                                       PhysicsBar           &bar)
   {
     const TetMesh &mesh = stage.scene.mesh;
-    Field<double>  W_bar(stage.scene.spaces);
+    Field<double>  W_bar(stage.scene.discretization);
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
       CellValues<double> w_bar = {};
-      const auto         s     = reverse_cell_dissipation(cell_geometry(positions_of_cell(mesh, stage.X, c)),
-                                              MiniPair::on_cell(stage.scene.spaces, W, c),
+      const auto s = reverse_cell_dissipation(geometry_of_cell(stage.scene.discretization, stage.X, c),
+                                              MiniPair::on_cell(stage.scene.discretization, W, c),
                                               stage.physics.law,
                                               weight * dt,
                                               w_bar);
@@ -297,7 +297,7 @@ namespace retroforge
         W_bar.V[mesh.cells[c][a]] += w_bar.V[a];
       }
       if (omitted != Term::power_bubble)
-        W_bar.beta[c] += w_bar.beta;
+        MiniPair::bubble(stage.scene.discretization, W_bar, c) += w_bar.beta;
     }
     const auto reverse_node = [&](const unsigned int p) {
       const auto node = reverse_friction_power(
@@ -323,12 +323,13 @@ namespace retroforge
   {
     const TetMesh &mesh = stage.scene.mesh;
     if (omitted == Term::lambda_bubble)
-      lambda.beta.assign(mesh.n_cells(), Vec3());
+      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+        MiniPair::bubble(stage.scene.discretization, lambda, c) = Vec3();
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
-      const auto s = reverse_cell_residual(cell_geometry(positions_of_cell(mesh, stage.X, c)),
-                                           MiniPair::on_cell(stage.scene.spaces, W, c),
-                                           MiniPair::on_cell(stage.scene.spaces, lambda, c),
+      const auto s = reverse_cell_residual(geometry_of_cell(stage.scene.discretization, stage.X, c),
+                                           MiniPair::on_cell(stage.scene.discretization, W, c),
+                                           MiniPair::on_cell(stage.scene.discretization, lambda, c),
                                            stage.physics.law);
       for (unsigned int a = 0; a < 4; ++a)
         X_bar[mesh.cells[c][a]] += s.X[a];
@@ -370,9 +371,10 @@ namespace retroforge
       const SolveRecord         &solve    = record.solves[s];
       const NodalVectors<double> position = advanced(X, dt, scheme.a[s], record.solves);
       const Stage<double>        stage(scene, physics, contact, position);
-      Field<double>              W(scene.spaces), rhs(scene.spaces), minus_rhs(scene.spaces), lambda;
-      W.V = solve.V;
-      W.P = solve.P;
+      Field<double> W(scene.discretization), rhs(scene.discretization), minus_rhs(scene.discretization),
+        lambda;
+      W.V.take(solve.V);
+      W.P.take(solve.P);
       recover_bubbles(stage, W);
       NodalVectors<double> X_bar(X.size());
       if (scheme.b[s] != 0.)
@@ -391,7 +393,7 @@ namespace retroforge
       problem.leg->system.assemble(stage, W, solve.active);
       problem.leg->system.solve(minus_rhs, problem.model.step.adjoint_tolerance, lambda);
       if (s == 0 && omitted == Term::first_stage)
-        lambda = Field<double>(scene.spaces);
+        lambda = Field<double>(scene.discretization);
       reverse_equilibrium(stage, W, solve.active, lambda, omitted, X_bar, contact_bar, bar);
       for (std::size_t k = 0; k < X.size(); ++k)
         G[k] += X_bar[k];

@@ -36,6 +36,8 @@
 #include "coulomb_friction.h"
 #include "wavy_sheet.h"
 
+#include "../discretization/middles_of.h"
+
 using namespace retroforge;
 
 /// The inputs of a node's force in the order u, n, delta, tau, S, Sf, alpha, K, m, rho, v0.
@@ -218,7 +220,7 @@ struct CornerScene
 {
   TetMesh                       mesh;
   Topology                      topology;
-  MeshEdges                     mesh_edges;
+  MiddleNodes                   mesh_edges;
   bool                          quadratic;
   NodalVectors<double>          X;
   std::vector<Die>              dies;
@@ -230,7 +232,7 @@ struct CornerScene
   CornerScene(const FrictionRamp &ramp, Random &random, const Lower lower, const bool quadratic)
       : mesh(half_box_mesh(Vec3({10., 8., 6.}), {{3, 6, 4}}))
       , topology(mesh)
-      , mesh_edges(mesh)
+      , mesh_edges(middles_of(mesh))
       , quadratic(quadratic)
       , X(mesh.X)
       , ramp(ramp)

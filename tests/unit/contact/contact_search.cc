@@ -8,7 +8,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/contact/contact_search.h>
+#include <retroforge/contact/contact_kinematics.h>
 #include <retroforge/contact/penetration.h>
 
 #include <iostream>
@@ -16,6 +16,8 @@
 #include "../element/element_test_tools.h"
 #include "../mesh/block_mesh.h"
 #include "wavy_sheet.h"
+
+#include "../discretization/middles_of.h"
 
 using namespace retroforge;
 
@@ -73,8 +75,8 @@ int main(int argc, char **argv)
   Random               random;
   const TetMesh        mesh = half_box_mesh(Vec3({10., 8., 6.}), {{4, 6, 4}});
   const Topology       topology(mesh);
-  const MeshEdges      edges(mesh);
-  NodalVectors<double> X = mesh.X;
+  const MiddleNodes    edges = middles_of(mesh);
+  NodalVectors<double> X     = mesh.X;
   for (Vec3 &x : X)
     x += 0.1 * random.vector();
   const Vec3                          side   = Vec3({-1., 0.1, 0.2});

@@ -15,6 +15,8 @@
 
 #include "../mesh/block_mesh.h"
 
+#include "../discretization/middles_of.h"
+
 using namespace retroforge;
 
 /// Two rectangles under |x| <= 5 around the ridge, |y| <= 5, that fall with slope s.
@@ -31,7 +33,7 @@ void tell(const std::string &name, const double s, const double ramp_width)
 {
   const TetMesh                       mesh = block_mesh({{1, 1, 1}}, [](auto, auto, auto) { return true; });
   const Topology                      topology(mesh);
-  const MeshEdges                     edges(mesh);
+  const MiddleNodes                   edges  = middles_of(mesh);
   const std::vector<Die>              dies   = {Die("roof", roof(s), 2., {false, 60., 1.})};
   const std::vector<DieState<double>> states = {{Vec3(), Vec3(), 0.3, {}}};
   const FrictionRamp                  ramp{ramp_width, false};

@@ -53,17 +53,18 @@ namespace
   }
 
   template <typename Velocity>
-  Field<double> field_of(const TetMesh &mesh, const Spaces &spaces, const Velocity &velocity)
+  Field<double>
+  field_of(const TetMesh &mesh, const Discretization<3> &discretization, const Velocity &velocity)
   {
-    Field<double> W(spaces);
+    Field<double> W(discretization);
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
-      const NodeIndex *nodes = spaces.velocity_nodes(c);
+      const unsigned int *places = discretization.velocity_places(c);
       for (unsigned int a = 0; a < 4; ++a)
-        W.V[nodes[a]] = velocity(mesh.X[mesh.cells[c][a]]);
-      for (unsigned int e = 0; e < 6 && spaces.edges(); ++e)
-        W.V[nodes[4 + e]] = velocity(0.5 * (mesh.X[mesh.cells[c][tet_edge_corners[e][0]]] +
-                                            mesh.X[mesh.cells[c][tet_edge_corners[e][1]]]));
+        W.V.at_place(places[a]) = velocity(mesh.X[mesh.cells[c][a]]);
+      for (unsigned int e = 0; e < 6 && discretization.middles(); ++e)
+        W.V.at_place(places[4 + e]) = velocity(0.5 * (mesh.X[mesh.cells[c][tet_edge_corners[e][0]]] +
+                                                      mesh.X[mesh.cells[c][tet_edge_corners[e][1]]]));
     }
     return W;
   }
@@ -75,17 +76,17 @@ namespace
 
   void check_two_cells()
   {
-    const TetMesh mesh = two_cells();
-    const Spaces  spaces(mesh, Topology(mesh), ElementPair::mini);
-    Field<double> W(spaces);
+    const TetMesh           mesh = two_cells();
+    const Discretization<3> discretization(mesh, {ElementPair::mini}, MPI_COMM_SELF);
+    Field<double>           W(discretization);
     // A turn of both, and the first cell sheared by its own node: e1 = sym(u (x) z), e2 = 0; no trace.
     for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
       W.V[k] = Vec3({-mesh.X[k][1], mesh.X[k][0], 0.});
     W.V[3] += Vec3({0.6, 0.8, 0.});
-    for (Vec3 &beta : W.beta)
-      beta = Vec3({1., -2., 3.});
+    for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+      W.V[discretization.bubble(c)] = Vec3({1., -2., 3.});
     const double K      = 3.;
-    const auto   errors = indicated_errors(mesh, spaces, mesh.X, W, MaterialLaw<double>(K, 1., 0.));
+    const auto   errors = indicated_errors(discretization, mesh.X, W, MaterialLaw<double>(K, 1., 0.));
     // |e1|^2 = 2 (|u|/2)^2 = 1/2
     const double by_hand = 0.3 * K * (1. / 6.) * 0.5;
     std::cout << "two cells, over the value by hand: " << errors[0] / by_hand << " " << errors[1] / by_hand
@@ -102,15 +103,15 @@ namespace
     };
     for (const ElementPair pair : {ElementPair::mini, ElementPair::taylor_hood})
     {
-      const Spaces spaces(mesh, Topology(mesh), pair);
-      const auto   error = [&](const auto &velocity, const MaterialLaw<double> &of) {
-        return total(indicated_errors(mesh, spaces, mesh.X, field_of(mesh, spaces, velocity), of));
+      const Discretization<3> discretization(mesh, {pair}, MPI_COMM_SELF);
+      const auto              error = [&](const auto &velocity, const MaterialLaw<double> &of) {
+        return total(indicated_errors(discretization, mesh.X, field_of(mesh, discretization, velocity), of));
       };
       auto twice = law;
       twice.K *= 2.;
       const bool mini = pair == ElementPair::mini;
-      std::cout << (mini ? "mini" : "P2-P1") << ", degree " << velocity_degree(spaces) << ": linear: none "
-                << (error(linear, law) < 1e-20 ? "yes" : "NO") << "; quadratic: "
+      std::cout << (mini ? "mini" : "P2-P1") << ", degree " << velocity_degree(discretization)
+                << ": linear: none " << (error(linear, law) < 1e-20 ? "yes" : "NO") << "; quadratic: "
                 << (error(quadratic, law) > 1e-3    ? "some"
                     : error(quadratic, law) < 1e-20 ? "none"
                                                     : "SOMETHING");
@@ -121,8 +122,9 @@ namespace
   }
 } // namespace
 
-int main()
+int main(int argc, char **argv)
 {
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   check_two_cells();
   check_exact_fields();
 }

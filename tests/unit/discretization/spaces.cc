@@ -20,12 +20,12 @@
 #include <retroforge/discretization/triangulation.h>
 #include <retroforge/element/fe_simplex_hat.h>
 #include <retroforge/mesh/cell_faces.h>
-#include <retroforge/mesh/edges.h>
 
 #include <set>
 
 #include "../element/element_test_tools.h"
 #include "../remeshing/remeshing_test_tools.h"
+#include "middles_of.h"
 
 using namespace retroforge;
 
@@ -142,7 +142,7 @@ struct QuadraticSpace
     return {points, std::vector<double>(4, 1. / 24.)};
   }
   static Values       random_values(Random &random) { return random.taylor_hood_values(); }
-  static unsigned int n_dofs(const TetMesh &mesh) { return 4 * mesh.n_nodes() + 3 * MeshEdges(mesh).size(); }
+  static unsigned int n_dofs(const TetMesh &mesh) { return 4 * mesh.n_nodes() + 3 * middles_of(mesh).size(); }
   static double      &velocity(Values &w, const unsigned int shape, const unsigned int component)
   {
     return w.V[shape][component];

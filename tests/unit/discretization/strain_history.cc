@@ -9,8 +9,12 @@
 // - At rest, and where the bubble brings one sub-tetrahedron of a cell to rest, derivatives are finite; in
 //   the first case they are zero.
 
+#include <deal.II/base/mpi.h>
+
+#include <retroforge/mesh/mesh_quality.h>
+
 #include "../element/element_test_tools.h"
-#include "mini_spaces.h"
+#include "mini_discretization.h"
 #include <retroforge/core/dual.h>
 #include <retroforge/discretization/strain_history.h>
 
@@ -28,9 +32,8 @@ TetMesh small_mesh(Random &random)
   for (const auto &s : sides)
     for (const auto &cell : {std::array<NodeIndex, 4>{{s[0], s[1], s[2], 8}}, {{s[0], s[2], s[3], 8}}})
     {
-      mesh.cells.push_back(cell);
-      auto &last = mesh.cells.back();
-      if (cell_geometry(positions_of_cell(mesh, mesh.X, mesh.n_cells() - 1)).volume < 0.)
+      auto &last = mesh.cells.emplace_back(cell);
+      if (tet_volume(corners(last, mesh.X)) < 0.)
         std::swap(last[0], last[1]);
     }
   return mesh;
@@ -48,10 +51,13 @@ struct Inputs
   std::vector<Number *> entries()
   {
     std::vector<Number *> all;
-    for (auto *vectors : {&X, &W.V, &W.beta})
-      for (auto &v : *vectors)
+    const auto            add = [&](auto &vectors) {
+      for (auto &v : vectors)
         for (unsigned int d = 0; d < 3; ++d)
           all.push_back(&v[d]);
+    };
+    add(X);
+    add(W.V); // bubbles last
     all.push_back(&dt);
     for (Number &value : q)
       all.push_back(&value);
@@ -63,7 +69,7 @@ template <typename Number>
 Inputs<Number> empty_inputs(const TetMesh &mesh)
 {
   return {NodalVectors<Number>(mesh.n_nodes()),
-          Field<Number>(mini_spaces(mesh)),
+          Field<Number>(mini_discretization(mesh)),
           Number(0.),
           std::vector<Number>(mesh.n_cells(), Number(0.))};
 }
@@ -82,10 +88,10 @@ double dot_product_defect(const TetMesh             &mesh,
     *in_dual[i]                 = Dual(1, 0, *in[i]);
     in_dual[i]->fastAccessDx(0) = *in_dot[i];
   }
-  const auto tangent = accumulate_strain(mesh, mini_spaces(mesh), dual.X, dual.W, dual.dt, dual.q);
+  const auto tangent = accumulate_strain(mini_discretization(mesh), dual.X, dual.W, dual.dt, dual.q);
   auto       bar     = empty_inputs<double>(mesh);
   bar.q              = y;
-  bar.dt             = reverse_accumulate_strain(mesh, mini_spaces(mesh), at.X, at.W, at.dt, y, bar.W, bar.X);
+  bar.dt         = reverse_accumulate_strain(mini_discretization(mesh), at.X, at.W, at.dt, y, bar.W, bar.X);
   double forward = 0., reverse = 0., size = 0.;
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
   {
@@ -117,21 +123,21 @@ void check_by_hand(const TetMesh &mesh, Random &random)
     shear.W.V[k]  = 0.8 * Vec3({x[2], 0, 0});
   }
   Errors     errors;
-  const auto q = accumulate_strain(mesh, mini_spaces(mesh), mesh.X, flow.W, 0.25, flow.q);
+  const auto q = accumulate_strain(mini_discretization(mesh), mesh.X, flow.W, 0.25, flow.q);
   errors.compare("upsetting", q, std::vector<double>(mesh.n_cells(), 0.2));
-  const auto sheared = accumulate_strain(mesh, mini_spaces(mesh), mesh.X, shear.W, 0.25, q);
+  const auto sheared = accumulate_strain(mini_discretization(mesh), mesh.X, shear.W, 0.25, q);
   errors.compare("shear after it", sheared, std::vector<double>(mesh.n_cells(), 0.2 + 0.2 / std::sqrt(3.)));
 
   const auto          any = random_inputs(mesh, random);
   std::vector<double> expected;
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
   {
-    const auto e = cell_strain_rates(cell_geometry(positions_of_cell(mesh, mesh.X, c)),
-                                     MiniPair::on_cell(mini_spaces(mesh), any.W, c));
+    const auto e = cell_strain_rates(geometry_of_cell(mini_discretization(mesh), mesh.X, c),
+                                     MiniPair::on_cell(mini_discretization(mesh), any.W, c));
     expected.push_back(any.q[c] + any.dt * (e[0] + e[1] + e[2] + e[3]) / 4.);
   }
   errors.compare(
-    "with bubbles", accumulate_strain(mesh, mini_spaces(mesh), mesh.X, any.W, any.dt, any.q), expected);
+    "with bubbles", accumulate_strain(mini_discretization(mesh), mesh.X, any.W, any.dt, any.q), expected);
   errors.print(1e-14);
 }
 
@@ -151,9 +157,16 @@ void check_reverse(const TetMesh &mesh, Random &random)
       errors.compare(what, 1. + dot_product_defect(mesh, at, part, y), 1.);
     };
     alone("dot product, all", [&](auto &part) { part = direction; });
-    alone("dot product, V", [&](auto &part) { part.W.V = direction.W.V; });
+    const auto bubbles = [&](const NodeIndex k) { return k >= mesh.n_nodes(); };
+    alone("dot product, V", [&](auto &part) {
+      for (NodeIndex k = 0; k < part.W.V.size(); ++k)
+        part.W.V[k] = bubbles(k) ? Vec3() : direction.W.V[k];
+    });
     alone("dot product, X", [&](auto &part) { part.X = direction.X; });
-    alone("dot product, beta", [&](auto &part) { part.W.beta = direction.W.beta; });
+    alone("dot product, beta", [&](auto &part) {
+      for (NodeIndex k = 0; k < part.W.V.size(); ++k)
+        part.W.V[k] = bubbles(k) ? direction.W.V[k] : Vec3();
+    });
     alone("dot product, dt", [&](auto &part) { part.dt = direction.dt; });
     alone("dot product, q", [&](auto &part) { part.q = direction.q; });
   }
@@ -165,7 +178,7 @@ double largest_derivative(const TetMesh &mesh, const Field<double> &W)
 {
   auto bar = empty_inputs<double>(mesh);
   reverse_accumulate_strain(
-    mesh, mini_spaces(mesh), mesh.X, W, 0.25, std::vector<double>(mesh.n_cells(), 1.), bar.W, bar.X);
+    mini_discretization(mesh), mesh.X, W, 0.25, std::vector<double>(mesh.n_cells(), 1.), bar.W, bar.X);
   double largest = 0.;
   for (const double *entry : bar.entries())
     largest = std::isfinite(*entry) ? std::max(largest, std::abs(*entry)) : 1e300;
@@ -184,21 +197,23 @@ void check_at_rest(const TetMesh &mesh, Random &random)
                    dot_product_defect(mesh, at, random_inputs(mesh, random), random_inputs(mesh, random).q),
                  1.);
   // On w_0 of cell 0 the bubble's gradient 4 beta (x) g_0 cancels that of the nodes, V_0 (x) g_0.
-  const auto  geometry = cell_geometry(positions_of_cell(mesh, mesh.X, 0));
+  const auto  geometry = geometry_of_cell(mini_discretization(mesh), mesh.X, 0);
   const auto &first    = mesh.cells[0];
-  at.W.beta[0]         = Vec3({0.5, 0.25, -1});
-  at.W.V[first[0]]     = -4. * at.W.beta[0];
-  const auto e         = cell_strain_rates(geometry, MiniPair::on_cell(mini_spaces(mesh), at.W, 0));
+  const Vec3  beta     = Vec3({0.5, 0.25, -1});
+  MiniPair::bubble(mini_discretization(mesh), at.W, 0) = beta;
+  at.W.V[first[0]]                                     = -4. * beta;
+  const auto e = cell_strain_rates(geometry, MiniPair::on_cell(mini_discretization(mesh), at.W, 0));
   errors.compare("one part of a cell at rest", e[0], 0.);
   errors.print(1e-13);
   std::cout << "  the others move, derivatives finite: "
             << (e[1] > 0.1 && largest_derivative(mesh, at.W) < 100. ? "yes" : "NO") << std::endl;
 }
 
-int main()
+int main(int argc, char **argv)
 {
-  Random        random;
-  const TetMesh mesh = small_mesh(random);
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  Random                                   random;
+  const TetMesh                            mesh = small_mesh(random);
   std::cout << "values" << std::endl;
   check_by_hand(mesh, random);
   std::cout << "reverse" << std::endl;

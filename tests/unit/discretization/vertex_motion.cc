@@ -21,6 +21,7 @@
 
 #include "../element/element_test_tools.h"
 #include "../mesh/block_mesh.h"
+#include "middles_of.h"
 
 using namespace retroforge;
 
@@ -29,21 +30,21 @@ struct Motion
 {
   TetMesh              mesh;
   Topology             topology;
-  MeshEdges            edges;
+  MiddleNodes          middles;
   NodalVectors<double> X, V;
   std::vector<double>  freedom;
 
   explicit Motion(const TetMesh &mesh)
       : mesh(mesh)
       , topology(mesh)
-      , edges(mesh)
+      , middles(middles_of(mesh))
       , X(mesh.X)
-      , V(mesh.n_nodes() + edges.size())
+      , V(mesh.n_nodes() + middles.size())
       , freedom(mesh.n_nodes(), 1.)
   {
   }
 
-  VertexMotionInput<double> input() const { return {mesh, topology, edges, X, V, freedom}; }
+  VertexMotionInput<double> input() const { return {mesh, topology, middles, X, V, freedom}; }
   NodalVectors<double>      velocities() const { return vertex_velocities(input()); }
 
   /// A flow's values at the nodes of the velocity.
@@ -52,10 +53,19 @@ struct Motion
   {
     for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
       V[k] = flow(X[k]);
-    for (EdgeIndex e = 0; e < edges.size(); ++e)
-      V[mesh.n_nodes() + e] = flow(0.5 * (X[edges.nodes[e][0]] + X[edges.nodes[e][1]]));
+    for (const auto &[a, b] : middles.ends())
+      V[middles.between(a, b)] = flow(0.5 * (X[a] + X[b]));
   }
 };
+
+/// Between the face's nodes 0 and 1, 1 and 2, 2 and 0.
+std::array<NodeIndex, 3> middles_of_face(const Motion &motion, const std::size_t f)
+{
+  const auto &n = motion.mesh.faces[f].nodes;
+  return {{motion.middles.between(n[0], n[1]),
+           motion.middles.between(n[1], n[2]),
+           motion.middles.between(n[2], n[0])}};
+}
 
 /// Planes of symmetry at x = 0 and y = 0.
 void cut(TetMesh &mesh)
@@ -94,9 +104,9 @@ Motion random_motion(RandomNumbers &random, const bool with_planes)
   }
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     if (!mesh.is_surface(mesh.faces[f]))
-      for (const EdgeIndex e : motion.edges.of_faces[f])
+      for (const NodeIndex middle : middles_of_face(motion, f))
       {
-        Vec3      &v      = motion.V[mesh.n_nodes() + e];
+        Vec3      &v      = motion.V[middle];
         const Vec3 normal = mesh.patches[mesh.faces[f].patch].symmetry->normal;
         v -= (v * normal) * normal;
       }
@@ -124,8 +134,7 @@ double missed(const Motion &motion, const std::size_t f)
 {
   Vec3 sum;
   for (unsigned int i = 0; i < 3; ++i)
-    sum +=
-      motion.V[motion.mesh.n_nodes() + motion.edges.of_faces[f][i]] - motion.V[motion.mesh.faces[f].nodes[i]];
+    sum += motion.V[middles_of_face(motion, f)[i]] - motion.V[motion.mesh.faces[f].nodes[i]];
   return area_vector(motion, f) * sum / 3.;
 }
 
@@ -256,12 +265,11 @@ void check_whole(RandomNumbers &random, Errors &errors)
       whole.V[i]        = mirror ? mirrored(part.V[k]) : part.V[k];
       whole.freedom[i]  = part.freedom[k];
     }
-  for (EdgeIndex e = 0; e < part.edges.size(); ++e)
+  for (const auto &[a, b] : part.middles.ends())
   {
-    const auto &ends                                                           = part.edges.nodes[e];
-    const Vec3  v                                                              = part.V[n + e];
-    whole.V[mesh.n_nodes() + whole.edges.find(image[ends[0]], image[ends[1]])] = mirrored(v);
-    whole.V[mesh.n_nodes() + whole.edges.find(ends[0], ends[1])]               = v;
+    const Vec3 v                                       = part.V[part.middles.between(a, b)];
+    whole.V[whole.middles.between(image[a], image[b])] = mirrored(v);
+    whole.V[whole.middles.between(a, b)]               = v;
   }
   const auto w = whole.velocities(), w_part = part.velocities();
   for (int k = 0; k < n; ++k)
@@ -323,7 +331,7 @@ NodalVectors<double> tangent(const Motion &motion, const Direction &direction)
     freedom.back().fastAccessDx(0) = direction.freedom[k];
   }
   NodalVectors<double> w_dot;
-  for (const auto &v : vertex_velocities<Dual>({motion.mesh, motion.topology, motion.edges, X, V, freedom}))
+  for (const auto &v : vertex_velocities<Dual>({motion.mesh, motion.topology, motion.middles, X, V, freedom}))
     w_dot.push_back(Vec3({v[0].dx(0), v[1].dx(0), v[2].dx(0)}));
   return w_dot;
 }

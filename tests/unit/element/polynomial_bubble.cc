@@ -194,7 +194,10 @@ void compare_residuals(const double m)
     for (unsigned int a = 0; a < 4; ++a)
       w.V[a] = v0 + L * mesh.X[mesh.cells[c][a]];
     w.beta              = Vec3();
-    const auto geometry = cell_geometry(positions_of_cell(mesh, mesh.X, c));
+    Four<Vec3> X;
+    for (unsigned int a = 0; a < 4; ++a)
+      X[a] = mesh.X[mesh.cells[c][a]];
+    const auto geometry = cell_geometry(X);
     const auto kernel   = flatten(cell_residual(geometry, w, law));
     const auto other    = quadrature.residual(c, flatten(w), law);
     const auto part     = [](const std::vector<double> &r, const unsigned int begin, const unsigned int end) {
@@ -264,16 +267,16 @@ struct Differences
 
 Differences solution_differences(const double element_size)
 {
-  const std::string      free_patch = "side +x";
-  const ManufacturedFlow flow{{1., 1., 0.}};
-  const TetMesh          mesh = unit_cube(element_size);
-  const Spaces           spaces(mesh, Topology(mesh), ElementPair::mini);
-  const auto             start    = flow.interpolant(mesh, spaces);
-  const auto             traction = flow.traction_load(mesh, spaces, free_patch);
-  const auto             points   = sub_cell_points();
-  QuadratureElement      quadrature(mesh);
-  const Unknowns         unknowns(spaces);
-  GlobalSystem           system(mesh, unknowns, held_velocities(mesh, spaces, free_patch));
+  const std::string       free_patch = "side +x";
+  const ManufacturedFlow  flow{{1., 1., 0.}};
+  const TetMesh           mesh = unit_cube(element_size);
+  const Discretization<3> discretization(mesh, {ElementPair::mini}, MPI_COMM_SELF);
+  const auto              start    = flow.interpolant(mesh, discretization);
+  const auto              traction = flow.traction_load(mesh, discretization, free_patch);
+  const auto              points   = sub_cell_points();
+  QuadratureElement       quadrature(mesh);
+  const Unknowns          unknowns(discretization);
+  GlobalSystem            system(mesh, unknowns, held_velocities(mesh, discretization, free_patch));
 
   const auto solve = [&](const auto &cell_system) {
     NodalVectors<double> boundary = traction;
@@ -291,22 +294,22 @@ Differences solution_differences(const double element_size)
     return system.solve();
   };
   const std::vector<double> hat        = solve([&](const CellIndex c) {
-    const auto X        = positions_of_cell(mesh, mesh.X, c);
+    const auto X        = positions_of_cell(discretization, mesh.X, c);
     const auto geometry = cell_geometry(X);
     return condense([&](const auto &w) { return flatten(cell_residual(geometry, unflatten(w), flow.law)); },
-                    flatten(MiniPair::on_cell(spaces, start, c)),
+                    flatten(MiniPair::on_cell(discretization, start, c)),
                     flatten(flow.body_load(MiniPair(), points, X)));
   });
   const std::vector<double> polynomial = solve([&](const CellIndex c) {
     return condense([&](const auto &w) { return quadrature.residual(c, w, flow.law); },
-                    flatten(MiniPair::on_cell(spaces, start, c)),
+                    flatten(MiniPair::on_cell(discretization, start, c)),
                     quadrature.body_load(c, flow));
   });
 
   Differences differences{mean_edge(mesh), 0., 0.};
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
   {
-    const double volume = cell_geometry(positions_of_cell(mesh, mesh.X, c)).volume;
+    const double volume = geometry_of_cell(discretization, mesh.X, c).volume;
     for (const SubCellPoint &point : points)
       for (unsigned int i = 0; i < 4; ++i)
       {

@@ -20,7 +20,6 @@
 #include <deal.II/lac/full_matrix.h>
 
 #include "element_test_tools.h"
-#include <retroforge/mesh/edges.h>
 
 using namespace retroforge;
 

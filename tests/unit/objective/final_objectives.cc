@@ -64,7 +64,7 @@ struct FinalProblem
   FinalProblem(TetMesh                 mesh,
                NodalVectors<double>    target,
                const std::vector<Die> &dies = {Die("lower", Vec3(), Vec3({0., 0., 1.}))})
-      : scene(std::move(mesh), ElementPair::mini, dies, MPI_COMM_WORLD)
+      : scene(std::move(mesh), DiscretizationChoice(), dies, MPI_COMM_WORLD)
       , at{scene.mesh.X,
            std::vector<double>(scene.mesh.n_cells(), 0.3),
            std::vector<DieState<double>>(dies.size()),
@@ -84,7 +84,7 @@ struct FinalProblem
   template <typename Number>
   std::vector<Number> integrals(const FinalObjective &objective, const FinalInputs<Number> &inputs) const
   {
-    return sum_over_ranks(objective.integrals(view(inputs)), scene.partition.comm);
+    return sum_over_ranks(objective.integrals(view(inputs)), scene.discretization.comm());
   }
 
   double value(FinalObjective &objective) const
@@ -100,7 +100,7 @@ struct FinalProblem
     FinalInputs<double> result{bar.X, bar.q, bar.dies, bar.target};
     for (const auto &[name, entries] : result.groups())
       for (double *entry : entries)
-        *entry = scene.partition.sum(*entry);
+        *entry = scene.discretization.sum(*entry);
     return result;
   }
 

@@ -31,8 +31,18 @@ struct PathInputs
 {
   struct State
   {
-    NodalVectors<Number> X, Y;
-    Field<Number>        W;
+    NodalVectors<Number> X, Y, V;
+    NodalVectors<Number> bubbles; ///< of all cells, if there are any
+
+    /// What of it this rank has.
+    Field<Number> field(const Scene &scene) const
+    {
+      Field<Number>        W(scene.discretization);
+      NodalVectors<Number> all = V;
+      all.insert(all.end(), bubbles.begin(), bubbles.end());
+      W.V.take(all);
+      return W;
+    }
   };
 
   std::array<State, n_increments> states;
@@ -59,8 +69,8 @@ struct PathInputs
     {
       append(state.X, groups[0].second);
       append(state.Y, groups[1].second);
-      append(state.W.V, groups[2].second);
-      append(state.W.beta, groups[3].second);
+      append(state.V, groups[2].second);
+      append(state.bubbles, groups[3].second);
     }
     for (auto &die : physics.dies)
     {
@@ -83,7 +93,8 @@ PathInputs<Number> empty_inputs(const Scene &scene)
   {
     state.X.resize(scene.mesh.n_nodes());
     state.Y.resize(scene.mesh.n_nodes());
-    state.W = Field<Number>(scene.spaces);
+    state.V.resize(scene.discretization.condensed_nodes()->n());
+    state.bubbles.resize(scene.discretization.has_bubbles() ? scene.mesh.n_cells() : 0);
   }
   inputs.physics.law.K   = Number(0.);
   inputs.physics.law.m   = Number(0.);
@@ -114,11 +125,7 @@ struct PathProblem
   }
 
   PathProblem(Random &random, const bool curved, const ElementPair pair = ElementPair::mini)
-      : scene(half_box_mesh(Vec3({10., 8., 6.}), {{3, 6, 4}}),
-              pair,
-              make_dies(curved),
-              MPI_COMM_WORLD,
-              Bubbles::all)
+      : scene(half_box_mesh(Vec3({10., 8., 6.}), {{3, 6, 4}}), {pair}, make_dies(curved), MPI_COMM_WORLD)
       , at(empty_inputs<double>(scene))
   {
     at.physics.law     = {1.3, 0.4, 0.2};
@@ -130,19 +137,19 @@ struct PathProblem
     for (unsigned int i = 0; i < n_increments; ++i)
     {
       auto &state = at.states[i];
-      for (NodeIndex k = 0; k < state.W.V.size(); ++k)
+      for (NodeIndex k = 0; k < state.V.size(); ++k)
       {
         if (k < scene.mesh.n_nodes())
         {
           state.X[k] = scene.mesh.X[k] + 0.1 * random.vector();
           state.Y[k] = state.X[k] + 0.1 * random.vector();
         }
-        state.W.V[k] = (1. + i) * random.vector();
+        state.V[k] = (1. + i) * random.vector();
       }
-      for (Vec3 &beta : state.W.beta)
+      for (Vec3 &beta : state.bubbles)
         beta = 0.3 * random.vector();
       pairs[i]  = find_contact_pairs(scene.view(at.physics.dies, state.X), ramp, 1.5 * ramp.width, true);
-      active[i] = Stage<double>(scene, at.physics, contact(at, i), state.Y).decide_active(state.W);
+      active[i] = Stage<double>(scene, at.physics, contact(at, i), state.Y).decide_active(state.field(scene));
     }
   }
 
@@ -179,7 +186,8 @@ struct PathProblem
       const ContactSet<double> set = contact(at, i);
       const Stage<double>      stage(scene, at.physics, set, at.states[i].Y);
       for (unsigned int p = 0; p < pairs[i].size(); ++p)
-        n += active[i][p] && approach_excess(stage.contact_node(p, at.states[i].W, active[i])) < 0.;
+        n +=
+          active[i][p] && approach_excess(stage.contact_node(p, at.states[i].field(scene), active[i])) < 0.;
     }
     return n;
   }
@@ -192,13 +200,13 @@ struct PathProblem
     {
       const ContactSet<Number> set = contact(inputs, i);
       const Stage<Number>      stage(scene, inputs.physics, set, inputs.states[i].Y);
-      rows.push_back(
-        {sum_over_ranks(objective.integrals(StageView<Number>{stage, inputs.states[i].W, active[i]}),
-                        scene.partition.comm),
-         dt(inputs, i),
-         Number(strokes[i] / inputs.speed),
-         strokes[i],
-         steps[i]});
+      const Field<Number>      W = inputs.states[i].field(scene);
+      rows.push_back({sum_over_ranks(objective.integrals(StageView<Number>{stage, W, active[i]}),
+                                     scene.discretization.comm()),
+                      dt(inputs, i),
+                      Number(strokes[i] / inputs.speed),
+                      strokes[i],
+                      steps[i]});
     }
     return rows;
   }
@@ -214,8 +222,15 @@ struct PathProblem
       const Stage<double>      stage(scene, inputs.physics, set, inputs.states[i].Y);
       ContactSetBar            set_bar(pairs[i].size());
       PhysicsBar               physics_bar(scene.dies);
-      StageBar                 stage_bar{bar.states[i].W, bar.states[i].Y, set_bar, physics_bar};
-      objective.reverse_integrals({stage, inputs.states[i].W, active[i]}, rows_bar[i].integrals, stage_bar);
+      const Field<double>      W = inputs.states[i].field(scene);
+      Field<double>            W_bar(scene.discretization);
+      StageBar                 stage_bar{W_bar, bar.states[i].Y, set_bar, physics_bar};
+      objective.reverse_integrals({stage, W, active[i]}, rows_bar[i].integrals, stage_bar);
+      for (unsigned int place = 0; place < W_bar.V.size(); ++place)
+      {
+        const NodeIndex k = W_bar.V.numbering()->node_at(place), n = bar.states[i].V.size();
+        (k < n ? bar.states[i].V[k] : bar.states[i].bubbles[k - n]) += W_bar.V.at_place(place);
+      }
       reverse_contact_set(scene.view(inputs.physics.dies, inputs.states[i].X),
                           set,
                           ramp,
@@ -225,7 +240,7 @@ struct PathProblem
       add_numbers(physics_bar.law, bar.physics.law);
       add_numbers(physics_bar.contact, bar.physics.contact);
       bar.tau += physics_bar.tau * dt(inputs, i);
-      if (dealii::Utilities::MPI::this_mpi_process(scene.partition.comm) == 0)
+      if (dealii::Utilities::MPI::this_mpi_process(scene.discretization.comm()) == 0)
         physics_bar.dt += dt_bar(forward[i], rows_bar[i]);
       bar.speed -= (inputs.tau * physics_bar.tau + physics_bar.dt) * steps[i] / (inputs.speed * inputs.speed);
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
@@ -237,7 +252,7 @@ struct PathProblem
     }
     for (const auto &[name, entries] : bar.groups())
       for (double *entry : entries)
-        *entry = scene.partition.sum(*entry);
+        *entry = scene.discretization.sum(*entry);
     return bar;
   }
 };

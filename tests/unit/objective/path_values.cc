@@ -46,7 +46,7 @@ public:
   explicit Upsetting(const ElementPair pair = ElementPair::mini)
       : scene_(
           make_cube(),
-          pair,
+          {pair},
           {Die("lower", Vec3(), Vec3({0., 0., 1.})), Die("upper", Vec3({0., 0., edge}), Vec3({0., 0., -1.}))},
           MPI_COMM_WORLD)
   {
@@ -58,10 +58,12 @@ public:
     PathRows<double>     rows;
     for (int i = 0; i < n_increments; ++i)
     {
-      const double  step = stroke / n_increments, dt = step / v, h = edge - i * step;
-      Field<double> W(scene_.spaces);
+      const double         step = stroke / n_increments, dt = step / v, h = edge - i * step;
+      NodalVectors<double> V(X.size());
       for (NodeIndex k = 0; k < X.size(); ++k)
-        W.V[k] = speed / h * Vec3({X[k][0] / 2., X[k][1] / 2., -X[k][2]});
+        V[k] = speed / h * Vec3({X[k][0] / 2., X[k][1] / 2., -X[k][2]});
+      Field<double> W(scene_.discretization);
+      W.V.take(V);
       const Vec3            lower({0., 0., 0.}), upper({0., 0., -v - faster});
       const Physics<double> physics{
         {K, 1., 0.}, {rho, 0.}, {{lower, Vec3(), 0., {}}, {upper, Vec3({0., 0., -i * step}), 0., {}}}};
@@ -76,7 +78,7 @@ public:
                       i * step,
                       step});
       for (NodeIndex k = 0; k < X.size(); ++k)
-        X[k] += dt * W.V[k];
+        X[k] += dt * V[k];
     }
     return rows;
   }
@@ -97,7 +99,7 @@ public:
     const auto contact =
       make_contact_set<double>(scene_.view(physics.dies, X), pairs, {ramp, 0.1, 0., edge_stiffness});
     const Stage<double>    stage(scene_, physics, contact, X);
-    const Field<double>    W(scene_.spaces); // at rest
+    const Field<double>    W(scene_.discretization); // at rest
     const PathRows<double> rows = {
       {sum_over_ranks(objective.integrals({stage, W, stage.decide_active(W)}), MPI_COMM_WORLD),
        0.1,
@@ -136,7 +138,7 @@ public:
 
 private:
   const Vec3 &x(const NodeIndex k) const { return scene_.mesh.X[k]; }
-  bool        is_linear() const { return scene_.spaces.pair() == ElementPair::mini; }
+  bool        is_linear() const { return scene_.discretization.pair() == ElementPair::mini; }
   bool        is_on_top(const NodeIndex k) const { return x(k)[2] > edge - 1e-9; }
 
   static constexpr double edge_stiffness = 0.3;

@@ -25,9 +25,8 @@ public:
   template <typename Number>
   std::vector<Number> compute_integrals(const FinalView<Number> &view) const
   {
-    const Partition    &partition = view.scene.partition;
     std::vector<Number> sums(2, Number(0.));
-    for (const CellIndex c : partition.cells().owned())
+    for (const CellIndex c : view.scene.discretization.cells().owned())
     {
       const Number volume = cell_volume(view, c);
       sums[0] += volume;
@@ -48,8 +47,7 @@ public:
                          const std::vector<double> &weights,
                          FinalBar                  &bar) const override
   {
-    const Partition &partition = view.scene.partition;
-    for (const CellIndex c : partition.cells().owned())
+    for (const CellIndex c : view.scene.discretization.cells().owned())
     {
       reverse_cell_volume(view, c, weights[0] + weights[1] * height(view, c), bar.X);
       for (const NodeIndex k : view.scene.mesh.cells[c])
@@ -83,7 +81,7 @@ int main(int argc, char **argv)
   BilletParameters                         block;
   block.size         = Vec3({2., 3., 4.});
   block.element_size = 1.;
-  const Scene        scene(make_billet(block, MPI_COMM_SELF), ElementPair::mini, {}, MPI_COMM_SELF);
+  const Scene        scene(make_billet(block, MPI_COMM_SELF), {}, {}, MPI_COMM_SELF);
   const CentreHeight objective;
   const double       start = value(scene, objective, scene.mesh.X);
   std::cout << "value on a block of height 4: " << (std::abs(start - 2.) < 1e-14 ? "2" : "wrong")

@@ -35,11 +35,12 @@ namespace
                const Field<double> &before,
                const Field<double> &after)
   {
-    const auto               &pairs = corner.contact.pairs;
-    std::vector<unsigned int> n_dies(before.V.size(), 0);
+    const auto               &pairs    = corner.contact.pairs;
+    const auto                V_before = corner.velocities(before), V_after = corner.velocities(after);
+    std::vector<unsigned int> n_dies(V_before.size(), 0);
     for (const ContactPair &pair : pairs)
       n_dies[pair.point.nodes[0]] += pair.point.is_node();
-    std::vector<bool> watched(before.V.size(), false);
+    std::vector<bool> watched(V_before.size(), false);
     double            through = 0., out_of_plane = 0.;
     unsigned int      stopped = 0, active = 0, strangers = 0;
     for (unsigned int p = 0; p < pairs.size(); ++p)
@@ -55,11 +56,11 @@ namespace
           active += node.active;
         }
       }
-    for (NodeIndex k = 0; k < before.V.size(); ++k)
+    for (NodeIndex k = 0; k < V_before.size(); ++k)
     {
-      strangers += !watched[k] && (after.V[k] - before.V[k]).norm() > 0.;
+      strangers += !watched[k] && (V_after[k] - V_before[k]).norm() > 0.;
       for (const Vec3 &n : corner.scene.topology.fixed_directions[k])
-        out_of_plane = std::max(out_of_plane, std::abs(after.V[k] * n));
+        out_of_plane = std::max(out_of_plane, std::abs(V_after[k] * n));
     }
     std::printf("%s: nodes stopped: %s, through a die: %s, of one die all count as active: %s\n"
                 "  out of the plane of symmetry: %s, others moved: %u\n",
@@ -102,7 +103,7 @@ int main(int argc, char **argv)
     }
   Field<double> sticking = touching.W;
   stop_at_dies(touching.stage(), ActiveSet(pairs.size(), 0), sticking);
-  std::vector<unsigned int> dies_of(sticking.V.size(), 0);
+  std::vector<unsigned int> dies_of(corner.scene.mesh.n_nodes(), 0);
   for (const ContactPair &pair : pairs)
     dies_of[pair.point.nodes[0]] += pair.point.is_node();
   unsigned int straight = 0, at_rest = 0, count = 0;
@@ -122,17 +123,18 @@ int main(int argc, char **argv)
 
   Field<double> same = corner.W;
   stop_at_dies(corner.stage(), corner.active, same);
-  double change = 0.;
-  for (NodeIndex k = 0; k < same.V.size(); ++k)
-    change = std::max(change, (same.V[k] - corner.W.V[k]).norm());
+  double     change   = 0.;
+  const auto V_before = corner.velocities(corner.W), V_after = corner.velocities(same);
+  for (NodeIndex k = 0; k < V_after.size(); ++k)
+    change = std::max(change, (V_after[k] - V_before[k]).norm());
   std::printf("active in the step: moved: %s\n", change == 0. ? "none" : "some");
 
   // A billet at rest under pressure: its boundary pushes outwards.
-  Field<double> pressed(corner.scene.spaces);
-  for (NodeIndex k = 0; k < pressed.P.size(); ++k)
-    pressed.P[k] = 50.;
+  Field<double> pressed(corner.scene.discretization);
+  for (double &pressure : pressed.P)
+    pressure = 50.;
   const auto velocity_of = [&](const unsigned int p) -> Vec3 & { return pressed.V[pairs[p].point.nodes[0]]; };
-  std::vector<unsigned int> n_dies(pressed.V.size(), 0);
+  std::vector<unsigned int> n_dies(corner.scene.mesh.n_nodes(), 0);
   for (unsigned int p = 0; p < pairs.size(); ++p)
     if (pairs[p].point.is_node())
     {
@@ -194,7 +196,7 @@ int main(int argc, char **argv)
   stiff.contact.edge_stiffness = 1e-6; // edges press with nodes that sink in, as softly as in a run
   lean_on_dies(stiff.stage(), hold_on_dies(stiff.stage(), leaning), leaning);
   Field<double> r = stiff.stage().residual(leaning, {});
-  stiff.scene.exchange.update(r.V);
+  r.V.update_ghosts();
   double       unbalanced = 0.;
   unsigned int leant      = 0;
   for (unsigned int p = 0; p < pairs.size(); ++p)

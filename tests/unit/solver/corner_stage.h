@@ -32,13 +32,9 @@ namespace retroforge
                 const ElementPair                  pair  = ElementPair::mini,
                 const std::array<unsigned int, 3> &cells = {{4, 6, 4}},
                 const double                       hills = 0.3)
-        : scene(half_box_mesh(Vec3({10., 8., 6.}), cells),
-                pair,
-                make_dies(hills),
-                MPI_COMM_WORLD,
-                Bubbles::all)
+        : scene(half_box_mesh(Vec3({10., 8., 6.}), cells), {pair}, make_dies(hills), MPI_COMM_WORLD)
         , X(scene.mesh.X)
-        , W(scene.spaces)
+        , W(scene.discretization)
     {
       for (Vec3 &x : X)
         x += 0.05 * random.vector();
@@ -55,21 +51,35 @@ namespace retroforge
 
     Stage<double> stage() const { return {scene, physics, contact, X}; }
 
-    /// Without what the plane of symmetry fixes.
+    /// Without what the plane of symmetry fixes; the same on any number of ranks.
     Field<double> random_field(Random &random) const
     {
-      Field<double> x(scene.spaces);
-      for (NodeIndex k = 0; k < scene.spaces.n_velocity_nodes(); ++k)
+      const auto          &discretization = scene.discretization;
+      const NodeNumbering &nodes          = *discretization.condensed_nodes();
+      NodalVectors<double> V(nodes.n() + (discretization.has_bubbles() ? scene.mesh.n_cells() : 0));
+      std::vector<double>  P(scene.mesh.n_nodes());
+      for (NodeIndex k = 0; k < V.size(); ++k)
       {
-        x.V[k] = random.vector();
-        if (k < scene.mesh.n_nodes())
-          x.P[k] = random.scalar();
-        for (const Vec3 &n : scene.spaces.fixed_directions(k))
-          x.V[k] -= (x.V[k] * n) * n;
+        V[k] = (k < nodes.n() ? 1. : 0.1) * random.vector();
+        if (k < P.size())
+          P[k] = random.scalar();
       }
-      for (Vec3 &beta : x.beta)
-        beta = 0.1 * random.vector();
+      Field<double> x(discretization);
+      x.V.take(V);
+      x.P.take(P);
+      for (unsigned int place = 0; place < nodes.n_places(); ++place)
+        for (const Vec3 &n : discretization.fixed_directions(place))
+        {
+          Vec3 &v = x.V[nodes.node_at(place)];
+          v -= (v * n) * n;
+        }
       return x;
+    }
+
+    /// Velocities at all nodes but bubbles.
+    NodalVectors<double> velocities(const Field<double> &W_of_rank) const
+    {
+      return W_of_rank.V.complete(*scene.discretization.condensed_nodes());
     }
   };
 } // namespace retroforge

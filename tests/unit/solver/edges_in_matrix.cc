@@ -39,26 +39,22 @@ namespace
         positions.push_back(number(position));
       const auto contact_dual = make_contact_set<Dual>(
         scene.view(dual.dies, positions), contact.pairs, {FrictionRamp{0.5, false}, Dual(0.4), 0.3, 0.3});
-      Field<Dual> field(scene.spaces);
-      for (NodeIndex k = 0; k < scene.mesh.n_nodes(); ++k)
+      Field<Dual> field(scene.discretization);
+      for (unsigned int i = 0; i < field.V.size(); ++i)
+        field.V.at_place(i) = number(W.V.at_place(i), x.V.at_place(i));
+      for (unsigned int i = 0; i < field.P.size(); ++i)
       {
-        field.V[k]                 = number(W.V[k], x.V[k]);
-        field.P[k]                 = Dual(W.P[k]);
-        field.P[k].fastAccessDx(0) = x.P[k];
+        field.P.at_place(i)                 = Dual(W.P.at_place(i));
+        field.P.at_place(i).fastAccessDx(0) = x.P.at_place(i);
       }
-      for (CellIndex c = 0; c < scene.mesh.n_cells(); ++c)
-        field.beta[c] = number(W.beta[c], x.beta[c]);
       const Field<Dual> r = Stage<Dual>(scene, dual, contact_dual, positions).residual(field, active);
-      Field<double>     r_dot(scene.spaces);
-      for (NodeIndex k = 0; k < scene.mesh.n_nodes(); ++k)
-      {
+      Field<double>     r_dot(scene.discretization);
+      for (unsigned int k = 0; k < r.V.size(); ++k)
         for (unsigned int i = 0; i < 3; ++i)
-          r_dot.V[k][i] = r.V[k][i].dx(0);
-        r_dot.P[k] = r.P[k].dx(0);
-      }
-      for (CellIndex c = 0; c < scene.mesh.n_cells(); ++c)
-        for (unsigned int i = 0; i < 3; ++i)
-          r_dot.beta[c][i] = r.beta[c][i].dx(0);
+          r_dot.V.at_place(k)[i] = r.V.at_place(k)[i].dx(0);
+      for (unsigned int k = 0; k < r.P.size(); ++k)
+        r_dot.P.at_place(k) = r.P.at_place(k).dx(0);
+      r_dot.update_ghosts();
       return r_dot;
     }
 
@@ -75,8 +71,6 @@ namespace
       Field<double> solution;
       system.assemble(stage(), W, pressed);
       system.solve(rhs, 1e-12, solution);
-      scene.exchange.gather(solution);
-      scene.partition.cells().gather(solution.beta.data()->begin_raw(), 3);
       return solution;
     }
 
@@ -92,12 +86,12 @@ namespace
     }
   };
 
+  /// Of all ranks.
   std::vector<double> flat(const Field<double> &x)
   {
-    std::vector<double> list = x.P;
-    for (const auto *vectors : {&x.V, &x.beta})
-      for (const Vec3 &v : *vectors)
-        list.insert(list.end(), v.begin_raw(), v.end_raw());
+    std::vector<double> list = x.P.complete(*x.P.numbering());
+    for (const Vec3 &v : x.V.complete(*x.V.numbering()))
+      list.insert(list.end(), v.begin_raw(), v.end_raw());
     return list;
   }
 
@@ -112,18 +106,18 @@ namespace
 
   void describe(const Corner &corner)
   {
-    const Partition &partition = corner.scene.partition;
-    unsigned int     n = 0, n_pressed = 0, n_frames = 0;
-    double           n_shared = 0.;
+    const auto  &discretization = corner.scene.discretization;
+    unsigned int n = 0, n_pressed = 0, n_frames = 0;
+    double       n_shared = 0.;
     for (unsigned int p = 0; p < corner.contact.pairs.size(); ++p)
       if (const ContactPoint &point = corner.contact.pairs[p].point; !point.is_node())
       {
         ++n;
         n_pressed += corner.active[p];
-        n_shared += partition.owns(point.nodes[0]) && !partition.owns(point.nodes[1]);
+        n_shared += discretization.owns(point.nodes[0]) && !discretization.owns(point.nodes[1]);
         n_frames += corner.scene.topology.fixed_directions[point.nodes[0]].size() > 0;
       }
-    n_shared = partition.sum(n_shared);
+    n_shared = discretization.sum(n_shared);
     std::cout << "  middles of edges: " << n << ", pressed: " << n_pressed
               << ", at nodes of the plane of symmetry: " << (n_frames > 1 ? "yes" : "NO")
               << ", across ranks: " << (n_shared > 1. ? "yes" : "none") << "\n";

@@ -70,7 +70,7 @@ int main(int argc, char **argv)
         for (const auto &[a, b] : corner.scene.topology.surface_edges)
           if (a == pairs[p].point.nodes[0] || b == pairs[p].point.nodes[0])
           {
-            const NodeIndex middle = corner.scene.mesh.n_nodes() + corner.scene.spaces.edges()->find(a, b);
+            const NodeIndex middle = corner.scene.discretization.middles()->between(a, b);
             const auto      q      = pair_at(pairs[p].die, middle);
             held                   = held && q < pairs.size() && own[q] && !spans_a_corner(corner, q);
           }

@@ -10,6 +10,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <retroforge/core/timer.h>
+#include <retroforge/discretization/element_pairs.h>
 #include <retroforge/solver/newton.h>
 
 #include "corner_stage.h"
@@ -25,13 +26,18 @@ namespace
     return condition ? "yes" : "NO";
   }
 
+  Vec3 bubble(const CornerStage &corner, const Field<double> &W, const CellIndex c)
+  {
+    return MiniPair::bubble(corner.scene.discretization, W, c);
+  }
+
   /// Largest of the bubbles' residuals.
   double bubble_residual(const CornerStage &corner, const Field<double> &W)
   {
     const Field<double> r       = corner.stage().residual(W, {});
     double              largest = 0.;
-    for (const CellIndex c : corner.scene.partition.visited_cells)
-      largest = std::max(largest, r.beta[c].norm());
+    for (const CellIndex c : corner.scene.discretization.visited_cells())
+      largest = std::max(largest, bubble(corner, r, c).norm());
     return dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD);
   }
 
@@ -41,10 +47,10 @@ namespace
     settle_bubbles(corner.stage(), settled);
     recover_bubbles(corner.stage(), recovered);
     double change = 0., size = 0.;
-    for (const CellIndex c : corner.scene.partition.visited_cells)
+    for (const CellIndex c : corner.scene.discretization.visited_cells())
     {
-      change = std::max(change, (settled.beta[c] - recovered.beta[c]).norm());
-      size   = std::max(size, recovered.beta[c].norm());
+      change = std::max(change, (bubble(corner, settled, c) - bubble(corner, recovered, c)).norm());
+      size   = std::max(size, bubble(corner, recovered, c).norm());
     }
     std::printf("bubbles: in equilibrium: %s, as from nothing: %s\n",
                 yes(bubble_residual(corner, settled) < 1e-9 * bubble_residual(corner, corner.W)),
@@ -68,7 +74,7 @@ namespace
     Random                 random;
     CornerStage            corner(random, rho);
     Solver                 solver(corner.scene);
-    Field<double>          W(corner.scene.spaces);
+    Field<double>          W(corner.scene.discretization);
     const NewtonStatistics from_rest = solver.newton.solve(corner.stage(), W, {});
     const ActiveSet        active    = corner.stage().decide_active(W);
     Field<double>          again     = W;
@@ -85,12 +91,12 @@ namespace
     Random        random;
     CornerStage   corner(random, 1e3);
     Solver        solver(corner.scene);
-    Field<double> first(corner.scene.spaces);
+    Field<double> first(corner.scene.discretization);
     solver.newton.solve(corner.stage(), first, {});
-    const NodalVectors<double> X    = corner.X;
+    const NodalVectors<double> X = corner.X, V = corner.velocities(first);
     const auto                 move = [&](const double time) {
       for (NodeIndex k = 0; k < X.size(); ++k)
-        corner.X[k] = X[k] + time * first.V[k];
+        corner.X[k] = X[k] + time * V[k];
     };
     constexpr double dt     = 2e-2;
     Field<double>    second = first;
@@ -108,9 +114,10 @@ namespace
     Field<double> third = second;
     solver.newton.solve(corner.stage(), third, {}, Start::near, corner.stage().decide_active(second));
     const auto distance = [&](const Field<double> &W) {
-      double sum = 0.;
-      for (NodeIndex k = 0; k < W.V.size(); ++k)
-        sum += (W.V[k] - third.V[k]).norm_square();
+      double     sum  = 0.;
+      const auto of_W = corner.velocities(W), of_third = corner.velocities(third);
+      for (NodeIndex k = 0; k < of_W.size(); ++k)
+        sum += (of_W[k] - of_third[k]).norm_square();
       return std::sqrt(sum);
     };
     std::printf("ahead: at most half as far: %s\n", yes(distance(start) < 0.5 * distance(second)));

@@ -34,7 +34,7 @@ namespace
   {
     bool first = true;
     for (NodeIndex k = 0; k < frames.size(); ++k)
-      for (const Vec3 &direction : corner.scene.spaces.fixed_directions(k))
+      for (const Vec3 &direction : corner.scene.discretization.fixed_directions(k))
         first &= std::abs(std::abs(frames[k].axes[0] * direction) - 1.) < 1e-14;
     return first;
   }

@@ -35,14 +35,13 @@ namespace
     /// At rest in the plane of symmetry, and without divergence.
     Field<double> linear_velocity() const
     {
-      Field<double>               V(scene.spaces);
-      const MeshEdges            &edges = *scene.spaces.edges();
-      const NodalVectors<double> &x     = scene.mesh.X;
-      for (NodeIndex k = 0; k < x.size(); ++k)
-        V.V[k] = Vec3({0.5 * x[k][0], 0.2 + 0.1 * x[k][0] + 0.3 * x[k][1], 0.1 * x[k][1] - 0.8 * x[k][2]});
-      for (unsigned int e = 0; e < edges.size(); ++e)
-        V.V[x.size() + e] = 0.5 * (V.V[edges.nodes[e][0]] + V.V[edges.nodes[e][1]]);
-      return V;
+      NodalVectors<double> V(scene.mesh.n_nodes());
+      for (NodeIndex k = 0; k < V.size(); ++k)
+      {
+        const Vec3 &x = scene.mesh.X[k];
+        V[k]          = Vec3({0.5 * x[0], 0.2 + 0.1 * x[0] + 0.3 * x[1], 0.1 * x[1] - 0.8 * x[2]});
+      }
+      return interpolated(scene.discretization, V, std::vector<double>(V.size(), 0.));
     }
   };
 

@@ -27,7 +27,7 @@ void print(const std::string           &what,
   billet.symmetry_planes = symmetry_planes;
   billet.rotations.angle = angle;
   const Scene     scene(make_billet(billet, MPI_COMM_WORLD),
-                    ElementPair::mini,
+                    {},
                     {Die("lower", Vec3({0., 0., -1.}), Vec3({0., 0., 1.})),
                          Die("upper", Vec3({0., 0., 21.}), Vec3({0., 0., -1.}))},
                     MPI_COMM_WORLD);

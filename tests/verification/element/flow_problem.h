@@ -45,18 +45,19 @@ namespace retroforge
   public:
     using Indices = std::vector<dealii::types::global_dof_index>;
 
-    explicit Unknowns(const Spaces &spaces) : spaces_(spaces) {}
+    explicit Unknowns(const Discretization<3> &discretization) : discretization_(discretization) {}
 
-    unsigned int size() const { return first_pressure() + spaces_.n_pressure_nodes(); }
+    unsigned int size() const { return first_pressure() + discretization_.n_vertices(); }
     unsigned int velocity(const NodeIndex k, const unsigned int i) const { return 3 * k + i; }
     unsigned int pressure(const NodeIndex k) const { return first_pressure() + k; }
 
     /// Of a cell, in the same order.
     Indices of_cell(const CellIndex c) const
     {
-      const NodeIndex   *nodes = spaces_.velocity_nodes(c);
-      const unsigned int n     = spaces_.n_nodes_per_cell();
-      Indices            indices;
+      // On one rank places are numbers of nodes.
+      const unsigned int *nodes = discretization_.velocity_places(c);
+      const unsigned int  n     = discretization_.n_nodes_per_cell();
+      Indices             indices;
       for (unsigned int a = 0; a < n; ++a)
         for (unsigned int i = 0; i < 3; ++i)
           indices.push_back(velocity(nodes[a], i));
@@ -66,9 +67,9 @@ namespace retroforge
     }
 
   private:
-    unsigned int first_pressure() const { return 3 * spaces_.n_velocity_nodes(); }
+    unsigned int first_pressure() const { return 3 * discretization_.condensed_nodes()->n(); }
 
-    const Spaces &spaces_;
+    const Discretization<3> &discretization_;
   };
 
   /// The cell's equations, unknowns as Unknowns::of_cell.
@@ -209,26 +210,27 @@ namespace retroforge
 
   /// Velocity nodes of a face of the boundary: its corners, then the middles of its edges where there are
   /// any.
-  inline std::vector<NodeIndex>
-  velocity_nodes_of_face(const TetMesh &mesh, const Spaces &spaces, const unsigned int face)
+  inline std::vector<NodeIndex> velocity_nodes_of_face(const TetMesh           &mesh,
+                                                       const Discretization<3> &discretization,
+                                                       const unsigned int       face)
   {
     const auto            &corners = mesh.faces[face].nodes;
     std::vector<NodeIndex> nodes(corners.begin(), corners.end());
-    if (const MeshEdges *edges = spaces.edges())
-      for (const EdgeIndex e : edges->of_faces[face])
-        nodes.push_back(mesh.n_nodes() + e);
+    if (const MiddleNodes *middles = discretization.middles())
+      for (unsigned int i = 0; i < 3; ++i)
+        nodes.push_back(middles->between(corners[i], corners[(i + 1) % 3]));
     return nodes;
   }
 
   /// Holds the velocity on all patches but `free_patch`.
   inline std::vector<char>
-  held_velocities(const TetMesh &mesh, const Spaces &spaces, const std::string &free_patch)
+  held_velocities(const TetMesh &mesh, const Discretization<3> &discretization, const std::string &free_patch)
   {
-    const Unknowns    unknowns(spaces);
+    const Unknowns    unknowns(discretization);
     std::vector<char> fixed(unknowns.size(), 0);
     for (unsigned int f = 0; f < mesh.faces.size(); ++f)
       if (mesh.patches[mesh.faces[f].patch].name != free_patch)
-        for (const NodeIndex k : velocity_nodes_of_face(mesh, spaces, f))
+        for (const NodeIndex k : velocity_nodes_of_face(mesh, discretization, f))
           for (unsigned int i = 0; i < 3; ++i)
             fixed[unknowns.velocity(k, i)] = 1;
     return fixed;

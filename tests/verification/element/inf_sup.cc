@@ -51,7 +51,7 @@ Pressures times_mass(const TetMesh &mesh, const Pressures &p)
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
   {
     const auto  &nodes = mesh.cells[c];
-    const double unit  = cell_geometry(positions_of_cell(mesh, mesh.X, c)).volume / 20.;
+    const double unit  = tet_volume(corners(nodes, mesh.X)) / 20.;
     const double sum   = p[nodes[0]] + p[nodes[1]] + p[nodes[2]] + p[nodes[3]];
     for (const NodeIndex k : nodes)
       y[k] += unit * (sum + p[k]);
@@ -91,10 +91,10 @@ CellSystem gradient_blocks(const CellGeometry<double> &geometry, const double ka
 class SchurComplement
 {
 public:
-  SchurComplement(const TetMesh &mesh, const Spaces &spaces, const Blocks &blocks)
-      : unknowns_(spaces), system_(mesh, unknowns_, held(mesh, spaces))
+  SchurComplement(const TetMesh &mesh, const Discretization<3> &discretization, const Blocks &blocks)
+      : unknowns_(discretization), system_(mesh, unknowns_, held(mesh, discretization))
   {
-    system_.assemble([&](const CellIndex c) { return blocks(geometry_of_cell(mesh, mesh.X, c)); });
+    system_.assemble([&](const CellIndex c) { return blocks(geometry_of_cell(discretization, mesh.X, c)); });
   }
 
   /// p of  (B^T A^-1 B - C) p = r  up to a constant, for r orthogonal to constants.
@@ -112,10 +112,10 @@ public:
 
 private:
   /// All boundary velocities, and one pressure for the constant.
-  static std::vector<char> held(const TetMesh &mesh, const Spaces &spaces)
+  static std::vector<char> held(const TetMesh &mesh, const Discretization<3> &discretization)
   {
-    std::vector<char> fixed             = held_velocities(mesh, spaces, "none");
-    fixed[Unknowns(spaces).pressure(0)] = 1;
+    std::vector<char> fixed                     = held_velocities(mesh, discretization, "none");
+    fixed[Unknowns(discretization).pressure(0)] = 1;
     return fixed;
   }
 
@@ -125,10 +125,10 @@ private:
 
 double inf_sup_constant(const TetMesh &mesh, const ElementPair pair, const Blocks &blocks)
 {
-  const Spaces    spaces(mesh, Topology(mesh), pair);
-  SchurComplement schur(mesh, spaces, blocks);
-  const Pressures ones(mesh.n_nodes(), 1.), M_ones = times_mass(mesh, ones);
-  const double    volume = dot(ones, M_ones);
+  const Discretization<3> discretization(mesh, {pair}, MPI_COMM_SELF);
+  SchurComplement         schur(mesh, discretization, blocks);
+  const Pressures         ones(mesh.n_nodes(), 1.), M_ones = times_mass(mesh, ones);
+  const double            volume = dot(ones, M_ones);
 
   std::mt19937           generator(1);
   Pressures              p(mesh.n_nodes());

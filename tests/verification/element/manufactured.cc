@@ -33,7 +33,7 @@ using Values = typename Pair::template Values<double>;
 template <typename Pair>
 double newton_step(const ManufacturedFlow          &flow,
                    const TetMesh                   &mesh,
-                   const Spaces                    &spaces,
+                   const Discretization<3>         &discretization,
                    const std::vector<Values<Pair>> &loads,
                    const NodalVectors<double>      &traction,
                    GlobalSystem                    &system,
@@ -43,12 +43,12 @@ double newton_step(const ManufacturedFlow          &flow,
   std::vector<CellTangent>  tangents; // of cells with bubbles
   NodalVectors<double>      boundary = traction;
   system.assemble([&](const CellIndex c) {
-    const auto geometry = geometry_of_cell(mesh, mesh.X, c);
-    const auto w        = Pair::on_cell(spaces, W, c);
+    const auto geometry = geometry_of_cell(discretization, mesh.X, c);
+    const auto w        = Pair::on_cell(discretization, W, c);
     auto       residual = cell_residual(geometry, w, flow.law);
-    for (unsigned int a = 0; a < spaces.n_nodes_per_cell(); ++a)
+    for (unsigned int a = 0; a < discretization.n_nodes_per_cell(); ++a)
       // Traction is given to the node's first cell.
-      rhs[c].V[a] += std::exchange(boundary[spaces.velocity_nodes(c)[a]], Vec3()) - residual.V[a];
+      rhs[c].V[a] += std::exchange(boundary[discretization.velocity_places(c)[a]], Vec3()) - residual.V[a];
     for (unsigned int a = 0; a < 4; ++a)
       rhs[c].P[a] -= residual.P[a];
     if constexpr (std::is_same_v<Pair, MiniPair>)
@@ -60,10 +60,10 @@ double newton_step(const ManufacturedFlow          &flow,
   });
   const std::vector<double> x = system.solve();
 
-  const Unknowns unknowns(spaces);
-  Field<double>  step(spaces);
+  const Unknowns unknowns(discretization);
+  Field<double>  step(discretization);
   double         step2 = 0., size2 = 0.;
-  for (NodeIndex k = 0; k < spaces.n_velocity_nodes(); ++k)
+  for (NodeIndex k = 0; k < discretization.condensed_nodes()->n(); ++k)
   {
     for (unsigned int i = 0; i < 3; ++i)
       step.V[k][i] = x[unknowns.velocity(k, i)];
@@ -75,22 +75,22 @@ double newton_step(const ManufacturedFlow          &flow,
   if constexpr (std::is_same_v<Pair, MiniPair>)
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
-      const auto w = Pair::on_cell(spaces, step, c);
-      step.beta[c] = tangents[c].recover_bubble(rhs[c].beta, w.V, w.P);
+      const auto w                     = Pair::on_cell(discretization, step, c);
+      step.V[discretization.bubble(c)] = tangents[c].recover_bubble(rhs[c].beta, w.V, w.P);
     }
   W.add(1., step);
   return std::sqrt(step2 / size2);
 }
 
 template <typename Pair>
-FlowErrors errors_of(const TetMesh &mesh, const Spaces &spaces, const Field<double> &W)
+FlowErrors errors_of(const TetMesh &mesh, const Discretization<3> &discretization, const Field<double> &W)
 {
   FlowErrors e{mean_edge(mesh), 0., 0., 0.};
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
   {
-    const auto X        = positions_of_cell(mesh, mesh.X, c);
+    const auto X        = positions_of_cell(discretization, mesh.X, c);
     const auto geometry = cell_geometry(X);
-    auto       w        = Pair::on_cell(spaces, W, c);
+    auto       w        = Pair::on_cell(discretization, W, c);
     for (const SubCellPoint &point : points)
     {
       const Vec3 x  = point.position(X);
@@ -124,22 +124,22 @@ FlowErrors errors_of(const TetMesh &mesh, const Spaces &spaces, const Field<doub
 template <typename Pair>
 FlowErrors solve_on(const ManufacturedFlow &flow, const double element_size, std::ostream &output)
 {
-  const TetMesh mesh = unit_cube(element_size);
-  const Spaces  spaces(
-    mesh, Topology(mesh), std::is_same_v<Pair, MiniPair> ? ElementPair::mini : ElementPair::taylor_hood);
+  const TetMesh           mesh = unit_cube(element_size);
+  const Discretization<3> discretization(
+    mesh, {std::is_same_v<Pair, MiniPair> ? ElementPair::mini : ElementPair::taylor_hood}, MPI_COMM_SELF);
   std::vector<Values<Pair>> loads;
   for (CellIndex c = 0; c < mesh.n_cells(); ++c)
-    loads.push_back(flow.body_load(Pair(), points, positions_of_cell(mesh, mesh.X, c)));
-  const auto     traction = flow.traction_load(mesh, spaces, free_patch);
-  const Unknowns unknowns(spaces);
-  GlobalSystem   system(mesh, unknowns, held_velocities(mesh, spaces, free_patch));
-  Field<double>  W    = flow.interpolant(mesh, spaces);
+    loads.push_back(flow.body_load(Pair(), points, positions_of_cell(discretization, mesh.X, c)));
+  const auto     traction = flow.traction_load(mesh, discretization, free_patch);
+  const Unknowns unknowns(discretization);
+  GlobalSystem   system(mesh, unknowns, held_velocities(mesh, discretization, free_patch));
+  Field<double>  W    = flow.interpolant(mesh, discretization);
   double         step = 1.;
   for (unsigned int iteration = 0; iteration < (flow.law.m == 1. ? 1 : 8) && step > 1e-9; ++iteration)
-    step = newton_step<Pair>(flow, mesh, spaces, loads, traction, system, W);
+    step = newton_step<Pair>(flow, mesh, discretization, loads, traction, system, W);
   if (flow.law.m != 1.)
     output << "  Newton converged: " << (step < 1e-9 ? "yes" : "NO") << std::endl;
-  const FlowErrors e = errors_of<Pair>(mesh, spaces, W);
+  const FlowErrors e = errors_of<Pair>(mesh, discretization, W);
   std::cout << mesh.n_nodes() << " nodes: v_l2 " << e.v_l2 << ", v_h1 " << e.v_h1 << ", p_l2 " << e.p_l2
             << std::endl;
   return e;

@@ -109,18 +109,17 @@ namespace retroforge
     static double pressure_at(const Vec3 &x) { return pressure(Point<double>{{x[0], x[1], x[2]}}); }
 
     /// Without bubbles.
-    Field<double> interpolant(const TetMesh &mesh, const Spaces &spaces) const
+    Field<double> interpolant(const TetMesh &mesh, const Discretization<3> &discretization) const
     {
-      Field<double> W(spaces);
+      Field<double> W(discretization);
       for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
       {
         W.V[k] = velocity_at(mesh.X[k]);
         W.P[k] = pressure_at(mesh.X[k]);
       }
-      if (const MeshEdges *edges = spaces.edges())
-        for (EdgeIndex e = 0; e < edges->size(); ++e)
-          W.V[mesh.n_nodes() + e] =
-            velocity_at(0.5 * (mesh.X[edges->nodes[e][0]] + mesh.X[edges->nodes[e][1]]));
+      if (const MiddleNodes *middles = discretization.middles())
+        for (const auto &[a, b] : middles->ends())
+          W.V[middles->between(a, b)] = velocity_at(0.5 * (mesh.X[a] + mesh.X[b]));
       return W;
     }
 
@@ -141,15 +140,16 @@ namespace retroforge
     }
 
     /// Forces of the traction on one patch at the velocity nodes.
-    NodalVectors<double>
-    traction_load(const TetMesh &mesh, const Spaces &spaces, const std::string &patch) const
+    NodalVectors<double> traction_load(const TetMesh           &mesh,
+                                       const Discretization<3> &discretization,
+                                       const std::string       &patch) const
     {
       const dealii::QGaussSimplex<2> rule(4);
-      NodalVectors<double>           load(spaces.n_velocity_nodes());
+      NodalVectors<double>           load(discretization.condensed_nodes()->n());
       for (unsigned int f = 0; f < mesh.faces.size(); ++f)
         if (mesh.patches[mesh.faces[f].patch].name == patch)
         {
-          const std::vector<NodeIndex> nodes = velocity_nodes_of_face(mesh, spaces, f);
+          const std::vector<NodeIndex> nodes = velocity_nodes_of_face(mesh, discretization, f);
           const Vec3                  &A = mesh.X[nodes[0]], &B = mesh.X[nodes[1]], &C = mesh.X[nodes[2]];
           const Vec3                   n = cross(Vec3(B - A), Vec3(C - A)); // twice the area long
           for (unsigned int q = 0; q < rule.size(); ++q)

@@ -50,7 +50,7 @@ namespace
     explicit Equilibrium(const double element_size)
         : parameters(cube(element_size))
         , scene(make_billet(parameters.billet, MPI_COMM_WORLD),
-                ElementPair::mini,
+                {},
                 {parameters.dies[0].die(), parameters.dies[1].die()},
                 MPI_COMM_WORLD)
         , model(parameters.step_model())
@@ -64,7 +64,7 @@ namespace
                                model.edges_touch),
             {model.contact.ramp, parameters.press.stroke / parameters.press.increments / process.speed()}))
         , stage(scene, physics, contact, scene.mesh.X)
-        , W(scene.spaces)
+        , W(scene.discretization)
     {
       LinearSystem system(scene, parameters.linear_solver, timings);
       Newton(scene, parameters.newton, system).solve(stage, W, {});
@@ -80,13 +80,13 @@ namespace
     /// As the backward sweep has it.
     NodalVectors<double> derivative() const
     {
-      Field<double>        W_bar(scene.spaces);
+      Field<double>        W_bar(scene.discretization);
       NodalVectors<double> X_bar(scene.mesh.n_nodes());
       ContactSetBar        contact_bar(contact.pairs.size());
       PhysicsBar           physics_bar(scene.dies);
       StageBar             bar{W_bar, X_bar, contact_bar, physics_bar};
       reverse_power({stage, W, active}, 1., 1., bar);
-      return W_bar.V;
+      return W_bar.V.complete(*scene.discretization.condensed_nodes());
     }
 
     Parameters         parameters;
@@ -131,8 +131,8 @@ namespace
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
       for (unsigned int a = 0; a < 4; ++a)
         for (unsigned int i = 0; i < 3; ++i)
-          slope[mesh.cells[c][a]][i] += cell(cell_geometry(positions_of_cell(mesh, mesh.X, c)),
-                                             MiniPair::on_cell(e.scene.spaces, e.W, c),
+          slope[mesh.cells[c][a]][i] += cell(geometry_of_cell(e.scene.discretization, mesh.X, c),
+                                             MiniPair::on_cell(e.scene.discretization, e.W, c),
                                              a,
                                              i);
     for (unsigned int p = 0; p < e.contact.pairs.size(); ++p)
@@ -193,7 +193,7 @@ namespace
 
   NodalVectors<double> by_global_differences(const Equilibrium &e, const double step)
   {
-    NodalVectors<double> slope(e.W.V.size());
+    NodalVectors<double> slope(e.scene.mesh.n_nodes());
     const double         here = e.power(e.W);
     Field<double>        W    = e.W;
     for (NodeIndex k = 0; k < slope.size(); ++k)
