@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/exception_message.h>
-#include <retroforge/run/trial.h>
+#include <retroforge/run/forward_run.h>
 
 #include <iostream>
 
@@ -21,7 +21,7 @@ int main(int argc, char *argv[])
     Timings    timings;
     const Case made(
       CommandLine::parse(argc, argv), timings, MPI_COMM_WORLD); // mesh, dies, process, objectives
-    Trial trial(made, made.process, made.X_0, Trial::Keep::increments);
+    ForwardRun trial(made, made.process, made.X_0, ForwardRun::Keep::increments);
     trial.check();
     trial.forge([](const IncrementEvent &event) { std::cerr << "stroke " << event.state.stroke << " mm\n"; });
     const std::vector<double> values = made.combine(trial.values());

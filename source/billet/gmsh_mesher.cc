@@ -2,10 +2,9 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/billet/gmsh_mesher.h>
 #include <retroforge/billet/length_unit.h>
-#include <retroforge/billet/msh_file.h>
+#include <retroforge/billet/tagged_mesh.h>
 #include <retroforge/core/error.h>
 #include <retroforge/geometry/triangle_surface.h>
-#include <retroforge/mesh/cell_faces.h>
 #include <retroforge/mesh/mesh_quality.h>
 
 #include <algorithm>
@@ -15,14 +14,11 @@
 #include <gmsh.h>
 #include <map>
 #include <sstream>
-#include <unordered_map>
 
 namespace retroforge
 {
   namespace
   {
-    using Tags = std::vector<std::size_t>;
-
     // Gmsh runs between construction and destruction. It resets the locale and divides by zero here and
     // there, so the locale and the floating point traps are put back.
     class GmshSession
@@ -192,18 +188,6 @@ namespace retroforge
       {{0.6, 1}, {0.5, 1}, {0.7, 1}, {0.6, 0.98}, {0.6, 1.02}, {0.6, 0.96}, {0.6, 1.04}, {0.6, 0.94}};
     constexpr double good_angle = 15; // degrees
 
-    // Numbers from 0 for the tags, in ascending order.
-    std::unordered_map<std::size_t, NodeIndex> number_tags(Tags tags)
-    {
-      std::sort(tags.begin(), tags.end());
-      tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
-      std::unordered_map<std::size_t, NodeIndex> number;
-      number.reserve(tags.size());
-      for (const std::size_t tag : tags)
-        number.emplace(tag, number.size());
-      return number;
-    }
-
     // Node tags, four for each cell.
     Tags cell_tags(const std::string &where)
     {
@@ -226,56 +210,8 @@ namespace retroforge
       return tags;
     }
 
-    // Turns the cells that are inverted. Whether they then overlap, check_mesh() finds.
-    // @return how many they were
-    unsigned int turn_inverted(TetMesh &mesh)
-    {
-      unsigned int n = 0;
-      for (auto &cell : mesh.cells)
-        if (tet_volume(corners(cell, mesh.X)) < 0)
-        {
-          std::swap(cell[2], cell[3]);
-          ++n;
-        }
-      return n;
-    }
-
-    using TagToNode = std::unordered_map<std::size_t, NodeIndex>;
-
-    // Nodes of cells only: Gmsh also keeps points of the geometry.
-    // cells: node tags, four for each; tags, X: of all nodes
-    TetMesh
-    cells_and_nodes(const Tags &cells, const Tags &tags, const NodalVectors<double> &X, TagToNode &number)
-    {
-      TetMesh mesh;
-      number = number_tags(cells);
-      mesh.cells.resize(cells.size() / 4);
-      for (std::size_t i = 0; i < cells.size(); ++i)
-        mesh.cells[i / 4][i % 4] = number.at(cells[i]);
-      mesh.X.assign(number.size(),
-                    Vec3({std::nan(""), 0, 0})); // a node that is not given is caught by check_mesh()
-      for (std::size_t i = 0; i < tags.size(); ++i)
-        if (const auto node = number.find(tags[i]); node != number.end())
-          mesh.X[node->second] = X[i];
-      if (const unsigned int n = turn_inverted(mesh); n > 0 && n < mesh.n_cells())
-        mesh.remarks.push_back(std::to_string(n) + " of its " + std::to_string(mesh.n_cells()) +
-                               " tetrahedra, numbered the other way round, were turned");
-      return mesh;
-    }
-
-    FileNodes nodes_of(const MshFile &file, const TagToNode &number)
-    {
-      FileNodes all{file.tags, {}, file.X};
-      for (const std::size_t tag : file.tags)
-      {
-        const auto node = number.find(tag);
-        all.nodes.push_back(node == number.end() ? invalid_index : node->second);
-      }
-      return all;
-    }
-
     // Of Gmsh's present model.
-    TetMesh cells_and_nodes(const std::string &where)
+    TetMesh mesh_of_model(const std::string &where)
     {
       Tags                 tags;
       std::vector<double>  coordinates, parameters;
@@ -294,7 +230,7 @@ namespace retroforge
       gmsh::option::setNumber("Mesh.MeshSizeMin", attempt.size_factor * element_size);
       gmsh::option::setNumber("Mesh.MeshSizeMax", attempt.size_factor * element_size);
       gmsh::model::mesh::generate(3);
-      return cells_and_nodes(where);
+      return mesh_of_model(where);
     }
 
     // A discrete surface with the given triangles, node tags from 1, and the volume it encloses.
@@ -319,103 +255,6 @@ namespace retroforge
       gmsh::model::geo::synchronize();
     }
 
-    struct PhysicalSurface
-    {
-      std::string name;
-      std::string id;
-      Tags        nodes; // three for each triangle
-    };
-
-    std::vector<PhysicalSurface> physical_surfaces(const MshFile &file)
-    {
-      std::vector<PhysicalSurface> surfaces;
-      for (const auto &[number, surface] : file.surfaces)
-      {
-        const std::string id = std::to_string(number);
-        surfaces.push_back({surface.name.empty() ? id : surface.name, id, surface.triangles});
-      }
-      return surfaces;
-    }
-
-    // Patch of each triangle of the physical surfaces.
-    std::map<FaceKey, unsigned int> patches_of_triangles(const std::vector<PhysicalSurface> &surfaces,
-                                                         const TagToNode                    &number,
-                                                         const std::string                  &where)
-    {
-      std::map<FaceKey, unsigned int> patch_of;
-      for (unsigned int s = 0; s < surfaces.size(); ++s)
-        for (std::size_t i = 0; i + 2 < surfaces[s].nodes.size(); i += 3)
-        {
-          std::array<NodeIndex, 3> nodes;
-          for (unsigned int j = 0; j < 3; ++j)
-          {
-            const auto node = number.find(surfaces[s].nodes[i + j]);
-            if (node == number.end())
-              throw Error(where,
-                          "a triangle of the physical surface `" + surfaces[s].name + "' uses node " +
-                            std::to_string(surfaces[s].nodes[i + j]) + ", which is in no tetrahedron",
-                          "surfaces must bound the volume mesh",
-                          "save the mesh again, with its volume");
-            nodes[j] = node->second;
-          }
-          const auto [entry, is_new] = patch_of.emplace(face_key(nodes), s);
-          if (!is_new && entry->second != s)
-            throw Error(where,
-                        "a triangle is on the physical surfaces `" + surfaces[entry->second].name +
-                          "' and `" + surfaces[s].name + "'",
-                        "each boundary face belongs to one patch",
-                        "let the physical surfaces not overlap");
-        }
-      return patch_of;
-    }
-
-    // Whether each patch is a symmetry plane, from the list of names or numbers. The patch of the rest
-    // has no number and is none.
-    std::vector<bool> find_symmetry(const std::vector<PhysicalSurface> &surfaces,
-                                    const std::vector<std::string>     &names,
-                                    const std::string                  &where)
-    {
-      std::vector<bool> is_symmetry(surfaces.size(), false);
-      std::string       known;
-      for (const auto &surface : surfaces)
-        if (!surface.id.empty())
-          known += (known.empty() ? "" : ", ") + surface.name;
-      for (const auto &name : names)
-      {
-        const auto surface = std::find_if(surfaces.begin(), surfaces.end(), [&](const PhysicalSurface &s) {
-          return !s.id.empty() && (s.name == name || s.id == name);
-        });
-        if (surface == surfaces.end())
-          throw Error("Billet/symmetry patches",
-                      "there is no physical surface `" + name + "' in " + where,
-                      "symmetry patches are names or numbers of physical surfaces",
-                      known.empty() ? "the file has none: define them in Gmsh"
-                                    : "choose from those in the file: " + known);
-        is_symmetry[surface - surfaces.begin()] = true;
-      }
-      return is_symmetry;
-    }
-
-    // Outer faces of the cells on the patches of the file, the others on a last patch of their own.
-    std::vector<PhysicalSurface>
-    add_faces(TetMesh &mesh, const MshFile &file, const TagToNode &number, const std::string &where)
-    {
-      auto         surfaces = physical_surfaces(file);
-      const auto   patch_of = patches_of_triangles(surfaces, number, where);
-      unsigned int rest     = surfaces.size();
-      bool         has_rest = false;
-      for (const auto &face : boundary_cell_faces(mesh.cells))
-      {
-        const auto entry = patch_of.find(face.key);
-        mesh.faces.push_back({face.nodes, entry == patch_of.end() ? rest : entry->second});
-        has_rest = has_rest || entry == patch_of.end();
-      }
-      if (has_rest)
-        surfaces.push_back({"surface", "", {}});
-      for (const auto &surface : surfaces)
-        mesh.patches.push_back({surface.name, {}});
-      return surfaces;
-    }
   } // namespace
 
   TetMesh mesh_with_gmsh(const CutSolid                               &solid,
@@ -490,26 +329,11 @@ namespace retroforge
           return unit.from_mm(size(unit.to_mm(Vec3({x, y, z}))));
         });
       gmsh::model::mesh::generate(3);
-      TetMesh mesh = cells_and_nodes(where);
+      TetMesh mesh = mesh_of_model(where);
       put_in_mm(unit, mesh);
       std::copy_n(
         X.begin(), std::min(X.size(), mesh.X.size()), mesh.X.begin()); // the surface to the last bit
       return mesh;
     });
-  }
-
-  TetMesh read_msh(const std::string &file_name, const std::vector<std::string> &symmetry_patches)
-  {
-    const MshFile file = read_msh_file(file_name);
-    TagToNode     number;
-    TetMesh       mesh = cells_and_nodes(file.tetrahedra, file.tags, file.X, number);
-    mesh.remarks.insert(mesh.remarks.begin(), file.remarks.begin(), file.remarks.end());
-    if (mesh.cells.empty())
-      return mesh;
-    mesh.of_file           = nodes_of(file, number);
-    const auto surfaces    = add_faces(mesh, file, number, file_name);
-    const auto is_symmetry = find_symmetry(surfaces, symmetry_patches, file_name);
-    fit_symmetry_planes(mesh, is_symmetry, file_name);
-    return mesh;
   }
 } // namespace retroforge

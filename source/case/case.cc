@@ -116,22 +116,22 @@ namespace retroforge
       return resumption ? Parameters::of_record(resumption->header.parameters) : parameters;
     }
 
-    std::vector<Stretch> make_stretches(const Case &made)
+    std::vector<NumericsSegment> make_segments(const Case &made)
     {
-      std::vector<Stretch> stretches;
+      std::vector<NumericsSegment> segments;
       if (!made.resumption)
       {
-        stretches.emplace_back();
-        stretches.back().input.parameters = made.echo;
-        stretches.back().parameters       = made.parameters;
-        return stretches;
+        segments.emplace_back();
+        segments.back().input.parameters = made.echo;
+        segments.back().parameters       = made.parameters;
+        return segments;
       }
       for (const RecordedInput &input : made.resumption->inputs)
       {
-        stretches.push_back({input, as_solved(Parameters::of_record(input.parameters), made.command)});
-        stretches.back().parameters.settle(made.size());
+        segments.push_back({input, as_solved(Parameters::of_record(input.parameters), made.command)});
+        segments.back().parameters.resolve_defaults(made.size());
       }
-      return stretches;
+      return segments;
     }
   } // namespace
 
@@ -143,7 +143,7 @@ namespace retroforge
       , nominal_billet(make_nominal_mesh(first_parameters(parameters, resumption), timings, comm))
       , first(make_first_mesh(first_parameters(parameters, resumption), nominal_billet, timings, comm))
       , billet(first.mesh)
-      , nominal(parameters.settle(size()).process(size()))
+      , nominal(parameters.resolve_defaults(size()).process(size()))
       , design(parameters.design.all_names(),
                parameters.billet,
                parameters.dies,
@@ -162,7 +162,7 @@ namespace retroforge
               comm}
       , objectives(parameters.make_objectives(model.dies, billet))
       , combinations(parameters.combinations(objectives))
-      , stretches(make_stretches(*this))
+      , segments(make_segments(*this))
   {
     if (!parameters.scan.parameter.empty())
       design.check_offered(parameters.scan.parameter, "Scan/parameter");

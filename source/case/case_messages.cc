@@ -60,23 +60,23 @@ namespace retroforge
     }
 
     /// Equations of flat and slender tetrahedra are nearly dependent, and multigrid does not see it.
-    std::vector<std::string> notes_on_slender_cells(const Case &at)
+    std::vector<std::string> notes_on_slender_cells(const Case &forging_case)
     {
       constexpr double slender = 10., poor = 15.; // degrees
       double           least  = 180.;
       unsigned int     n_poor = 0;
-      for (const auto &cell : at.billet.cells)
+      for (const auto &cell : forging_case.billet.cells)
       {
-        const double angle = minimum_dihedral_angle(corners(cell, at.X_0));
+        const double angle = minimum_dihedral_angle(corners(cell, forging_case.X_0));
         least              = std::min(least, angle);
         n_poor += angle < poor;
       }
       if (!(least < slender))
         return {};
       return {"faces of the billet's mesh meet at " + as_text(least) + " degrees, and " +
-              std::to_string(n_poor) + " of " + std::to_string(at.billet.n_cells()) +
+              std::to_string(n_poor) + " of " + std::to_string(forging_case.billet.n_cells()) +
               " tetrahedra have less than " + as_text(poor) + ": linear systems take longer" +
-              (at.parameters.remeshing.first_mesh
+              (forging_case.parameters.remeshing.first_mesh
                  ? ""
                  : "; `Remeshing/first mesh = true' makes a better mesh before the run begins")};
     }
@@ -88,9 +88,9 @@ namespace retroforge
       "Billet/element size", parameters.billet.element_size, expected_cells(parameters.billet)));
   }
 
-  std::vector<std::string> notes_on(const Case &at)
+  std::vector<std::string> notes_on(const Case &forging_case)
   {
-    std::vector<std::string> notes = at.parameters.without_effect;
+    std::vector<std::string> notes = forging_case.parameters.without_effect;
     const auto               add   = [&](const std::vector<std::string> &more) {
       notes.insert(notes.end(), more.begin(), more.end());
     };
@@ -98,23 +98,23 @@ namespace retroforge
       for (const std::string &sentence : remarks)
         notes.push_back(what + ": " + sentence);
     };
-    remark("the file of the billet", at.nominal_billet.remarks);
-    for (const Die &die : at.model.dies)
+    remark("the file of the billet", forging_case.nominal_billet.remarks);
+    for (const Die &die : forging_case.model.dies)
       if (die.surface())
         remark("the file of die " + die.name, die.surface()->remarks);
-    add(notes_on_slender_cells(at));
-    for (const Die &die : at.model.dies)
+    add(notes_on_slender_cells(forging_case));
+    for (const Die &die : forging_case.model.dies)
       add(notes_on_holes(die));
-    if (const double size = at.parameters.remeshing.element_size;
-        size > 0. && at.parameters.remeshing.when != "never")
-      add(
-        note_on_fineness("Remeshing/element size", size, expected_cells(std::pow(at.size().side, 3), size)));
-    if (at.process.stretch != 1.)
-      notes.push_back("die " + at.parameters.dies[at.process.leading_die].name +
+    if (const double size = forging_case.parameters.remeshing.element_size;
+        size > 0. && forging_case.parameters.remeshing.when != "never")
+      add(note_on_fineness(
+        "Remeshing/element size", size, expected_cells(std::pow(forging_case.size().side, 3), size)));
+    if (forging_case.process.stretch != 1.)
+      notes.push_back("die " + forging_case.parameters.dies[forging_case.process.leading_die].name +
                       " follows the billet: its path is " +
-                      as_text(at.process.stretch * at.parameters.press.stroke) +
+                      as_text(forging_case.process.stretch * forging_case.parameters.press.stroke) +
                       " mm long; strokes are given as the nominal design's, " +
-                      as_text(at.parameters.press.stroke) + " mm");
+                      as_text(forging_case.parameters.press.stroke) + " mm");
     return notes;
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/case/check_parameters.h>
+#include <retroforge/core/setting_tags.h>
 
 namespace retroforge
 {
@@ -33,6 +34,7 @@ namespace retroforge
     prm.add_parameter(
       "taylor bar", taylor_bar, "Least order of the Taylor remainder. Units: none.", Double(0.));
     prm.leave_subsection();
+    tag(prm, "Check", SettingRole::check);
   }
 
   unsigned int CheckParameters::n_runs() const

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/case/optimization_parameters.h>
 #include <retroforge/core/error.h>
+#include <retroforge/core/setting_tags.h>
 
 #include <algorithm>
 
@@ -128,6 +129,8 @@ namespace retroforge
       "ranks as each of them has. Units: none.",
       Integer(1, 10000));
     prm.leave_subsection();
+    tag(prm, "Optimisation", SettingRole::report);
+    tag(prm, "Optimisation/operations", SettingTags::Files::list);
   }
 
   void OptimizationParameters::check_data() const

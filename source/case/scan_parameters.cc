@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/case/scan_parameters.h>
 #include <retroforge/core/error.h>
+#include <retroforge/core/setting_tags.h>
 
 namespace retroforge
 {
@@ -36,6 +37,7 @@ namespace retroforge
     prm.add_parameter(
       "processes", processes, "Runs at a time; 0 for one per core. Units: none.", Integer(0, 4096));
     prm.leave_subsection();
+    tag(prm, "Scan", SettingRole::report);
   }
 
   void ScanParameters::check() const

@@ -412,9 +412,10 @@ namespace retroforge
     return estimate;
   }
 
-  SceneEstimate estimate_scene(const Case &at)
+  SceneEstimate estimate_scene(const Case &forging_case)
   {
-    const Scene scene(at.billet, at.model.discretization, at.model.dies, at.comm);
-    return estimate_scene(at.parameters, scene, at.process, at.X_0);
+    const Scene scene(
+      forging_case.billet, forging_case.model.discretization, forging_case.model.dies, forging_case.comm);
+    return estimate_scene(forging_case.parameters, scene, forging_case.process, forging_case.X_0);
   }
 } // namespace retroforge

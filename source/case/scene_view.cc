@@ -6,7 +6,7 @@
 #include <retroforge/case/scene_estimate.h>
 #include <retroforge/case/scene_view.h>
 #include <retroforge/core/exception_message.h>
-#include <retroforge/core/told_error.h>
+#include <retroforge/core/remote_error.h>
 #include <retroforge/core/version.h>
 #include <retroforge/geometry/triangle_surface.h>
 #include <retroforge/mesh/mesh_quality.h>
@@ -65,7 +65,7 @@ namespace retroforge
     }
     refusal = dealii::Utilities::MPI::broadcast(comm_, refusal);
     if (!refusal.empty())
-      throw told_error(refusal);
+      throw remote_error(refusal);
     return 0;
   }
 
@@ -153,7 +153,7 @@ namespace retroforge
     {
       parts.X = parts.mesh->X;
       size    = parameters.size_of(*parts.mesh);
-      attempt([&]() { parameters.settle(size); });
+      attempt([&]() { parameters.resolve_defaults(size); });
     }
     parts.process = parameters.process(size);
     lead(parts);

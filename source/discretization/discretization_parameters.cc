@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/setting_tags.h>
 #include <retroforge/discretization/discretization_parameters.h>
 
 namespace retroforge
@@ -30,6 +31,7 @@ namespace retroforge
       "the check of the other. Units: none.",
       dealii::Patterns::Selection("closed form|quadrature"));
     prm.leave_subsection();
+    tag(prm, "Discretization", SettingRole::scene);
   }
 
   DiscretizationChoice DiscretizationParameters::choice() const

@@ -4,6 +4,9 @@
 #include <retroforge/element/reference_element.h>
 
 #include <deal.II/fe/fe_simplex_p.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/tria.h>
 
 namespace retroforge
 {
@@ -13,11 +16,19 @@ namespace retroforge
       : n_functions_(element.n_dofs_per_cell())
   {
     Assert(element.n_components() == 1, dealii::ExcMessage("a scalar element is expected"));
-    for (const auto &x : points)
+    const dealii::ReferenceCell cell = element.reference_cell();
+    dealii::Triangulation<dim>  reference;
+    dealii::GridGenerator::reference_cell(reference, cell);
+    dealii::FEValues<dim> values(cell.template get_default_linear_mapping<dim>(),
+                                 element,
+                                 dealii::Quadrature<dim>(points),
+                                 dealii::update_values | dealii::update_gradients);
+    values.reinit(reference.begin_active());
+    for (unsigned int q = 0; q < points.size(); ++q)
       for (unsigned int a = 0; a < n_functions_; ++a)
       {
-        values_.push_back(element.shape_value(a, x));
-        gradients_.push_back(element.shape_grad(a, x));
+        values_.push_back(values.shape_value(a, q));
+        gradients_.push_back(values.shape_grad(a, q));
       }
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/setting_tags.h>
 #include <retroforge/geometry/die_parameters.h>
 
 #include <cmath>
@@ -47,6 +48,9 @@ namespace retroforge
                       "the dies held. Units: none.");
     shape.add_settings(prm);
     prm.leave_subsection();
+    tag(prm, section(), SettingRole::scene);
+    tag(prm, section() + "/file", SettingTags::Files::one);
+    tag(prm, section() + "/shape", Choice<DieKind>::read_by(die_kinds()));
   }
 
   void DieParameters::check()

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/setting_tags.h>
 #include <retroforge/material/material_parameters.h>
 
 #include <algorithm>
@@ -28,6 +29,7 @@ namespace retroforge
                       "billet. Units: 1/s.",
                       Double(0.));
     prm.leave_subsection();
+    tag(prm, "Material", SettingRole::scene);
   }
 
   MaterialLaw<double> MaterialParameters::law_at(const double rate) const

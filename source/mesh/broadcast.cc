@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/core/told_error.h>
+#include <retroforge/core/remote_error.h>
 #include <retroforge/mesh/broadcast.h>
 
 #include <cstring>
@@ -86,7 +86,7 @@ namespace retroforge
       }
     broadcast_text(failure, communicator);
     if (!failure.empty())
-      throw told_error(failure);
+      throw remote_error(failure);
     broadcast_mesh(mesh, communicator);
     if (with_it)
       broadcast_array(*with_it, communicator);

@@ -3,6 +3,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/text.h>
 #include <retroforge/objective/contact_pressure.h>
+#include <retroforge/objective/objective_settings.h>
 #include <retroforge/solver/contact_pullback.h>
 
 namespace retroforge
@@ -142,4 +143,32 @@ namespace retroforge
 
   template std::vector<double> ContactPressure::compute_integrals(const StageView<double> &) const;
   template std::vector<Dual>   ContactPressure::compute_integrals(const StageView<Dual> &) const;
+
+  namespace
+  {
+    struct ContactPressureType : ObjectiveType
+    {
+      DieSetting die;
+      double     sharpness = 20.;
+
+      void add_parameters(dealii::ParameterHandler &prm) override
+      {
+        die.add_parameters(prm);
+        add_sharpness(prm, sharpness);
+      }
+
+      void make(const std::string      &where,
+                const ObjectiveContext &context,
+                NamedObjective         &objective) const override
+      {
+        objective.path =
+          std::make_unique<ContactPressure>(die.find(where, context), sharpness, context.consistency);
+      }
+    };
+  } // namespace
+
+  Choice<ObjectiveType>::Maker contact_pressure_type()
+  {
+    return {"contact pressure", Choice<ObjectiveType>::make<ContactPressureType>};
+  }
 } // namespace retroforge

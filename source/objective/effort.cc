@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/enum_setting.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/text.h>
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>
+#include <retroforge/objective/objective_settings.h>
 #include <retroforge/solver/contact_pullback.h>
 
 namespace retroforge
@@ -206,4 +208,81 @@ namespace retroforge
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE
+
+  namespace
+  {
+    struct EffortType : ObjectiveType
+    {
+      DieSetting     die;
+      Effort::By     by = Effort::By::power;
+      WindowSettings window;
+
+      void add_parameters(dealii::ParameterHandler &prm) override
+      {
+        die.add_parameters(prm);
+        add_enum<Effort::By>(
+          prm,
+          "by",
+          by,
+          {{"power", Effort::By::power}, {"force", Effort::By::force}},
+          "An effort is the power spent over the die's speed, or the force of the die along its "
+          "velocity. Units: none.");
+        window.add_parameters(prm);
+      }
+
+      void check_names(const std::string &where, const ObjectiveContext &context) const override
+      {
+        die.find(where, context);
+      }
+
+      void make(const std::string      &where,
+                const ObjectiveContext &context,
+                NamedObjective         &objective) const override
+      {
+        objective.scaling = SymmetryScaling::force;
+        objective.die     = die.find_moving(where, context);
+        const Effort effort(objective.die, by);
+        objective.path = make_path(where, effort, window.make(where, context));
+      }
+
+      virtual std::unique_ptr<PathObjective>
+      make_path(const std::string &where, const Effort &effort, const PathWindow &path_window) const = 0;
+    };
+
+    struct MeanEffortType : EffortType
+    {
+      std::unique_ptr<PathObjective>
+      make_path(const std::string &, const Effort &effort, const PathWindow &path_window) const override
+      {
+        return std::make_unique<MeanEffort>(effort, path_window);
+      }
+    };
+
+    struct MaximumEffortType : EffortType
+    {
+      MaximumSettings maximum;
+
+      void add_parameters(dealii::ParameterHandler &prm) override
+      {
+        EffortType::add_parameters(prm);
+        maximum.add_parameters(prm);
+      }
+
+      std::unique_ptr<PathObjective>
+      make_path(const std::string &where, const Effort &effort, const PathWindow &path_window) const override
+      {
+        return std::make_unique<MaximumEffort>(effort, path_window, maximum.make(where));
+      }
+    };
+  } // namespace
+
+  Choice<ObjectiveType>::Maker mean_effort_type()
+  {
+    return {"mean effort", Choice<ObjectiveType>::make<MeanEffortType>};
+  }
+
+  Choice<ObjectiveType>::Maker maximum_effort_type()
+  {
+    return {"maximum effort", Choice<ObjectiveType>::make<MaximumEffortType>};
+  }
 } // namespace retroforge

@@ -31,4 +31,21 @@ namespace retroforge
   {
     reverse_power(view, weights[0], weights[1], bar);
   }
+
+  namespace
+  {
+    struct EnergyType : ObjectiveType
+    {
+      void make(const std::string &, const ObjectiveContext &, NamedObjective &objective) const override
+      {
+        objective.scaling = SymmetryScaling::part;
+        objective.path    = std::make_unique<EnergyObjective>();
+      }
+    };
+  } // namespace
+
+  Choice<ObjectiveType>::Maker energy_type()
+  {
+    return {"energy", Choice<ObjectiveType>::make<EnergyType>};
+  }
 } // namespace retroforge

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/enum_setting.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/shares.h>
 #include <retroforge/core/text.h>
 #include <retroforge/objective/filling.h>
+#include <retroforge/objective/objective_settings.h>
 #include <retroforge/objective/sector.h>
 #include <retroforge/objective/surface_areas.h>
 
@@ -160,4 +162,45 @@ namespace retroforge
 
   template std::vector<double> FillingObjective::compute_integrals(const FinalView<double> &) const;
   template std::vector<Dual>   FillingObjective::compute_integrals(const FinalView<Dual> &) const;
+
+  namespace
+  {
+    struct FillingType : TargetType
+    {
+      double rounding  = 0.;
+      bool   free_only = false;
+
+      void add_parameters(dealii::ParameterHandler &prm) override
+      {
+        TargetType::add_parameters(prm);
+        prm.add_parameter("rounding",
+                          rounding,
+                          "Of the distance |d| where the surfaces meet, in `filling'. Units: mm.",
+                          dealii::Patterns::Double(0.));
+        add_enum<bool>(
+          prm,
+          "nodes",
+          free_only,
+          {{"all", false}, {"free", true}},
+          "Of the workpiece, whose distances a `filling' adds up: of its whole surface, or free: of "
+          "what touches no die, gradually over the ramp of friction. Units: none.");
+      }
+
+      void make(const std::string      &where,
+                const ObjectiveContext &context,
+                NamedObjective         &objective) const override
+      {
+        objective.scaling = SymmetryScaling::part;
+        objective.at_end  = std::make_unique<FillingObjective>(
+          target.make(where, context),
+          rounding,
+          free_only ? std::optional<FreeNodes>(context.ramp) : std::nullopt);
+      }
+    };
+  } // namespace
+
+  Choice<ObjectiveType>::Maker filling_type()
+  {
+    return {"filling", Choice<ObjectiveType>::make<FillingType>};
+  }
 } // namespace retroforge

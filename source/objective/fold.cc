@@ -5,6 +5,7 @@
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/element/cell_geometry.templates.h>
 #include <retroforge/objective/fold.h>
+#include <retroforge/objective/objective_settings.h>
 #include <retroforge/objective/surface_areas.h>
 
 #include <sstream>
@@ -207,4 +208,47 @@ namespace retroforge
 
   template std::vector<double> FoldIntegrals::operator()(const StageView<double> &) const;
   template std::vector<Dual> FoldIntegrals::operator()(const StageView<Dual> &) const;
+
+  namespace
+  {
+    template <typename Fold>
+    struct FoldType : ObjectiveType
+    {
+      double      exponent = 4.;
+      BoxSettings box;
+      double      edge = 1.;
+
+      void add_parameters(dealii::ParameterHandler &prm) override
+      {
+        prm.add_parameter(
+          "exponent", exponent, "alpha of the fold indicators. Units: none.", dealii::Patterns::Double(0.));
+        box.add_parameters(prm);
+        prm.add_parameter("region edge",
+                          edge,
+                          "Width over which what folds outside of the box ceases to count. Units: mm.",
+                          dealii::Patterns::Double(1e-300));
+      }
+
+      void make(const std::string &where, const ObjectiveContext &, NamedObjective &objective) const override
+      {
+        objective.scaling =
+          std::is_same_v<Fold, FoldObjective> ? SymmetryScaling::part : SymmetryScaling::none;
+        const auto                  corners = box.make(where);
+        std::optional<SmoothRegion> region;
+        if (corners)
+          region = SmoothRegion{*corners, edge};
+        objective.path = std::make_unique<Fold>(exponent, region);
+      }
+    };
+  } // namespace
+
+  Choice<ObjectiveType>::Maker fold_type()
+  {
+    return {"fold", Choice<ObjectiveType>::make<FoldType<FoldObjective>>};
+  }
+
+  Choice<ObjectiveType>::Maker dimensionless_fold_type()
+  {
+    return {"dimensionless fold", Choice<ObjectiveType>::make<FoldType<DimensionlessFold>>};
+  }
 } // namespace retroforge

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/enum_setting.h>
+#include <retroforge/core/setting_tags.h>
 #include <retroforge/objective/objective_parameters.h>
 
 namespace retroforge
@@ -30,6 +32,9 @@ namespace retroforge
     prm.add_parameter("weight", weight, "In the sum of all objectives. Units: 1/(that of the objective).");
     type.add_settings(prm);
     prm.leave_subsection();
+    tag(prm, section(), SettingRole::results);
+    tag(prm, section() + "/target", SettingTags::Files::one);
+    tag(prm, section() + "/type", Choice<ObjectiveType>::read_by(objective_types()));
   }
 
   NamedObjective ObjectiveParameters::make(const ObjectiveContext &context) const
@@ -41,5 +46,30 @@ namespace retroforge
     objective.weight = weight;
     type->make(section(), context, objective);
     return objective;
+  }
+
+  void ObjectivesParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Objectives");
+    prm.declare_entry("names",
+                      "energy",
+                      dealii::Patterns::Anything(),
+                      "Names of the objectives; each has a section `Objective NAME`, and if the name is that "
+                      "of a type needs no more. Units: none.");
+    add_enum<bool>(
+      prm,
+      "gradients",
+      combined,
+      {{"each", false}, {"combined", true}},
+      "each: one adjoint per objective, all in one backward sweep; combined: one of their weighted sum. "
+      "Units: none.");
+    prm.add_parameter(
+      "history every",
+      every,
+      "Evaluate the objectives of the run so far every so many increments; 0 for the end only. Units: none.");
+    prm.leave_subsection();
+    tag(prm, "Objectives", SettingRole::results);
+    for (ObjectiveParameters &objective : all)
+      objective.add_parameters(prm);
   }
 } // namespace retroforge

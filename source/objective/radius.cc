@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
+#include <retroforge/core/text.h>
 #include <retroforge/objective/radius.h>
 #include <retroforge/objective/surface_areas.h>
 
@@ -104,4 +106,67 @@ namespace retroforge
 
   template std::vector<double> RadiusObjective::compute_integrals(const FinalView<double> &) const;
   template std::vector<Dual>   RadiusObjective::compute_integrals(const FinalView<Dual> &) const;
+
+  namespace
+  {
+    template <RadiusStatistic statistic>
+    struct RadiusType : ObjectiveType
+    {
+      std::vector<std::string> patches;
+      Vec3                     axis_point, axis = Vec3({0., 0., 1.});
+
+      void add_parameters(dealii::ParameterHandler &prm) override
+      {
+        prm.add_parameter(
+          "patches",
+          patches,
+          "Of the billet, whose radius is measured: `side' of a cylinder, `side outer' and `side inner' of a "
+          "ring or profile. Units: none.");
+        prm.add_parameter("axis point", axis_point, "On the axis that the radius is from. Units: mm.");
+        prm.add_parameter("axis", axis, "Its direction. Units: none.");
+      }
+
+      static std::vector<std::string> known(const ObjectiveContext &context)
+      {
+        std::vector<std::string> known;
+        for (const Patch &patch : context.billet.patches)
+          if (!patch.symmetry)
+            known.push_back(patch.name);
+        return known;
+      }
+
+      void check_names(const std::string &where, const ObjectiveContext &context) const override
+      {
+        const auto all = known(context);
+        for (const std::string &patch : patches)
+          if (std::find(all.begin(), all.end(), patch) == all.end())
+            throw Error(where + "/patches",
+                        "there is no patch '" + patch + "'",
+                        "the patches of this billet are: " + join(all),
+                        "name some of these");
+      }
+
+      void make(const std::string      &where,
+                const ObjectiveContext &context,
+                NamedObjective         &objective) const override
+      {
+        if (patches.empty())
+          throw Error(where + "/patches",
+                      "names no patch",
+                      "a part of the surface must be measured",
+                      "name the free side; the patches of this billet are: " + join(known(context)));
+        objective.at_end = std::make_unique<RadiusObjective>(statistic, patches, axis_point, axis);
+      }
+    };
+  } // namespace
+
+  Choice<ObjectiveType>::Maker cylinder_distance_type()
+  {
+    return {"cylinder distance", Choice<ObjectiveType>::make<RadiusType<RadiusStatistic::variance>>};
+  }
+
+  Choice<ObjectiveType>::Maker mean_radius_type()
+  {
+    return {"mean radius", Choice<ObjectiveType>::make<RadiusType<RadiusStatistic::mean>>};
+  }
 } // namespace retroforge

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/objective/objective_settings.h>
 #include <retroforge/objective/shape_distance.h>
 #include <retroforge/objective/surface_areas.h>
 
@@ -44,4 +45,22 @@ namespace retroforge
 
   template std::vector<double> ShapeDistance::compute_integrals(const FinalView<double> &) const;
   template std::vector<Dual>   ShapeDistance::compute_integrals(const FinalView<Dual> &) const;
+
+  namespace
+  {
+    struct ShapeDistanceType : TargetType
+    {
+      void make(const std::string      &where,
+                const ObjectiveContext &context,
+                NamedObjective         &objective) const override
+      {
+        objective.at_end = std::make_unique<ShapeDistance>(target.make(where, context));
+      }
+    };
+  } // namespace
+
+  Choice<ObjectiveType>::Maker shape_distance_type()
+  {
+    return {"shape distance", Choice<ObjectiveType>::make<ShapeDistanceType>};
+  }
 } // namespace retroforge

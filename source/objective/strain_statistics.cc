@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/objective/objective_settings.h>
 #include <retroforge/objective/strain_statistics.h>
 #include <retroforge/objective/volume.h>
 
@@ -112,4 +113,43 @@ namespace retroforge
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE
+
+  namespace
+  {
+    template <StrainStatistic statistic>
+    struct StrainType : ObjectiveType
+    {
+      void make(const std::string &, const ObjectiveContext &, NamedObjective &objective) const override
+      {
+        objective.at_end = std::make_unique<StrainObjective>(statistic);
+      }
+    };
+
+    struct MaximumStrainType : ObjectiveType
+    {
+      MaximumSettings maximum;
+
+      void add_parameters(dealii::ParameterHandler &prm) override { maximum.add_parameters(prm); }
+
+      void make(const std::string &where, const ObjectiveContext &, NamedObjective &objective) const override
+      {
+        objective.at_end = std::make_unique<StrainObjective>(StrainStatistic::maximum, maximum.make(where));
+      }
+    };
+  } // namespace
+
+  Choice<ObjectiveType>::Maker mean_strain_type()
+  {
+    return {"mean strain", Choice<ObjectiveType>::make<StrainType<StrainStatistic::mean>>};
+  }
+
+  Choice<ObjectiveType>::Maker strain_variance_type()
+  {
+    return {"strain variance", Choice<ObjectiveType>::make<StrainType<StrainStatistic::variance>>};
+  }
+
+  Choice<ObjectiveType>::Maker maximum_strain_type()
+  {
+    return {"maximum strain", Choice<ObjectiveType>::make<MaximumStrainType>};
+  }
 } // namespace retroforge

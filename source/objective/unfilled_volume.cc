@@ -3,6 +3,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/shares.h>
 #include <retroforge/core/text.h>
+#include <retroforge/objective/objective_settings.h>
 #include <retroforge/objective/unfilled_volume.h>
 
 #include <algorithm>
@@ -156,4 +157,40 @@ namespace retroforge
 
   template std::vector<double> UnfilledVolume::compute_integrals(const FinalView<double> &) const;
   template std::vector<Dual>   UnfilledVolume::compute_integrals(const FinalView<Dual> &) const;
+
+  namespace
+  {
+    struct UnfilledVolumeType : TargetType
+    {
+      unsigned int samples = 40;
+      double       layer   = 2.;
+
+      void add_parameters(dealii::ParameterHandler &prm) override
+      {
+        TargetType::add_parameters(prm);
+        prm.add_parameter("samples",
+                          samples,
+                          "Of an unfilled volume, along the longest edge. Units: none.",
+                          dealii::Patterns::Integer(3, 1000));
+        prm.add_parameter("layer",
+                          layer,
+                          "Over which its samples fade out. Units: spacings of the samples.",
+                          dealii::Patterns::Double(1.));
+      }
+
+      void make(const std::string      &where,
+                const ObjectiveContext &context,
+                NamedObjective         &objective) const override
+      {
+        objective.scaling = SymmetryScaling::part;
+        objective.at_end  = std::make_unique<UnfilledVolume>(
+          target.make(where, context), target.is_die() ? Cavity::in_front : Cavity::within, samples, layer);
+      }
+    };
+  } // namespace
+
+  Choice<ObjectiveType>::Maker unfilled_volume_type()
+  {
+    return {"unfilled volume", Choice<ObjectiveType>::make<UnfilledVolumeType>};
+  }
 } // namespace retroforge

@@ -48,4 +48,21 @@ namespace retroforge
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE
+
+  namespace
+  {
+    struct VolumeType : ObjectiveType
+    {
+      void make(const std::string &, const ObjectiveContext &, NamedObjective &objective) const override
+      {
+        objective.scaling = SymmetryScaling::part;
+        objective.at_end  = std::make_unique<VolumeObjective>();
+      }
+    };
+  } // namespace
+
+  Choice<ObjectiveType>::Maker volume_type()
+  {
+    return {"volume", Choice<ObjectiveType>::make<VolumeType>};
+  }
 } // namespace retroforge

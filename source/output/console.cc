@@ -56,7 +56,8 @@ namespace retroforge
     std::fflush(stdout);
   }
 
-  void print_gradient(const Judged &objective, const Design &design, const std::vector<double> &mu)
+  void
+  print_gradient(const ObjectiveSensitivity &objective, const Design &design, const std::vector<double> &mu)
   {
     std::vector<std::size_t> order(mu.size());
     std::iota(order.begin(), order.end(), 0);

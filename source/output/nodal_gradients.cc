@@ -14,11 +14,11 @@ namespace retroforge
     class NodalTable
     {
     public:
-      NodalTable(const std::string &nodes, const std::vector<Judged> &judged)
+      NodalTable(const std::string &nodes, const std::vector<ObjectiveSensitivity> &sensitivities)
       {
         text_.precision(17);
         text_ << nodes << ",x,y,z";
-        for (const Judged &objective : judged)
+        for (const ObjectiveSensitivity &objective : sensitivities)
           for (const char *direction : {"dx", "dy", "dz"})
             text_ << ',' << objective.name << ' ' << direction;
         text_ << '\n';
@@ -49,19 +49,22 @@ namespace retroforge
       }
     };
 
-    NodalTable
-    table_of_billet(const TetMesh &billet, const NodalVectors<double> &X_0, const std::vector<Judged> &judged)
+    NodalTable table_of_billet(const TetMesh                           &billet,
+                               const NodalVectors<double>              &X_0,
+                               const std::vector<ObjectiveSensitivity> &sensitivities)
     {
-      NodalTable table("node", judged);
+      NodalTable table("node", sensitivities);
       const auto add = [&](const std::size_t number, const NodeIndex k) {
-        table.add(number, X_0[k], judged.size(), [&](const std::size_t j) { return judged[j].shape.X_0[k]; });
+        table.add(number, X_0[k], sensitivities.size(), [&](const std::size_t j) {
+          return sensitivities[j].shape.X_0[k];
+        });
       };
       const FileNodes &file = billet.of_file;
       for (std::size_t i = 0; i < file.tags.size(); ++i)
         if (file.nodes[i] != invalid_index)
           add(file.tags[i], file.nodes[i]);
         else
-          table.add(file.tags[i], file.X[i], judged.size(), [](const std::size_t) { return Vec3(); });
+          table.add(file.tags[i], file.X[i], sensitivities.size(), [](const std::size_t) { return Vec3(); });
       if (file.tags.empty())
         for (NodeIndex k = 0; k < X_0.size(); ++k)
           add(k + 1, k);
@@ -69,23 +72,23 @@ namespace retroforge
     }
   } // namespace
 
-  void write_nodal_gradients(const std::string          &directory,
-                             const TetMesh              &billet,
-                             const NodalVectors<double> &X_0,
-                             const std::vector<Die>     &dies,
-                             const Process<double>      &process,
-                             const std::vector<Judged>  &judged)
+  void write_nodal_gradients(const std::string                       &directory,
+                             const TetMesh                           &billet,
+                             const NodalVectors<double>              &X_0,
+                             const std::vector<Die>                  &dies,
+                             const Process<double>                   &process,
+                             const std::vector<ObjectiveSensitivity> &sensitivities)
   {
-    table_of_billet(billet, X_0, judged).write(directory + "/sensitivity_nodes.csv");
+    table_of_billet(billet, X_0, sensitivities).write(directory + "/sensitivity_nodes.csv");
     for (std::size_t d = 0; d < dies.size(); ++d)
       if (const TriangleSurface *surface = dies[d].surface())
       {
-        NodalTable table("node", judged);
+        NodalTable table("node", sensitivities);
         for (std::size_t k = 0; k < surface->vertices().size(); ++k)
           table.add(k + 1,
                     surface->vertices()[k] + process.dies[d].displacement,
-                    judged.size(),
-                    [&](const std::size_t j) { return judged[j].shape.dies[d][k]; });
+                    sensitivities.size(),
+                    [&](const std::size_t j) { return sensitivities[j].shape.dies[d][k]; });
         table.write(directory + "/sensitivity_die_" + dies[d].name + "_nodes.csv");
       }
   }

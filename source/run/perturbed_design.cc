@@ -30,16 +30,17 @@ namespace retroforge
   } // namespace
 
   template <typename Number>
-  Process<Number> process_at(const Case &at, const std::vector<Number> &mu, const FreeForm &shift)
+  Process<Number>
+  process_at(const Case &forging_case, const std::vector<Number> &mu, const ShapePerturbation &shift)
   {
-    Process<Number> process = at.design.process(mu);
+    Process<Number> process = forging_case.design.process(mu);
     for (std::size_t d = 0; d < shift.dies.size(); ++d)
     {
       if (shift.dies[d].empty())
         continue;
       NodalVectors<Number> vertices = std::move(process.dies[d].vertices);
       if (vertices.empty())
-        for (const Vec3 &x : at.model.dies[d].surface()->vertices())
+        for (const Vec3 &x : forging_case.model.dies[d].surface()->vertices())
           vertices.push_back(Vector3<Number>(x));
       for (std::size_t k = 0; k < vertices.size(); ++k)
         vertices[k] = moved(vertices[k], shift.dies[d][k]);
@@ -49,33 +50,36 @@ namespace retroforge
   }
 
   template <typename Number>
-  NodalVectors<Number> positions_at(const Case &at, const std::vector<Number> &mu, const FreeForm &shift)
+  NodalVectors<Number>
+  positions_at(const Case &forging_case, const std::vector<Number> &mu, const ShapePerturbation &shift)
   {
-    NodalVectors<Number> X = at.design.positions(mu);
+    NodalVectors<Number> X = forging_case.design.positions(mu);
     for (std::size_t k = 0; k < X.size(); ++k)
       X[k] = moved(X[k], shift.X_0[k]);
     return X;
   }
 
-  std::vector<double> directional_derivatives(const Case                &at,
+  std::vector<double> directional_derivatives(const Case                &forging_case,
                                               const RecordedForging     &recorded,
                                               const std::vector<double> &mu_dot,
-                                              const FreeForm            &shift_dot)
+                                              const ShapePerturbation   &shift_dot)
   {
     std::vector<Dual> mu;
-    for (std::size_t j = 0; j < at.mu.size(); ++j)
-      mu.push_back(moved(Dual(at.mu[j]), mu_dot[j]));
+    for (std::size_t j = 0; j < forging_case.mu.size(); ++j)
+      mu.push_back(moved(Dual(forging_case.mu[j]), mu_dot[j]));
     std::vector<double> derivatives;
-    for (const Dual &value :
-         at.combine(tangent_sweep(recorded, process_at(at, mu, shift_dot), positions_at(at, mu, shift_dot))))
+    for (const Dual &value : forging_case.combine(tangent_sweep(
+           recorded, process_at(forging_case, mu, shift_dot), positions_at(forging_case, mu, shift_dot))))
       derivatives.push_back(value.dx(0));
     return derivatives;
   }
 
-  template Process<double> process_at(const Case &at, const std::vector<double> &mu, const FreeForm &shift);
-  template Process<Dual>   process_at(const Case &at, const std::vector<Dual> &mu, const FreeForm &shift);
+  template Process<double>
+  process_at(const Case &forging_case, const std::vector<double> &mu, const ShapePerturbation &shift);
+  template Process<Dual>
+  process_at(const Case &forging_case, const std::vector<Dual> &mu, const ShapePerturbation &shift);
   template NodalVectors<double>
-  positions_at(const Case &at, const std::vector<double> &mu, const FreeForm &shift);
+  positions_at(const Case &forging_case, const std::vector<double> &mu, const ShapePerturbation &shift);
   template NodalVectors<Dual>
-  positions_at(const Case &at, const std::vector<Dual> &mu, const FreeForm &shift);
+  positions_at(const Case &forging_case, const std::vector<Dual> &mu, const ShapePerturbation &shift);
 } // namespace retroforge

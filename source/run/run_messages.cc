@@ -16,24 +16,24 @@
 
 namespace retroforge
 {
-  void print_begin(const Case &at)
+  void print_begin(const Case &forging_case)
   {
-    const unsigned int ranks = dealii::Utilities::MPI::n_mpi_processes(at.comm);
+    const unsigned int ranks = dealii::Utilities::MPI::n_mpi_processes(forging_case.comm);
     double             load  = 0.;
     if (getloadavg(&load, 1) != 1)
       load = 0.;
-    std::cout << "Retroforge " << version << ' ' << commit << ", " << at.billet.n_nodes() << " nodes, "
-              << at.billet.n_cells() << " tetrahedra, " << ranks << " rank(s), BLAS: " << blas_in_use()
-              << '\n'
+    std::cout << "Retroforge " << version << ' ' << commit << ", " << forging_case.billet.n_nodes()
+              << " nodes, " << forging_case.billet.n_cells() << " tetrahedra, " << ranks
+              << " rank(s), BLAS: " << blas_in_use() << '\n'
               << note_on_load(ranks, load, std::thread::hardware_concurrency());
-    print_notes(notes_on(at));
+    print_notes(notes_on(forging_case));
   }
 
-  void print_chords(const Case &at, const double shape)
+  void print_chords(const Case &forging_case, const double shape)
   {
     constexpr double much      = 1e-3;
-    const double     mesh      = volume(at.billet.cells, at.X_0);
-    const auto      &at_design = at.parameters.design.at;
+    const double     mesh      = volume(forging_case.billet.cells, forging_case.X_0);
+    const auto      &at_design = forging_case.parameters.design.at;
     const bool       is_chosen = std::any_of(at_design.begin(), at_design.end(), [](const auto &value) {
       return value.first.rfind("billet/", 0) == 0;
     });
@@ -43,9 +43,10 @@ namespace retroforge
               << " mm^3 for the shape's " << as_text(shape) << " ("
               << as_text(std::round(1e4 * (mesh / shape - 1.)) / 100.)
               << " %); energies and forces lack about as much. A smaller Billet/element size comes nearer";
-    if (at.parameters.billet.shape == "cylinder" && at.parameters.billet.volume_held_by.empty())
+    if (forging_case.parameters.billet.shape == "cylinder" &&
+        forging_case.parameters.billet.volume_held_by.empty())
       std::cout << ", and --at billet/radius="
-                << as_text(at.parameters.billet.radius * std::sqrt(shape / mesh))
+                << as_text(forging_case.parameters.billet.radius * std::sqrt(shape / mesh))
                 << " gives this mesh the shape's volume";
     std::cout << '\n' << std::flush;
   }
@@ -63,22 +64,24 @@ namespace retroforge
     std::cout << std::flush;
   }
 
-  std::string way_on(const Case &at)
+  std::string resume_hint(const Case &forging_case)
   {
-    const std::string on = at.has_record()
+    const std::string on = forging_case.has_record()
                              ? "the same command with --resume goes on from the last increment"
                              : "without a record (Output/record) it can only begin anew, with --overwrite";
-    return "stopped; " + on + "; contrib/report " + at.command.output_directory + " shows what there is";
+    return "stopped; " + on + "; contrib/report " + forging_case.command.output_directory +
+           " shows what there is";
   }
 
-  std::string way_on_after_failure(const Case &at, const double stroke, const bool remakes)
+  std::string resume_hint_after_failure(const Case &forging_case, const double stroke, const bool remakes)
   {
     const std::string remeshing =
-      remakes ? "'Remeshing/element size=" + as_text(0.7 * at.edge_length()) + "'" : "Remeshing/when=quality";
+      remakes ? "'Remeshing/element size=" + as_text(0.7 * forging_case.edge_length()) + "'"
+              : "Remeshing/when=quality";
     return "go on from stroke " + as_text(stroke) +
            " mm, up to which it is recorded, by the same command with --resume" +
-           (at.command.overwrite ? " in place of --overwrite" : "") +
+           (forging_case.command.overwrite ? " in place of --overwrite" : "") +
            " and other numerics, for instance --set Press/increments=" +
-           std::to_string(2 * at.parameters.press.increments) + " or --set " + remeshing;
+           std::to_string(2 * forging_case.parameters.press.increments) + " or --set " + remeshing;
   }
 } // namespace retroforge

@@ -12,21 +12,29 @@
 
 namespace retroforge
 {
-  RunOutput::RunOutput(const Case &at, const WholePart &whole, const ObjectiveTrace &trace, Timings &timings)
-      : case_(at)
+  RunOutput::RunOutput(const Case           &forging_case,
+                       const WholePart      &whole,
+                       const ObjectiveTrace &trace,
+                       Timings              &timings)
+      : case_(forging_case)
       , whole_(whole)
       , trace_(trace)
       , timings_(timings)
-      , time_left_(at.parameters.press.stroke)
-      , fields_(at.comm, at.command.output_directory, at.model, at.process, at.billet, at.X_0)
+      , time_left_(forging_case.parameters.press.stroke)
+      , fields_(forging_case.comm,
+                forging_case.command.output_directory,
+                forging_case.model,
+                forging_case.process,
+                forging_case.billet,
+                forging_case.X_0)
   {
-    if (at.parameters.output.every != 0u)
+    if (forging_case.parameters.output.every != 0u)
     {
       const auto timing = timings_.scope("output");
       fields_.add_billet();
     }
-    const std::string &folder = at.command.output_directory;
-    if (dealii::Utilities::MPI::this_mpi_process(at.comm) != 0)
+    const std::string &folder = forging_case.command.output_directory;
+    if (dealii::Utilities::MPI::this_mpi_process(forging_case.comm) != 0)
       return;
     history_    = std::make_unique<History>(folder + "/history.csv");
     objectives_ = std::make_unique<ObjectiveHistory>(folder + "/objectives.csv");
@@ -77,16 +85,16 @@ namespace retroforge
 
   void RunOutput::add_objectives(const ForgingState &state)
   {
-    const auto              timing     = timings_.scope("objectives");
-    const Objectives       &objectives = case_.objectives;
-    const auto              values     = trace_.values(state, true, false);
-    const auto              beside     = trace_.beside(state);
+    const auto              timing      = timings_.scope("objectives");
+    const Objectives       &objectives  = case_.objectives;
+    const auto              values      = trace_.values(state, true, false);
+    const auto              diagnostics = trace_.diagnostics(state);
     std::vector<NamedValue> columns;
     for (std::size_t j = 0; j < objectives.size(); ++j)
     {
       const std::string unit = " [" + objectives[j].unit() + "]";
       columns.emplace_back(objectives[j].name + unit, values[j]);
-      for (const auto *numbers : {&beside[j].parts, &beside[j].details})
+      for (const auto *numbers : {&diagnostics[j].parts, &diagnostics[j].details})
         for (const auto &[name, value] : *numbers)
           columns.emplace_back(objectives[j].name + ": " + name + unit, value);
     }

@@ -11,84 +11,90 @@ namespace retroforge
   namespace
   {
     /// How often the objective's value stands in the whole part; NaN where it says nothing of that.
-    double copies(const Case &at, const NamedObjective &objective, const WholePart &whole)
+    double copies(const Case &forging_case, const NamedObjective &objective, const WholePart &whole)
     {
-      if (objective.extent == Extent::none)
+      if (objective.scaling == SymmetryScaling::none)
         return Summary::unknown;
-      return objective.extent == Extent::part
+      return objective.scaling == SymmetryScaling::part
                ? whole.copies
-               : whole_part(at.billet, at.process.dies[objective.die].velocity).force;
+               : whole_part(forging_case.billet, forging_case.process.dies[objective.die].velocity).force;
     }
 
-    void summarise_restarts(const std::vector<Stretch> &stretches, Summary &summary)
+    void summarise_restarts(const std::vector<NumericsSegment> &segments, Summary &summary)
     {
-      for (std::size_t s = 1; s < stretches.size(); ++s)
+      for (std::size_t s = 1; s < segments.size(); ++s)
       {
-        const RecordedInput &input = stretches[s].input;
+        const RecordedInput &input = segments[s].input;
         summary.restarts.push_back({input.first + 1, input.stroke, {}});
         for (const ChangedSetting &setting :
-             changed_numerics(stretches[s - 1].input.parameters, input.parameters))
+             changed_numerics(segments[s - 1].input.parameters, input.parameters))
           summary.restarts.back().changed[setting.path] = {setting.before, setting.now};
       }
     }
   } // namespace
 
-  double shape_volume(const Case &at)
+  double shape_volume(const Case &forging_case)
   {
-    if (!has_measures(at.parameters.billet))
+    if (!has_measures(forging_case.parameters.billet))
       return Summary::unknown;
-    const TetMesh &made = at.first.mesh;
-    return shape_volume(at.first.shapes.measured(at.first.at)) / volume(made.cells, made.X) *
-           volume(made.cells, at.X_0);
+    const TetMesh &made = forging_case.first.mesh;
+    return shape_volume(forging_case.first.shapes.measured(forging_case.first.at)) /
+           volume(made.cells, made.X) * volume(made.cells, forging_case.X_0);
   }
 
-  void summarise_run(const Case &at, const ForgingState &forged, Summary &summary)
+  void summarise_run(const Case &forging_case, const ForgingState &forged, Summary &summary)
   {
-    summary.command               = at.command.command;
+    summary.command               = forging_case.command.command;
     summary.version               = version;
     summary.commit                = commit;
     summary.blas                  = blas_in_use();
-    summary.ranks                 = dealii::Utilities::MPI::n_mpi_processes(at.comm);
-    summary.n_nodes               = at.billet.n_nodes();
-    summary.n_cells               = at.billet.n_cells();
+    summary.ranks                 = dealii::Utilities::MPI::n_mpi_processes(forging_case.comm);
+    summary.n_nodes               = forging_case.billet.n_nodes();
+    summary.n_cells               = forging_case.billet.n_cells();
     summary.newton_iterations     = forged.newton;
     summary.krylov_iterations     = forged.krylov;
     summary.linear_solves_forward = forged.linear_solves;
     summary.remeshings            = forged.remeshed.size();
     summary.increments            = forged.increments;
     summary.cuts                  = forged.cuts;
-    summary.volume_initial        = volume(at.billet.cells, at.X_0);
+    summary.volume_initial        = volume(forging_case.billet.cells, forging_case.X_0);
     summary.volume_final          = volume(forged.leg->scene.mesh.cells, forged.X);
     summary.volume_repaired       = forged.repaired;
-    summarise_restarts(at.stretches, summary);
+    summarise_restarts(forging_case.segments, summary);
   }
 
-  void summarise_objectives(const Case                &at,
+  void summarise_objectives(const Case                &forging_case,
                             const ObjectiveTrace      &trace,
                             const ForgingState        &forged,
                             const std::vector<double> &values,
                             Summary                   &summary)
   {
-    const auto beside = trace.beside(forged);
-    for (std::size_t o = 0; o < at.objectives.size(); ++o)
-      summary.objectives.push_back({at.objectives[o].name,
-                                    values[o],
-                                    at.objectives[o].unit(),
-                                    beside[o].parts,
-                                    beside[o].details,
-                                    copies(at, at.objectives[o], summary.whole) * values[o]});
-    if (at.parameters.objectives.gradients == "combined")
+    const auto diagnostics = trace.diagnostics(forged);
+    for (std::size_t o = 0; o < forging_case.objectives.size(); ++o)
       summary.objectives.push_back(
-        {at.combinations[0].name, at.combine(values)[0], at.combinations[0].unit, {}, {}});
+        {forging_case.objectives[o].name,
+         values[o],
+         forging_case.objectives[o].unit(),
+         diagnostics[o].parts,
+         diagnostics[o].details,
+         copies(forging_case, forging_case.objectives[o], summary.whole) * values[o]});
+    if (forging_case.parameters.objectives.combined)
+      summary.objectives.push_back({forging_case.combinations[0].name,
+                                    forging_case.combine(values)[0],
+                                    forging_case.combinations[0].unit,
+                                    {},
+                                    {}});
   }
 
-  void summarise_gradients(const Case &at, const std::vector<Judged> &judged, Summary &summary)
+  void summarise_gradients(const Case                              &forging_case,
+                           const std::vector<ObjectiveSensitivity> &sensitivities,
+                           Summary                                 &summary)
   {
-    for (std::size_t j = 0; j < at.mu.size() && !judged.empty(); ++j)
+    for (std::size_t j = 0; j < forging_case.mu.size() && !sensitivities.empty(); ++j)
     {
-      const DesignParameter &parameter = at.design.parameters()[j];
-      summary.parameters.push_back({parameter.name, at.mu[j], parameter.unit, {}, parameter.scale});
-      for (const Judged &objective : judged)
+      const DesignParameter &parameter = forging_case.design.parameters()[j];
+      summary.parameters.push_back({parameter.name, forging_case.mu[j], parameter.unit, {}, parameter.scale});
+      for (const ObjectiveSensitivity &objective : sensitivities)
         summary.parameters.back().gradient[objective.name] = objective.gradient[j];
     }
   }

@@ -5,7 +5,7 @@
 #include <retroforge/case/scene_estimate.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/exception_message.h>
-#include <retroforge/core/stop_notice.h>
+#include <retroforge/core/interrupt_message.h>
 #include <retroforge/core/version.h>
 #include <retroforge/geometry/stl_file.h>
 #include <retroforge/mesh/mesh_quality.h>
@@ -45,7 +45,7 @@ namespace retroforge
         require_finite(values[j], "Objective " + objectives[j].name, "its value");
     }
 
-    void check_finite(const Judged &objective, const Design &design)
+    void check_finite(const ObjectiveSensitivity &objective, const Design &design)
     {
       for (std::size_t j = 0; j < objective.gradient.size(); ++j)
         require_finite(objective.gradient[j],
@@ -64,10 +64,10 @@ namespace retroforge
     }
 
     /// A check reads the increments many times over; a gradient once, from the record.
-    bool kept_in_memory(const Case &at)
+    bool kept_in_memory(const Case &forging_case)
     {
-      return at.command.command == "check" ||
-             (at.command.command == "gradient" && !at.parameters.output.record);
+      return forging_case.command.command == "check" ||
+             (forging_case.command.command == "gradient" && !forging_case.parameters.output.record);
     }
   } // namespace
 
@@ -172,7 +172,7 @@ namespace retroforge
       differentiate();
     summarise_run(case_, forged_, summary_);
     summarise_objectives(case_, trace_, forged_, values_, summary_);
-    summarise_gradients(case_, judged_, summary_);
+    summarise_gradients(case_, sensitivities_, summary_);
     summary_.deepest      = output_->deepest();
     summary_.spanned      = output_->spanned();
     summary_.record_bytes = recording_.bytes();
@@ -227,7 +227,7 @@ namespace retroforge
                                         case_.X_0,
                                         fingerprints(case_.model.dies)}));
     if (root_)
-      say_when_stopped(way_on(case_));
+      set_interrupt_message(resume_hint(case_));
     forge_on();
     values_ = trace_.values(forged_, true);
     {
@@ -265,7 +265,7 @@ namespace retroforge
       // Other numerics do not cure a full disk.
       if (writes || forged_.increments == 0 || !case_.has_record())
         throw;
-      throw error.or_else(way_on_after_failure(case_, forged_.stroke, remesher_.enabled()));
+      throw error.or_else(resume_hint_after_failure(case_, forged_.stroke, remesher_.enabled()));
     }
   }
 
@@ -299,7 +299,7 @@ namespace retroforge
     if (is_left && !changes.empty())
     {
       Forging::change_numerics(case_.echo, forged_);
-      case_.stretches.push_back({{forged_.increments, forged_.stroke, case_.echo}, case_.parameters});
+      case_.segments.push_back({{forged_.increments, forged_.stroke, case_.echo}, case_.parameters});
     }
     if (!root_)
       return;
@@ -328,17 +328,18 @@ namespace retroforge
     const auto timing = timings_.scope("adjoint");
     const auto values = case_.combine(values_);
     for (std::size_t j = 0; j < case_.combinations.size(); ++j)
-      judged_.push_back({case_.combinations[j].name,
-                         case_.combinations[j].unit,
-                         values[j],
-                         std::vector<double>(case_.mu.size()),
-                         {}});
+      sensitivities_.push_back({case_.combinations[j].name,
+                                case_.combinations[j].unit,
+                                values[j],
+                                std::vector<double>(case_.mu.size()),
+                                {}});
     // A check compares the two methods.
-    if (case_.parameters.adjoint.method == "direct" && case_.command.command == "gradient")
+    if (case_.parameters.adjoint.method == AdjointParameters::Method::direct &&
+        case_.command.command == "gradient")
       differentiate_directly();
     else
       sweep_back();
-    for (const Judged &objective : judged_)
+    for (const ObjectiveSensitivity &objective : sensitivities_)
     {
       check_finite(objective, case_.design);
       if (root_)
@@ -350,20 +351,20 @@ namespace retroforge
   {
     const AdjointSweep sweep       = adjoint_sweep(recorded(), trace_.rows(), forged_, case_.combinations);
     summary_.linear_solves_adjoint = sweep.linear_solves;
-    for (std::size_t j = 0; j < judged_.size(); ++j)
+    for (std::size_t j = 0; j < sensitivities_.size(); ++j)
     {
-      const auto timing   = timings_.scope("design");
-      judged_[j].gradient = case_.design.pull_back(case_.mu, sweep.of[j].X_0, sweep.of[j].process);
-      judged_[j].shape    = {sweep.of[j].X_0, {}};
+      const auto timing          = timings_.scope("design");
+      sensitivities_[j].gradient = case_.design.pull_back(case_.mu, sweep.of[j].X_0, sweep.of[j].process);
+      sensitivities_[j].shape    = {sweep.of[j].X_0, {}};
       for (const auto &die : sweep.of[j].process.dies)
-        judged_[j].shape.dies.push_back(die.vertices);
+        sensitivities_[j].shape.dies.push_back(die.vertices);
     }
     const auto timing = timings_.scope("sensitivity");
     if (root_)
     {
       const std::string &folder = case_.command.output_directory;
-      write_sensitivity(folder, case_.billet, case_.X_0, case_.model.dies, judged_);
-      write_nodal_gradients(folder, case_.billet, case_.X_0, case_.model.dies, case_.process, judged_);
+      write_sensitivity(folder, case_.billet, case_.X_0, case_.model.dies, sensitivities_);
+      write_nodal_gradients(folder, case_.billet, case_.X_0, case_.model.dies, case_.process, sensitivities_);
     }
   }
 
@@ -375,8 +376,8 @@ namespace retroforge
       mu_dot[i] = 1.;
       const auto derivatives =
         directional_derivatives(case_, recorded(), mu_dot, {NodalVectors<double>(case_.X_0.size()), {}});
-      for (std::size_t j = 0; j < judged_.size(); ++j)
-        judged_[j].gradient[i] = derivatives[j];
+      for (std::size_t j = 0; j < sensitivities_.size(); ++j)
+        sensitivities_[j].gradient[i] = derivatives[j];
     }
   }
 

@@ -2,11 +2,11 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/case/case.h>
 #include <retroforge/case/case_messages.h>
-#include <retroforge/case/resume.h>
+#include <retroforge/case/restart_rules.h>
 #include <retroforge/case/scene_checks.h>
 #include <retroforge/case/scene_estimate.h>
 #include <retroforge/core/error.h>
-#include <retroforge/core/stop_notice.h>
+#include <retroforge/core/interrupt_message.h>
 #include <retroforge/core/version.h>
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
@@ -222,7 +222,7 @@ namespace retroforge
     if (command_.resume)
       std::printf("  %zu of them are finished and reused\n", all - points.size());
     std::fflush(stdout);
-    say_when_stopped("stopped; the same command with --resume keeps the points that are finished");
+    set_interrupt_message("stopped; the same command with --resume keeps the points that are finished");
     run_points(points);
     const ScanResults results(lines_, parameters_.scan.degree);
     results.write_csv(command_.output_directory + "/scan.csv");

@@ -61,17 +61,17 @@ namespace retroforge
   {
     for (const ScanLine &line : lines_)
     {
-      judged_.emplace_back();
+      objectives_.emplace_back();
       for (const ScanPoint &point : line.points)
-        if (judged_.back().empty())
+        if (objectives_.back().empty())
           for (const auto &objective : point.objectives)
-            judged_.back().push_back({objective.name, objective.unit, {}, {}, {}});
-      for (std::size_t o = 0; o < judged_.back().size(); ++o)
+            objectives_.back().push_back({objective.name, objective.unit, {}, {}, {}});
+      for (std::size_t o = 0; o < objectives_.back().size(); ++o)
       {
-        Judged &judged = judged_.back()[o];
+        LineObjective &judged = objectives_.back()[o];
         for (const ScanPoint &point : line.points)
         {
-          const bool has_objectives = point.objectives.size() == judged_.back().size();
+          const bool has_objectives = point.objectives.size() == objectives_.back().size();
           judged.line.x.push_back(point.value);
           judged.line.y.push_back(has_objectives ? point.objectives[o].value : NAN);
           judged.line.slopes.push_back(has_objectives ? point.objectives[o].slope : NAN);
@@ -93,14 +93,14 @@ namespace retroforge
 
   void ScanResults::write_csv(const std::string &file) const
   {
-    const std::vector<Judged> *named = nullptr; // objectives are the same on all lines that have some
-    for (const auto &of_line : judged_)
+    const std::vector<LineObjective> *named = nullptr; // objectives are the same on all lines that have some
+    for (const auto &of_line : objectives_)
       if (!of_line.empty())
         named = &of_line;
     std::ostringstream out;
     out << std::setprecision(17) << "parameter,value";
     if (named != nullptr)
-      for (const Judged &judged : *named)
+      for (const LineObjective &judged : *named)
         out << ',' << judged.name << " [" << judged.unit << "]," << judged.name << ": gradient,"
             << judged.name << ": fit," << judged.name << ": slope of the fit";
     out << ",failure\n";
@@ -111,7 +111,7 @@ namespace retroforge
         out << csv_quoted(point.parameter) << ',' << point.value;
         for (std::size_t o = 0; named != nullptr && o < named->size(); ++o)
         {
-          const Judged *judged = o < judged_[l].size() ? &judged_[l][o] : nullptr;
+          const LineObjective *judged = o < objectives_[l].size() ? &objectives_[l][o] : nullptr;
           write_cell(out, judged != nullptr ? judged->line.y[i] : NAN);
           write_cell(out, judged != nullptr ? judged->line.slopes[i] : NAN);
           write_cell(out, judged != nullptr && judged->fit ? judged->fit->value(point.value) : NAN);
@@ -129,7 +129,7 @@ namespace retroforge
     {
       const ScanLine &line       = lines_[l];
       Json            objectives = Json::array();
-      for (const Judged &judged : judged_[l])
+      for (const LineObjective &judged : objectives_[l])
       {
         Json objective = {{"name", judged.name}, {"unit", judged.unit}};
         objective.update(as_json(judged.statistics));
@@ -170,7 +170,7 @@ namespace retroforge
           << std::right << std::setw(14) << "mean" << std::setw(14) << "slope" << std::setw(13) << "noise"
           << std::setw(13) << "largest" << std::setw(13) << "bias" << std::setw(13) << "roughness"
           << std::setw(13) << "largest" << '\n';
-      for (const Judged &judged : judged_[l])
+      for (const LineObjective &judged : objectives_[l])
       {
         const LineStatistics &s = judged.statistics;
         out << "  " << std::left << std::setw(24) << judged.name << std::right << std::setprecision(7);

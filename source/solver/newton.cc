@@ -3,6 +3,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <retroforge/core/error.h>
+#include <retroforge/core/setting_tags.h>
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/solver/contact_steps.h>
 #include <retroforge/solver/newton.h>
@@ -30,6 +31,7 @@ namespace retroforge
     prm.add_parameter(
       "max iterations", max_iterations, "Newton steps before giving up. Units: none.", Integer(1));
     prm.leave_subsection();
+    tag(prm, "Newton", SettingRole::numerics);
   }
 
   Newton::Newton(const Scene &scene, const NewtonParameters &parameters, LinearSystem &system)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/setting_tags.h>
 #include <retroforge/core/text.h>
 #include <retroforge/linear_algebra/direct_solver.h>
 #include <retroforge/solver/penalised_rows.h>
@@ -49,6 +50,7 @@ namespace retroforge
                       Patterns::Integer(1));
     prm.add_parameter("restart", restart, "Krylov vectors kept. Units: none.", Patterns::Integer(5, 1000));
     prm.leave_subsection();
+    tag(prm, "Linear solver", SettingRole::numerics);
   }
 
   SaddleSolver::SaddleSolver(const SaddleSystem           &system,

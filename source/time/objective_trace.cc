@@ -83,22 +83,22 @@ namespace retroforge
     return values;
   }
 
-  std::vector<ObjectiveTrace::Beside> ObjectiveTrace::beside(const ForgingState &state) const
+  std::vector<ObjectiveTrace::Diagnostics> ObjectiveTrace::diagnostics(const ForgingState &state) const
   {
-    const auto          dies = process_.at_stroke(state.stroke).dies;
-    std::vector<Beside> beside;
+    const auto               dies = process_.at_stroke(state.stroke).dies;
+    std::vector<Diagnostics> diagnostics;
     for (const NamedObjective &objective : objectives_)
       if (objective.path)
       {
-        const PathRows<double> &rows = rows_[beside.size()];
-        beside.push_back({objective.path->parts(rows), objective.path->details(rows)});
+        const PathRows<double> &rows = rows_[diagnostics.size()];
+        diagnostics.push_back({objective.path->parts(rows), objective.path->details(rows)});
       }
       else
       {
         const auto view = final_view(*objective.at_end, state.leg->scene, state.X, state.strain, dies);
         const auto b    = sum_over_ranks(objective.at_end->integrals(view), model_.comm);
-        beside.push_back({objective.at_end->parts(b), objective.at_end->details(b)});
+        diagnostics.push_back({objective.at_end->parts(b), objective.at_end->details(b)});
       }
-    return beside;
+    return diagnostics;
   }
 } // namespace retroforge

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/nearest_name.h>
+#include <retroforge/core/setting_tags.h>
 #include <retroforge/time/press_parameters.h>
 
 namespace retroforge
@@ -54,5 +55,7 @@ namespace retroforge
       "The run stops when the workpiece has lost or won more than this part of its volume. Units: none.",
       Double(0.));
     prm.leave_subsection();
+    tag(prm, "Press", SettingRole::numerics);
+    tag(prm, "Press/leading die", SettingRole::scene);
   }
 } // namespace retroforge

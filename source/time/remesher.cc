@@ -3,6 +3,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <retroforge/core/error.h>
+#include <retroforge/core/setting_tags.h>
 #include <retroforge/geometry/facet_curvature.h>
 #include <retroforge/mesh/broadcast.h>
 #include <retroforge/mesh/mesh_checks.h>
@@ -84,6 +85,9 @@ namespace retroforge
     prm.add_parameter(
       "first mesh", first_mesh, "Improve the billet's mesh by one pass before the run begins. Units: none.");
     prm.leave_subsection();
+    tag(prm, "Remeshing", SettingRole::numerics);
+    tag(prm, "Remeshing/first mesh", SettingRole::scene);
+    tag(prm, "Remeshing/when", ReadBy{{"increments", {"every"}}});
     local.add_parameters(prm);
   }
 

@@ -16,7 +16,7 @@ namespace retroforge
       return std::abs(a - b) / std::max({std::abs(a), std::abs(b), 1e-300});
     }
 
-    FreeForm times(const double s, FreeForm x)
+    ShapePerturbation times(const double s, ShapePerturbation x)
     {
       for (Vec3 &v : x.X_0)
         v *= s;
@@ -26,16 +26,16 @@ namespace retroforge
       return x;
     }
 
-    using Values = ObjectiveOracle::Values;
+    using Values = DifferenceEvaluator::Values;
 
     /// The objectives along one direction: t -> Phi(mu + t mu_dot, shift_dot t).
     struct Line
     {
       const std::vector<double> &mu;
       std::vector<double>        mu_dot;
-      FreeForm                   shift_dot;
+      ShapePerturbation          shift_dot;
 
-      Values operator()(const decltype(ObjectiveOracle::free) &objectives, const double t) const
+      Values operator()(const decltype(DifferenceEvaluator::free) &objectives, const double t) const
       {
         std::vector<double> at = mu;
         for (std::size_t j = 0; j < mu.size(); ++j)
@@ -46,13 +46,15 @@ namespace retroforge
 
     /// A run that decides everything anew may also fail anew: then there is no difference, and the rest of
     /// the check goes on.
-    Values
-    free_differences(const Line &line, const ObjectiveOracle &oracle, const double h, const std::size_t n)
+    Values free_differences(const Line                &line,
+                            const DifferenceEvaluator &evaluator,
+                            const double               h,
+                            const std::size_t          n)
     {
       Values differences(n, NAN);
       try
       {
-        const Values plus = line(oracle.free, h), minus = line(oracle.free, -h);
+        const Values plus = line(evaluator.free, h), minus = line(evaluator.free, -h);
         for (std::size_t o = 0; o < n; ++o)
           differences[o] = (plus[o] - minus[o]) / (2. * h);
       }
@@ -64,26 +66,26 @@ namespace retroforge
     }
 
     /// Completes the rows of one line, one per objective.
-    void check_line(const CheckParameters     &parameters,
-                    const Line                &line,
-                    const std::vector<Judged> &judged,
-                    const double               scale,
-                    const ObjectiveOracle     &oracle,
-                    std::vector<CheckRow>     &rows)
+    void check_line(const CheckParameters                   &parameters,
+                    const Line                              &line,
+                    const std::vector<ObjectiveSensitivity> &sensitivities,
+                    const double                             scale,
+                    const DifferenceEvaluator               &evaluator,
+                    std::vector<CheckRow>                   &rows)
     {
-      const Values tangents = oracle.tangent(line.mu_dot, line.shift_dot);
+      const Values tangents = evaluator.tangent(line.mu_dot, line.shift_dot);
       for (std::size_t o = 0; o < rows.size(); ++o)
         rows[o].tangent = tangents[o];
       for (const double step : parameters.steps)
       {
         const double h    = step * scale;
-        const Values plus = line(oracle.replayed, h), minus = line(oracle.replayed, -h);
+        const Values plus = line(evaluator.replayed, h), minus = line(evaluator.replayed, -h);
         Values       free(rows.size(), NAN);
         if (parameters.free)
-          free = free_differences(line, oracle, h, rows.size());
+          free = free_differences(line, evaluator, h, rows.size());
         for (std::size_t o = 0; o < rows.size(); ++o)
         {
-          const double value = judged[o].value;
+          const double value = sensitivities[o].value;
           rows[o].steps.push_back(
             {step, (plus[o] - minus[o]) / (2. * h), (plus[o] - value) / h, (value - minus[o]) / h, free[o]});
         }
@@ -92,10 +94,10 @@ namespace retroforge
       for (unsigned int i = 0; i <= parameters.taylor_halvings; ++i)
       {
         const double h  = parameters.taylor_start * scale * std::pow(0.5, i);
-        const Values at = line(oracle.replayed, h);
+        const Values at = line(evaluator.replayed, h);
         for (std::size_t o = 0; o < rows.size(); ++o)
         {
-          const double remainder = std::abs(at[o] - judged[o].value - h * rows[o].adjoint);
+          const double remainder = std::abs(at[o] - sensitivities[o].value - h * rows[o].adjoint);
           if (i > 0)
             rows[o].taylor_orders.push_back(std::log2(last[o] / remainder));
           last[o] = remainder;
@@ -107,7 +109,7 @@ namespace retroforge
         // What moves the objective by less than 1e-7 of itself while the parameter moves by all of its size
         // is rounding. So is 1e-13 of that in a derivative, 1e-11 of it in a difference, and 1e-10 of the
         // value in a remainder.
-        const double whole = std::abs(judged[o].value) / scale;
+        const double whole = std::abs(sensitivities[o].value) / scale;
         row.is_zero        = std::max(std::abs(row.adjoint), std::abs(row.tangent)) <= 1e-7 * whole &&
                       row.smallest_difference() <= 2e-7 * whole;
         row.least_difference = 1e-5 * whole;
@@ -119,7 +121,7 @@ namespace retroforge
         // A remainder at rounding has no order: the objective is linear in this parameter.
         const bool linear =
           last[o] <= std::max(1e-9 * std::abs(parameters.taylor_start * scale * row.adjoint),
-                              1e-10 * std::abs(judged[o].value));
+                              1e-10 * std::abs(sensitivities[o].value));
         const bool same = row.tangent_error() <= parameters.tangent_bar ||
                           std::abs(row.adjoint - row.tangent) <= 1e-13 * whole;
         row.passed = same && row.best_replayed_error() <= parameters.replayed_bar &&
@@ -174,7 +176,7 @@ namespace retroforge
     }
 
     /// The derivative along a direction, and the root of the squares of its terms.
-    std::pair<double, double> along(const FreeForm &direction, const FreeForm &derivative)
+    std::pair<double, double> along(const ShapePerturbation &direction, const ShapePerturbation &derivative)
     {
       double     slope = 0., slope2 = 0.;
       const auto add = [&](const NodalVectors<double> &a, const NodalVectors<double> &b) {
@@ -197,12 +199,13 @@ namespace retroforge
     {
       std::string         name, unit;
       std::vector<double> mu_dot;
-      FreeForm            shift_dot;
+      ShapePerturbation   shift_dot;
       double              scale;       ///< of the steps, in its unit
       bool                is_of_shape; ///< all nodes move at once: steps are ten times smaller
     };
 
-    std::vector<Direction> directions(const Design &design, const FreeForm &shape, const double length)
+    std::vector<Direction>
+    directions(const Design &design, const ShapePerturbation &shape, const double length)
     {
       const std::size_t      n_nodes = shape.X_0.size(), n = design.parameters().size();
       std::vector<Direction> directions;
@@ -217,9 +220,9 @@ namespace retroforge
                               false});
         directions.back().mu_dot[j] = 1.;
       }
-      std::mt19937 generator(1);
-      FreeForm     moved;
-      const auto   append = [&](const std::string &name) {
+      std::mt19937      generator(1);
+      ShapePerturbation moved;
+      const auto        append = [&](const std::string &name) {
         directions.push_back(
           {name + " (random direction)", "mm", std::vector<double>(n, 0.), moved, length, true});
       };
@@ -238,10 +241,11 @@ namespace retroforge
     }
 
     /// Rows of a direction before the runs: what the backward sweep says.
-    std::vector<CheckRow> rows_of(const Direction &direction, const std::vector<Judged> &judged)
+    std::vector<CheckRow> rows_of(const Direction                         &direction,
+                                  const std::vector<ObjectiveSensitivity> &sensitivities)
     {
       std::vector<CheckRow> rows;
-      for (const Judged &objective : judged)
+      for (const ObjectiveSensitivity &objective : sensitivities)
       {
         auto [slope, magnitude] = along(direction.shift_dot, objective.shape);
         for (std::size_t j = 0; j < direction.mu_dot.size(); ++j)
@@ -252,16 +256,16 @@ namespace retroforge
     }
 
     /// Rows of a direction that an earlier check has done, or none.
-    std::vector<CheckRow> done_rows(const Direction             &direction,
-                                    const std::vector<Judged>   &judged,
-                                    const std::vector<CheckRow> &done)
+    std::vector<CheckRow> done_rows(const Direction                         &direction,
+                                    const std::vector<ObjectiveSensitivity> &sensitivities,
+                                    const std::vector<CheckRow>             &done)
     {
       std::vector<CheckRow> rows;
-      for (const Judged &objective : judged)
+      for (const ObjectiveSensitivity &objective : sensitivities)
         for (const CheckRow &row : done)
           if (row.objective == objective.name && row.parameter == direction.name)
             rows.push_back(row);
-      return rows.size() == judged.size() ? rows : std::vector<CheckRow>();
+      return rows.size() == sensitivities.size() ? rows : std::vector<CheckRow>();
     }
 
     std::vector<CheckRow> by_objective(const std::vector<std::vector<CheckRow>> &of_directions)
@@ -274,23 +278,23 @@ namespace retroforge
     }
   } // namespace
 
-  std::vector<CheckRow> check_gradient(const CheckParameters       &parameters,
-                                       const Design                &design,
-                                       const std::vector<double>   &mu,
-                                       const std::vector<Judged>   &judged,
-                                       const double                 length,
-                                       const ObjectiveOracle       &oracle,
-                                       const std::vector<CheckRow> &done,
-                                       const CheckWatch            &watch)
+  std::vector<CheckRow> check_gradient(const CheckParameters                   &parameters,
+                                       const Design                            &design,
+                                       const std::vector<double>               &mu,
+                                       const std::vector<ObjectiveSensitivity> &sensitivities,
+                                       const double                             length,
+                                       const DifferenceEvaluator               &evaluator,
+                                       const std::vector<CheckRow>             &done,
+                                       const CheckWatch                        &watch)
   {
     CheckParameters small = parameters;
     for (double &step : small.steps)
       step *= 0.1;
     small.taylor_start *= 0.1;
     std::vector<std::vector<CheckRow>> of_directions;
-    const auto                         all = directions(design, judged[0].shape, length);
+    const auto                         all = directions(design, sensitivities[0].shape, length);
     for (const Direction &direction : all)
-      if (const auto rows = done_rows(direction, judged, done); rows.empty())
+      if (const auto rows = done_rows(direction, sensitivities, done); rows.empty())
         break;
       else
         of_directions.push_back(rows);
@@ -298,12 +302,12 @@ namespace retroforge
     for (std::size_t i = of_directions.size(); i < all.size(); ++i)
     {
       const Direction &direction = all[i];
-      of_directions.push_back(rows_of(direction, judged));
+      of_directions.push_back(rows_of(direction, sensitivities));
       check_line(direction.is_of_shape ? small : parameters,
                  {mu, direction.mu_dot, direction.shift_dot},
-                 judged,
+                 sensitivities,
                  direction.scale,
-                 oracle,
+                 evaluator,
                  of_directions.back());
       watch(by_objective(of_directions), of_directions.size(), all.size());
     }

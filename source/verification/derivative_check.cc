@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/case/resume.h>
+#include <retroforge/case/restart_rules.h>
 #include <retroforge/core/version.h>
 #include <retroforge/verification/check_file.h>
 #include <retroforge/verification/check_messages.h>
 #include <retroforge/verification/derivative_check.h>
-#include <retroforge/verification/difference_oracle.h>
+#include <retroforge/verification/difference_evaluator.h>
 
 #include <algorithm>
 #include <iostream>
@@ -39,24 +39,24 @@ namespace retroforge
 
   bool DerivativeCheck::verify()
   {
-    const double                begin = timings_.seconds("total");
-    std::optional<unsigned int> before; // directions that were done
-    const ObjectiveOracle       oracle = make_oracle(case_, forging_, recorded());
-    std::vector<Judged>         judged = judged_;
+    const double                      begin = timings_.seconds("total");
+    std::optional<unsigned int>       before; // directions that were done
+    const DifferenceEvaluator         evaluator     = make_difference_evaluator(case_, forging_, recorded());
+    std::vector<ObjectiveSensitivity> sensitivities = sensitivities_;
     if (case_.command.resume)
     {
       // The record may be of a run that was solved less well than its replays are here.
-      const auto values = oracle.replayed(case_.mu, {NodalVectors<double>(case_.X_0.size()), {}});
-      for (std::size_t j = 0; j < judged.size(); ++j)
-        judged[j].value = values[j];
+      const auto values = evaluator.replayed(case_.mu, {NodalVectors<double>(case_.X_0.size()), {}});
+      for (std::size_t j = 0; j < sensitivities.size(); ++j)
+        sensitivities[j].value = values[j];
     }
     const auto rows = check_gradient(
       case_.parameters.check,
       case_.design,
       case_.mu,
-      judged,
+      sensitivities,
       case_.size().side,
-      oracle,
+      evaluator,
       kept(),
       [&](const std::vector<CheckRow> &so_far, const unsigned int done, const unsigned int all) {
         keep(so_far, all - done);

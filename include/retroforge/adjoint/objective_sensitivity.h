@@ -9,19 +9,20 @@
 
 namespace retroforge
 {
-  /// What a design without parameters moves: every node of the billet, every vertex of the dies [mm].
-  struct FreeForm
+  /// A perturbation of the shape beyond design parameters: of every node of the billet, every vertex of the
+  /// dies [mm].
+  struct ShapePerturbation
   {
     NodalVectors<double>              X_0;
     std::vector<NodalVectors<double>> dies; ///< of each die; empty: at rest
   };
 
   /// An objective's value, and its gradient as the backward sweep has it.
-  struct Judged
+  struct ObjectiveSensitivity
   {
     std::string         name, unit;
     double              value;
     std::vector<double> gradient; ///< one per parameter
-    FreeForm            shape;    ///< derivatives in nodes and vertices
+    ShapePerturbation   shape;    ///< derivatives in nodes and vertices
   };
 } // namespace retroforge

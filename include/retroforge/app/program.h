@@ -7,7 +7,7 @@
 
 namespace retroforge
 {
-  /// What the program does with its command line, once MPI runs. Nothing is thrown: problems are told on the
+  /// Runs the program by its command line, once MPI runs. Nothing is thrown: problems are told on the
   /// error stream, once, also where several ranks meet them.
   /// @param environment  that of the program before MPI added to it; runs that it starts get it
   /// @return the exit status: 0; 1 for an error, for a check that failed, or a scan all of whose points

@@ -51,11 +51,4 @@ namespace retroforge
                          const std::vector<std::array<NodeIndex, 3>> &triangles,
                          const std::function<double(const Vec3 &)>   &size,
                          const std::string                           &where);
-
-  /// Reads linear tetrahedra from a Gmsh file (.msh, see read_msh_file()), without Gmsh. Physical surfaces
-  /// become patches, named as in the file or, without a name, by their number; outer faces on no physical
-  /// surface become the patch `surface`. Triangles inside the volume are ignored. When all tetrahedra are
-  /// inverted they are turned. Patches whose name or number is in `symmetry_patches` become symmetry planes.
-  /// The mesh is not checked (see check_mesh()). Throws Error for what cannot be read.
-  TetMesh read_msh(const std::string &file_name, const std::vector<std::string> &symmetry_patches);
 } // namespace retroforge

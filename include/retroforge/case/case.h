@@ -3,7 +3,7 @@
 #pragma once
 
 #include <retroforge/case/parameters.h>
-#include <retroforge/case/resume.h>
+#include <retroforge/case/restart_rules.h>
 #include <retroforge/core/command_line.h>
 #include <retroforge/core/timer.h>
 #include <retroforge/design/mesh_anew.h>
@@ -12,8 +12,8 @@
 
 namespace retroforge
 {
-  /// A part of the stroke over which the same numerics hold.
-  struct Stretch
+  /// A segment of the stroke over which the same numerics hold.
+  struct NumericsSegment
   {
     RecordedInput input;
     Parameters    parameters;
@@ -46,20 +46,20 @@ namespace retroforge
 
     const Objectives               objectives;
     const std::vector<Combination> combinations; ///< of the objectives, each of which is differentiated
-    std::vector<Stretch>           stretches;    ///< one more where a run that goes on changes its numerics
+    std::vector<NumericsSegment>   segments;     ///< one more where a run that goes on changes its numerics
 
     BilletSize size() const { return parameters.size_of(nominal_billet); }
 
-    /// Wanted length of the edges [mm].
+    /// Returns the wanted length of the edges [mm].
     double edge_length() const { return parameters.edge_length(nominal_billet); }
 
-    /// What is asked of remeshing, for dies of that shape, which must live as long.
+    /// Returns the remesher for dies of a shape, which must live as long.
     Remesher remesher(const Parameters &numerics, const std::vector<Die> &dies) const
     {
       return {numerics.remeshing, numerics.edge_length(nominal_billet), dies, billet.patches, comm};
     }
 
-    /// The combinations of objectives that are differentiated, at given values of the objectives.
+    /// Returns the combinations of objectives that are differentiated, at given values of the objectives.
     template <typename Number>
     std::vector<Number> combine(const std::vector<Number> &values) const
     {
@@ -69,8 +69,8 @@ namespace retroforge
       return combined;
     }
 
-    /// Whether the program writes increments to a record or goes on with one, so that a run that stops can go
-    /// on.
+    /// Returns whether the program writes increments to a record or goes on with one, so that a run that
+    /// stops can go on.
     bool has_record() const { return parameters.output.record || command.resume; }
   };
 } // namespace retroforge

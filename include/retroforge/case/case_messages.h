@@ -6,15 +6,15 @@
 
 namespace retroforge
 {
-  /// Before a mesh of millions of tetrahedra is made, which takes minutes: how many there will be.
+  /// Prints, before a mesh of millions of tetrahedra is made, which takes minutes, how many there will be.
   void print_meshing(const Parameters &parameters);
 
-  /// What a user may not expect of a case, a sentence each.
-  std::vector<std::string> notes_on(const Case &at);
+  /// Returns what a user may not expect of a case, a sentence each.
+  std::vector<std::string> notes_on(const Case &forging_case);
 
-  /// The notes, as a user reads them.
+  /// Prints notes as a user reads them.
   void print_notes(const std::vector<std::string> &notes);
 
-  /// What is doubtful about a scene, or out of all proportion, a sentence each.
+  /// Prints what is doubtful about a scene, or out of all proportion, a sentence each.
   void print_warnings(const std::vector<std::string> &warnings);
 } // namespace retroforge

@@ -2,15 +2,20 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/adjoint/adjoint_parameters.h>
 #include <retroforge/case/check_parameters.h>
 #include <retroforge/case/optimization_parameters.h>
 #include <retroforge/case/scan_parameters.h>
+#include <retroforge/contact/contact_parameters.h>
 #include <retroforge/core/command_line.h>
 #include <retroforge/core/parameter_input.h>
+#include <retroforge/core/setting_tags.h>
 #include <retroforge/design/design.h>
+#include <retroforge/design/design_parameters.h>
 #include <retroforge/discretization/discretization_parameters.h>
 #include <retroforge/material/material_parameters.h>
 #include <retroforge/objective/objective_parameters.h>
+#include <retroforge/output/output_parameters.h>
 #include <retroforge/time/forging.h>
 
 #include <iosfwd>
@@ -18,66 +23,6 @@
 
 namespace retroforge
 {
-  struct ContactParameters
-  {
-    std::string law           = "smooth";
-    double      approach      = 1.;
-    double      layer         = 0.45;
-    double      ramp_width    = 1.;
-    double      penetration   = 3e-7;
-    double      penalty       = 0.;
-    double      slip_fraction = 1e-2;
-    std::string points        = "nodes and edges";
-    double      edge_sinking  = 0.01;
-    double      largest_depth = 0.05;
-
-    void add_parameters(dealii::ParameterHandler &prm);
-    void check() const;
-  };
-
-  struct AdjointParameters
-  {
-    std::string method       = "adjoint";
-    double      tolerance    = 1e-6;
-    std::string derivatives  = "exact";
-    double      perturbation = 1e-6;
-
-    void add_parameters(dealii::ParameterHandler &prm);
-
-    ShapeDerivatives shape_derivatives() const;
-  };
-
-  struct OutputParameters
-  {
-    std::optional<unsigned int>
-         every; ///< increments between pictures; unset: pictures evenly over the stroke
-    bool record = true;
-
-    void add_parameters(dealii::ParameterHandler &prm);
-  };
-
-  struct DesignParameters
-  {
-    std::vector<std::string>           names = {"material/K"};
-    std::multimap<std::string, double> at;
-    /// Of the billet, where it is meshed anew, one after the other.
-    std::vector<std::multimap<std::string, double>> meshed_at;
-
-    void add_parameters(dealii::ParameterHandler &prm);
-
-    /// `names`, and those of `at` that are not among them.
-    std::vector<std::string> all_names() const;
-  };
-
-  struct ObjectivesParameters
-  {
-    std::vector<ObjectiveParameters> all       = {ObjectiveParameters("energy")};
-    std::string                      gradients = "each";
-    unsigned int                     every     = 5;
-
-    void add_parameters(dealii::ParameterHandler &prm);
-  };
-
   /// What parameters that are left open follow from.
   struct BilletSize
   {
@@ -116,11 +61,14 @@ namespace retroforge
     static Parameters read(const std::string                                      &file,
                            const std::vector<std::pair<std::string, std::string>> &overrides,
                            std::string                                            &echo);
-    /// The same of a command's case, with its settings.
+    /// Reads a command's case, with its settings.
     static Parameters read(const CommandLine &command, std::string &echo);
 
     /// Reads the complete input of an earlier run, as its record has it.  @throws Error
     static Parameters of_record(const std::string &text);
+
+    /// Returns what the rooms say of their settings; of dies and objectives by the name `*`.
+    static const SettingTags &tags();
 
     /// A case to start from: all parameters with their meaning, a box between two planes.
     static void print_template(std::ostream &out);
@@ -128,45 +76,43 @@ namespace retroforge
     /// Sections of dies that no list names, as the end of a message: a die that is missing may be there.
     std::string unlisted_dies() const;
 
-    /// Of a run that takes no derivatives: leaves out design parameters that would change nothing.
+    /// Leaves out, in a run that takes no derivatives, design parameters that would change nothing.
     void leave_out_idle_parameters();
 
-    /// Chooses the number of increments where it is left open, and checks what follows from the parameters.
+    /// Resolves what is left open, as the number of increments, and checks what follows from the parameters.
     /// @throws Error  where steps, contact or penalty come out zero or infinite
-    Parameters &settle(const BilletSize &size);
+    Parameters &resolve_defaults(const BilletSize &size);
 
-    /// The process as the file has it.
+    /// Returns the process as the file has it.
     Process<double> process(const BilletSize &size) const;
-    /// What its contact law follows from.
+    /// Returns what its contact law follows from.
     OpenContact open_contact(const BilletSize &size) const;
-    /// The same for a sector as for the whole it is part of, but for `side`.
+    /// Returns the size of a billet: the same for a sector as for the whole it is part of, but for `side`.
     BilletSize size_of(const TetMesh &billet) const;
-    /// Of settled parameters.
+    /// Returns the model of increments, once defaults are resolved.
     StepModel step_model() const;
-    /// Of settled parameters.  @throws Error
+    /// Makes the objectives, once defaults are resolved.  @throws Error
     Objectives make_objectives(const std::vector<Die> &made_dies, const TetMesh &billet) const;
-    /// What is differentiated: each objective, or their weighted sum.
+    /// Returns what is differentiated: each objective, or their weighted sum.
     std::vector<Combination> combinations(const Objectives &made_objectives) const;
     /// Wanted length of the edges in remeshing [mm]; of a billet from a file, the mean length there is.
     double edge_length(const TetMesh &billet) const;
 
-    /// Overrides with which the parameters name the same files from a parameter file in another folder.
-    /// @param echo  of these parameters
-    std::vector<std::pair<std::string, std::string>> files_seen_from(const std::string &folder,
-                                                                     const std::string &echo) const;
+    /// Overrides with which parameters name the same files from a parameter file in another folder.
+    /// @param echo  these parameters
+    static std::vector<std::pair<std::string, std::string>> files_seen_from(const std::string &folder,
+                                                                            const std::string &echo);
 
   private:
-    /// Where names of files stand, a list of them in some: as (section, entry).
-    std::vector<std::pair<std::string, std::string>> entries_of_files() const;
     /// @param file  of the case, beside which other files are looked for
     static Parameters of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo);
 
-    double edge_stiffness_ = 1.; ///< of edges' penalty over the nodes', once settled
+    double edge_stiffness_ = 1.; ///< of edges' penalty over the nodes', once defaults are resolved
 
     /// By which the dies close over the stroke [mm]: the stroke itself, where one die moves.
     double                        closing_path() const;
     std::vector<DieState<double>> initial_states() const;
-    /// Of a frictionless upsetting [MPa].
+    /// Returns the pressure of a frictionless upsetting [MPa].
     double       mean_pressure(const BilletSize &size) const;
     void         check_all();
     void         find_without_effect(const std::vector<ParameterEntry> &entries);

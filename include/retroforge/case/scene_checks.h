@@ -7,8 +7,8 @@
 
 namespace retroforge
 {
-  /// What lies nearer than this touches [mm]: 1e-3 of the cube root of the whole part's volume, whatever
-  /// symmetry leaves of it.
+  /// Returns the distance below which things touch [mm]: 1e-3 of the cube root of the whole part's volume,
+  /// whatever symmetry leaves of it.
   double touching_distance(const Scene &scene, const NodalVectors<double> &X);
 
   /// Way of a die over the stroke [mm].
@@ -25,9 +25,9 @@ namespace retroforge
                                            const Process<double>      &process,
                                            const NodalVectors<double> &X);
 
-  /// Whether a forging can come of billet and dies as they stand, before the first increment: sizes that fit
-  /// each other, a billet outside of all dies, a die that comes against it, a stroke that ends before planes
-  /// meet, and no rigid motion left free.
+  /// Checks whether a forging can come of billet and dies as they stand, before the first increment: sizes
+  /// that fit each other, a billet outside of all dies, a die that comes against it, a stroke that ends
+  /// before planes meet, and no rigid motion left free.
   /// @param X  positions of the billet's nodes
   /// @return a sentence on each thing that is doubtful     @throws Error
   std::vector<std::string> check_scene(const Parameters           &parameters,

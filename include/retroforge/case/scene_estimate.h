@@ -26,13 +26,13 @@ namespace retroforge
     std::vector<std::string> warnings;
   };
 
-  /// Of a sound scene (check_scene), before its first increment.
+  /// Estimates a sound scene (check_scene), before its first increment.
   /// @param X  positions of the billet's nodes
   SceneEstimate estimate_scene(const Parameters           &parameters,
                                const Scene                &scene,
                                const Process<double>      &process,
                                const NodalVectors<double> &X);
 
-  /// Of a case as it begins. Collective.
-  SceneEstimate estimate_scene(const Case &at);
+  /// Estimates a case as it begins. Collective.
+  SceneEstimate estimate_scene(const Case &forging_case);
 } // namespace retroforge

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/objective/objective_type.h>
 #include <retroforge/objective/path_objective.h>
 
 namespace retroforge
@@ -55,4 +56,7 @@ namespace retroforge
     unsigned int die_;
     double       exponent_, reference_;
   };
+
+  /// Returns the type of this objective, as parameter files offer it.
+  Choice<ObjectiveType>::Maker contact_pressure_type();
 } // namespace retroforge

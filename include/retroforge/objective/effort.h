@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/objective/objective_type.h>
 #include <retroforge/objective/path_objective.h>
 #include <retroforge/objective/smooth_maximum.h>
 
@@ -125,4 +126,8 @@ namespace retroforge
     PathWindow    window_;
     SmoothMaximum maximum_;
   };
+
+  /// Return the types of these objectives, as parameter files offer them.
+  Choice<ObjectiveType>::Maker mean_effort_type();
+  Choice<ObjectiveType>::Maker maximum_effort_type();
 } // namespace retroforge

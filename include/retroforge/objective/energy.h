@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/objective/objective_type.h>
 #include <retroforge/objective/path_objective.h>
 
 #include <utility>
@@ -48,4 +49,7 @@ namespace retroforge
       return sums[0];
     }
   };
+
+  /// Returns the type of this objective, as parameter files offer it.
+  Choice<ObjectiveType>::Maker energy_type();
 } // namespace retroforge

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/objective/free_nodes.h>
+#include <retroforge/objective/objective_type.h>
 #include <retroforge/objective/target_surface.h>
 #include <retroforge/objective/workpiece_surface.h>
 
@@ -76,4 +77,7 @@ namespace retroforge
     std::optional<FreeNodes> free_;
     FillingDecisions         decisions_;
   };
+
+  /// Returns the type of this objective, as parameter files offer it.
+  Choice<ObjectiveType>::Maker filling_type();
 } // namespace retroforge

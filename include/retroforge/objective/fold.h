@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/objective/objective_type.h>
 #include <retroforge/objective/path_objective.h>
 #include <retroforge/objective/smooth_region.h>
 
@@ -128,4 +129,8 @@ namespace retroforge
     double        exponent_;
     FoldIntegrals fold_;
   };
+
+  /// Return the types of these objectives, as parameter files offer them.
+  Choice<ObjectiveType>::Maker fold_type();
+  Choice<ObjectiveType>::Maker dimensionless_fold_type();
 } // namespace retroforge

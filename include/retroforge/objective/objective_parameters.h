@@ -26,4 +26,14 @@ namespace retroforge
   private:
     std::string section() const { return "Objective " + name; }
   };
+
+  /// The section Objectives, and those of each.
+  struct ObjectivesParameters
+  {
+    std::vector<ObjectiveParameters> all      = {ObjectiveParameters("energy")};
+    bool                             combined = false; ///< one gradient, of the weighted sum
+    unsigned int                     every    = 5;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+  };
 } // namespace retroforge

@@ -12,7 +12,7 @@ namespace retroforge
   /// How the value of the whole part follows from that of the model that symmetry planes cut from it: of what
   /// adds up over the part, of the force of a die, and of the rest, which says nothing of the whole or is the
   /// same there.
-  enum class Extent
+  enum class SymmetryScaling
   {
     part,
     force,
@@ -23,11 +23,11 @@ namespace retroforge
   struct NamedObjective
   {
     std::string                     name;
-    double                          weight = 1.; ///< in the combination
-    Extent                          extent = Extent::none;
-    unsigned int                    die    = invalid_index; ///< of an extent `force`
-    std::unique_ptr<PathObjective>  path;                   ///< null for one of the end
-    std::unique_ptr<FinalObjective> at_end;                 ///< null for one of the path
+    double                          weight  = 1.; ///< in the combination
+    SymmetryScaling                 scaling = SymmetryScaling::none;
+    unsigned int                    die     = invalid_index; ///< of a scaling `force`
+    std::unique_ptr<PathObjective>  path;                    ///< null for one of the end
+    std::unique_ptr<FinalObjective> at_end;                  ///< null for one of the path
 
     std::string unit() const { return path ? path->unit() : at_end->unit(); }
   };

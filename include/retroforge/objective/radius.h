@@ -4,6 +4,7 @@
 
 #include <retroforge/geometry/triangle_surface.h>
 #include <retroforge/objective/final_objective.h>
+#include <retroforge/objective/objective_type.h>
 
 #include <map>
 #include <string>
@@ -75,4 +76,8 @@ namespace retroforge
     Vec3                     point_, axis_;
     double                   reference_ = 0.;
   };
+
+  /// Return the types of these objectives, as parameter files offer them.
+  Choice<ObjectiveType>::Maker cylinder_distance_type();
+  Choice<ObjectiveType>::Maker mean_radius_type();
 } // namespace retroforge

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/objective/objective_type.h>
 #include <retroforge/objective/target_surface.h>
 
 /// @file
@@ -40,4 +41,7 @@ namespace retroforge
     TargetSurface            target_;
     std::vector<SeenFeature> seen_;
   };
+
+  /// Returns the type of this objective, as parameter files offer it.
+  Choice<ObjectiveType>::Maker shape_distance_type();
 } // namespace retroforge

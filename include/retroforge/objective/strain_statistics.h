@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/objective/final_objective.h>
+#include <retroforge/objective/objective_type.h>
 #include <retroforge/objective/smooth_maximum.h>
 
 /// @file
@@ -53,4 +54,9 @@ namespace retroforge
     SmoothMaximum   smooth_;
     double          reference_ = 0.;
   };
+
+  /// Return the types of these objectives, as parameter files offer them.
+  Choice<ObjectiveType>::Maker mean_strain_type();
+  Choice<ObjectiveType>::Maker strain_variance_type();
+  Choice<ObjectiveType>::Maker maximum_strain_type();
 } // namespace retroforge

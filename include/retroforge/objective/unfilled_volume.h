@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/objective/objective_type.h>
 #include <retroforge/objective/sector.h>
 #include <retroforge/objective/target_surface.h>
 #include <retroforge/objective/workpiece_surface.h>
@@ -78,4 +79,7 @@ namespace retroforge
     WorkpieceSurface            workpiece_;
     std::vector<Sample>         samples_;
   };
+
+  /// Returns the type of this objective, as parameter files offer it.
+  Choice<ObjectiveType>::Maker unfilled_volume_type();
 } // namespace retroforge

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/objective/final_objective.h>
+#include <retroforge/objective/objective_type.h>
 
 namespace retroforge
 {
@@ -27,7 +28,7 @@ namespace retroforge
     }
   };
 
-  /// Volume of cell c.
+  /// Volume of cell c, which this rank visits.
   template <typename Number>
   Number cell_volume(const FinalView<Number> &view, CellIndex c);
 
@@ -36,4 +37,7 @@ namespace retroforge
                            CellIndex                c,
                            double                   volume_bar,
                            NodalVectors<double>    &X_bar);
+
+  /// Returns the type of this objective, as parameter files offer it.
+  Choice<ObjectiveType>::Maker volume_type();
 } // namespace retroforge

@@ -24,8 +24,8 @@ namespace retroforge
     /// A change of the parameters, in scales, that data do not see; empty where they see all.
     std::vector<double> unseen;
 
-    /// Whether the misfit is beyond what errors of the given deviations make of it: by three deviations of
-    /// chi square, and some for few data.
+    /// Returns whether the misfit is beyond what errors of the given deviations make of it: by three
+    /// deviations of chi square, and some for few data.
     bool disagrees() const { return misfit > freedom + 3. * std::sqrt(2. * std::max(freedom, 1)) + 4.; }
 
     /// Half width of the interval in which the parameter lies with 95 %.

@@ -49,7 +49,7 @@ namespace retroforge
     const std::vector<LinearRelation> &relations() const { return relations_; } ///< of mu
     /// The same of x, each with weights of length 1.
     const std::vector<LinearRelation> &scaled_relations() const { return scaled_relations_; }
-    /// Whether a relation holds as an equation at mu.
+    /// Returns whether a relation holds as an equation at mu.
     bool holds_as_equation(const std::vector<double> &mu, std::size_t relation) const;
 
     std::vector<double> scaled(const std::vector<double> &mu) const;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/optimization/confidence.h>
+#include <retroforge/optimization/confirmation.h>
 #include <retroforge/optimization/search.h>
 
 #include <iosfwd>
@@ -41,13 +42,6 @@ namespace retroforge
     double              quality_before = 0., quality_after = 0.; ///< of the worst cell: tet_quality()
     double              volume_before = 0., volume_after = 0.;   ///< of the billet [mm^3]
     std::vector<double> before, after;                           ///< values of the objectives
-  };
-
-  /// Start and optimum forged with smaller elements and increments.
-  struct Confirmation
-  {
-    Evaluation   start, best;
-    unsigned int n_nodes = 0, n_increments = 0;
   };
 
   /// What an optimisation found.
@@ -90,11 +84,11 @@ namespace retroforge
     bool   limits_are_kept() const { return criteria.largest_excess(best.values) <= limit_tolerance; }
     /// How many designs were tried in vain since the last one that was taken, if all of them failed.
     std::size_t n_failed_at_the_end() const;
-    /// Whether steps became too short because designs around the last one failed.
+    /// Returns whether steps became too short because designs around the last one failed.
     bool ended_among_failures() const;
-    /// Whether intervals and multipliers mean something: the search came to an end by itself.
+    /// Returns whether intervals and multipliers mean something: the search came to an end by itself.
     bool has_converged() const;
-    /// Whether no design but the first could be forged.
+    /// Returns whether no design but the first could be forged.
     bool found_nothing() const;
 
     /// Of the program: 0, or 2 where no design keeps the limits or none but the first could be forged.

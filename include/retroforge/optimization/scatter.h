@@ -26,7 +26,7 @@ namespace retroforge
     /// What an objective is over the samples; empty without.
     std::string in_words() const;
     std::size_t n_samples() const { return empty() ? 1 : values_.size(); }
-    /// Of the scattered parameter, in one sample.
+    /// Returns the value of the scattered parameter in one sample.
     double value(const std::size_t sample) const { return values_[sample]; }
 
     /// The design as it is forged in a sample.

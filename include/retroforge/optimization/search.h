@@ -70,7 +70,7 @@ namespace retroforge
     const Evaluation &now() const { return now_; } ///< the design accepted last, with gradients
     double            radius() const { return radius_; }
     unsigned int      n_iterations() const { return iterations_; }
-    /// What designs are compared by; infinite where the forging failed.
+    /// Returns what designs are compared by; infinite where the forging failed.
     double merit_of(const Evaluation &evaluation) const;
     /// Of the limits, in the objective's unit per unit of their excess.
     std::vector<double> multipliers() const;

@@ -26,7 +26,8 @@ namespace retroforge
   void print_increment(const HistoryRow &row, double seconds_left);
 
   /// The parameters by what one per cent of each does: what a forger would turn first.
-  void print_gradient(const Judged &objective, const Design &design, const std::vector<double> &mu);
+  void
+  print_gradient(const ObjectiveSensitivity &objective, const Design &design, const std::vector<double> &mu);
 
   /// The objectives, and the warnings.
   void print_results(const Summary &summary, const std::string &directory);

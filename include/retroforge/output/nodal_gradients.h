@@ -15,10 +15,10 @@ namespace retroforge
   /// there; nodes of no tetrahedron have zeros. Other billets are in the order of write_msh(). Vertices of a
   /// die have the order in which its triangles, or its STL file, first name them.
   /// @param process  where the dies stand     @throws Error  if a file cannot be written
-  void write_nodal_gradients(const std::string          &directory,
-                             const TetMesh              &billet,
-                             const NodalVectors<double> &X_0,
-                             const std::vector<Die>     &dies,
-                             const Process<double>      &process,
-                             const std::vector<Judged>  &judged);
+  void write_nodal_gradients(const std::string                       &directory,
+                             const TetMesh                           &billet,
+                             const NodalVectors<double>              &X_0,
+                             const std::vector<Die>                  &dies,
+                             const Process<double>                   &process,
+                             const std::vector<ObjectiveSensitivity> &sensitivities);
 } // namespace retroforge

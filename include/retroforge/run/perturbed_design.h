@@ -11,16 +11,18 @@ namespace retroforge
   /// Returns the process at design parameters mu, with the vertices of its dies moved by `shift` from there.
   /// Of dual numbers, `shift` is the derivative of that motion.
   template <typename Number>
-  Process<Number> process_at(const Case &at, const std::vector<Number> &mu, const FreeForm &shift);
+  Process<Number>
+  process_at(const Case &forging_case, const std::vector<Number> &mu, const ShapePerturbation &shift);
 
   /// Returns the initial positions of the billet's nodes, moved in the same way [mm].
   template <typename Number>
-  NodalVectors<Number> positions_at(const Case &at, const std::vector<Number> &mu, const FreeForm &shift);
+  NodalVectors<Number>
+  positions_at(const Case &forging_case, const std::vector<Number> &mu, const ShapePerturbation &shift);
 
   /// Returns the derivatives of the combined objectives along (mu_dot, shift_dot) at the case's design, by
   /// one tangent sweep (the direct method).
-  std::vector<double> directional_derivatives(const Case                &at,
+  std::vector<double> directional_derivatives(const Case                &forging_case,
                                               const RecordedForging     &recorded,
                                               const std::vector<double> &mu_dot,
-                                              const FreeForm            &shift_dot);
+                                              const ShapePerturbation   &shift_dot);
 } // namespace retroforge

@@ -6,22 +6,22 @@
 
 namespace retroforge
 {
-  /// What runs: version, size, and the notes on it.
-  void print_begin(const Case &at);
+  /// Prints what runs: version, size, and the notes on it.
+  void print_begin(const Case &forging_case);
 
-  /// How much metal the chords of round sides lack, where that is much.
+  /// Prints how much metal the chords of round sides lack, where that is much.
   /// @param shape  volume of the billet that the mesh stands for; NaN when unknown [mm^3]
-  void print_chords(const Case &at, double shape);
+  void print_chords(const Case &forging_case, double shape);
 
-  /// Where a run goes on from, and with what.
+  /// Prints where a run goes on from, and with what.
   /// @param is_left  whether some of the stroke is
   void print_resumed(unsigned int n_increments, bool is_left, const std::vector<ChangedSetting> &changes);
 
-  /// What a user is told who stops the run.
-  std::string way_on(const Case &at);
+  /// Returns what a user is told who stops the run.
+  std::string resume_hint(const Case &forging_case);
 
-  /// What can be done when the run failed after some increments.
+  /// Returns what can be done when the run failed after some increments.
   /// @param stroke   up to which it came [mm]
   /// @param remakes  whether meshes are remade
-  std::string way_on_after_failure(const Case &at, double stroke, bool remakes);
+  std::string resume_hint_after_failure(const Case &forging_case, double stroke, bool remakes);
 } // namespace retroforge

@@ -23,7 +23,10 @@ namespace retroforge
   public:
     /// @param trace  that followed the run up to where add() is called; it and the case must live as long
     /// @throws Error  if a file cannot be written
-    RunOutput(const Case &at, const WholePart &whole, const ObjectiveTrace &trace, Timings &timings);
+    RunOutput(const Case           &forging_case,
+              const WholePart      &whole,
+              const ObjectiveTrace &trace,
+              Timings              &timings);
 
     /// From here on increments are solved, as far as the time left is concerned.
     void begin();
@@ -50,7 +53,7 @@ namespace retroforge
     void       watch_edges(const IncrementEvent &event);
     /// Every so many increments, and at the end.
     bool is_due(const ForgingState &state, unsigned int every) const;
-    /// Whether fields are written at the end of an increment.
+    /// Returns whether fields are written at the end of an increment.
     bool shows(const IncrementEvent &event) const;
 
     const Case           &case_;

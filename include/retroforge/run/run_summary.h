@@ -9,22 +9,24 @@
 
 namespace retroforge
 {
-  /// Volume of the billet that the mesh stands for, whose round sides are no chords: that of the mesh, X_0,
-  /// times the shape's over the mesh's where it was made. NaN for a billet that has no measures. To be called
-  /// on one rank only.  Units: mm^3.
-  double shape_volume(const Case &at);
+  /// Returns the volume of the billet that the mesh stands for, whose round sides are no chords: that of the
+  /// mesh, X_0, times the shape's over the mesh's where it was made. NaN for a billet that has no measures.
+  /// To be called on one rank only.  Units: mm^3.
+  double shape_volume(const Case &forging_case);
 
-  /// What a summary says of the forging: counts, volumes, restarts.
-  void summarise_run(const Case &at, const ForgingState &forged, Summary &summary);
+  /// Fills in what a summary says of the forging: counts, volumes, restarts.
+  void summarise_run(const Case &forging_case, const ForgingState &forged, Summary &summary);
 
-  /// Of the objectives.
+  /// Fills in the objectives.
   /// @param values  of each
-  void summarise_objectives(const Case                &at,
+  void summarise_objectives(const Case                &forging_case,
                             const ObjectiveTrace      &trace,
                             const ForgingState        &forged,
                             const std::vector<double> &values,
                             Summary                   &summary);
 
-  /// Of the design parameters, with the gradients.
-  void summarise_gradients(const Case &at, const std::vector<Judged> &judged, Summary &summary);
+  /// Fills in the design parameters, with the gradients.
+  void summarise_gradients(const Case                              &forging_case,
+                           const std::vector<ObjectiveSensitivity> &sensitivities,
+                           Summary                                 &summary);
 } // namespace retroforge

@@ -62,14 +62,14 @@ namespace retroforge
     const Remesher             remesher_;
     const Forging              forging_;
 
-    ForgingState                   forged_;
-    ObjectiveTrace                 trace_;
-    Recording                      recording_;
-    const std::vector<std::string> warnings_; ///< what is doubtful about the scene
-    std::unique_ptr<RunOutput>     output_;
-    std::vector<double>            values_;               ///< of the objectives
-    std::vector<Judged>            judged_;               ///< each combination that was differentiated
-    double                         forging_seconds_ = 0.; ///< 0: unknown, the run was resumed
-    Summary                        summary_;
+    ForgingState                      forged_;
+    ObjectiveTrace                    trace_;
+    Recording                         recording_;
+    const std::vector<std::string>    warnings_; ///< what is doubtful about the scene
+    std::unique_ptr<RunOutput>        output_;
+    std::vector<double>               values_;               ///< of the objectives
+    std::vector<ObjectiveSensitivity> sensitivities_;        ///< each combination that was differentiated
+    double                            forging_seconds_ = 0.; ///< 0: unknown, the run was resumed
+    Summary                           summary_;
   };
 } // namespace retroforge

@@ -33,7 +33,7 @@ namespace retroforge
     void print(std::ostream &out) const;
 
   private:
-    struct Judged
+    struct LineObjective
     {
       std::string                  name, unit;
       ScannedLine                  line;
@@ -41,8 +41,8 @@ namespace retroforge
       LineStatistics               statistics;
     };
 
-    std::vector<ScanLine>            lines_;
-    std::vector<std::vector<Judged>> judged_; ///< the objectives of each line
-    unsigned int                     degree_;
+    std::vector<ScanLine>                   lines_;
+    std::vector<std::vector<LineObjective>> objectives_; ///< the objectives of each line
+    unsigned int                            degree_;
   };
 } // namespace retroforge

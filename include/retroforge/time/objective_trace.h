@@ -36,14 +36,14 @@ namespace retroforge
     /// chose last
     std::vector<double> values(const ForgingState &state, bool decide, bool complete = true) const;
 
-    /// What is told beside a value: its summands, and other numbers.
-    struct Beside
+    /// What is reported beside a value: its summands, and other numbers.
+    struct Diagnostics
     {
       std::map<std::string, double> parts, details;
     };
 
-    /// Of each objective, after values().
-    std::vector<Beside> beside(const ForgingState &state) const;
+    /// Returns those of each objective, after values().
+    std::vector<Diagnostics> diagnostics(const ForgingState &state) const;
 
     /// The rows of each objective; empty for one of the end.
     const std::vector<PathRows<double>> &rows() const { return rows_; }

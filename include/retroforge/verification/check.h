@@ -10,17 +10,18 @@
 
 namespace retroforge
 {
-  /// The objectives at parameters mu, with billet and dies moved by `shift` from there: one number each.
-  struct ObjectiveOracle
+  /// Evaluates the objectives at parameters mu, with billet and dies moved by `shift` from there: one number
+  /// each.
+  struct DifferenceEvaluator
   {
     using Values = std::vector<double>;
 
     /// Decides everything anew.
-    std::function<Values(const std::vector<double> &mu, const FreeForm &shift)> free;
+    std::function<Values(const std::vector<double> &mu, const ShapePerturbation &shift)> free;
     /// Obeys the recorded decisions.
-    std::function<Values(const std::vector<double> &mu, const FreeForm &shift)> replayed;
+    std::function<Values(const std::vector<double> &mu, const ShapePerturbation &shift)> replayed;
     /// The direct method, along (mu_dot, shift_dot).
-    std::function<Values(const std::vector<double> &mu_dot, const FreeForm &shift_dot)> tangent;
+    std::function<Values(const std::vector<double> &mu_dot, const ShapePerturbation &shift_dot)> tangent;
   };
 
   /// Differences at one step (relative to the parameter's scale).
@@ -63,15 +64,15 @@ namespace retroforge
   /// objective.
   /// @param done  rows of an earlier check of the same record, which stopped: their directions are not
   /// repeated
-  std::vector<CheckRow> check_gradient(const CheckParameters       &parameters,
-                                       const Design                &design,
-                                       const std::vector<double>   &mu,
-                                       const std::vector<Judged>   &judged,
-                                       double                       length,
-                                       const ObjectiveOracle       &oracle,
-                                       const std::vector<CheckRow> &done,
-                                       const CheckWatch            &watch);
+  std::vector<CheckRow> check_gradient(const CheckParameters                   &parameters,
+                                       const Design                            &design,
+                                       const std::vector<double>               &mu,
+                                       const std::vector<ObjectiveSensitivity> &sensitivities,
+                                       double                                   length,
+                                       const DifferenceEvaluator               &evaluator,
+                                       const std::vector<CheckRow>             &done,
+                                       const CheckWatch                        &watch);
 
-  /// The table a user reads.
+  /// Prints the table that a user reads.
   void print(const std::vector<CheckRow> &rows, std::ostream &out);
 } // namespace retroforge

@@ -9,8 +9,8 @@
 
 namespace retroforge
 {
-  /// What of a check is done, kept as it goes on (check.json), so that one that was stopped need not repeat
-  /// it. Numbers read back to the same bits.
+  /// The part of a check that is done, kept as it goes on (check.json), so that one that was stopped need not
+  /// repeat it. Numbers read back to the same bits.
   struct CheckFile
   {
     std::string           program;      ///< version and commit

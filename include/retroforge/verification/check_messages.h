@@ -6,13 +6,13 @@
 
 namespace retroforge
 {
-  /// What a check is about to do.
+  /// Prints what a check is about to do.
   /// @param n_directions  to be checked, by n_runs forgings each
   /// @param n_done        directions that an earlier check has done
   /// @param seconds       of one forging; 0 when unknown
   void print_check_begin(unsigned int n_directions, unsigned int n_done, unsigned int n_runs, double seconds);
 
-  /// Of the direction checked last, and the time left as those so far took it.
+  /// Prints the verdict on the direction checked last, and the time left as those so far took it.
   /// @param rows    of all objectives along the directions so far
   /// @param before  of the directions done, those that an earlier check has done
   void print_check_progress(const std::vector<CheckRow> &rows,

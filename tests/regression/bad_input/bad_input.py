@@ -429,7 +429,8 @@ def on_two_ranks():
     judge("nothing of an abort", "MPI_ABORT" not in done.stdout + done.stderr, done.stderr)
     first_alone = "trap '' XFSZ; [ $OMPI_COMM_WORLD_RANK = 0 ] && ulimit -f 64; exec \"$@\""
     # Messages go by sockets there: memory that ranks share is a file, which would be bounded, too.
-    done = start([*two, "--mca", "btl", "tcp,self", "sh", "-c", first_alone, "sh", PROGRAM, "gradient", "case.prm", "--output", "alone", "--overwrite"])
+    sockets = ["--mca", "btl", "tcp,self", "--mca", "btl_tcp_if_include", "lo"]
+    done = start([*two, *sockets, "sh", "-c", first_alone, "sh", PROGRAM, "gradient", "case.prm", "--output", "alone", "--overwrite"])
     judge("a disk that is full for one rank", done.returncode != 0 and "retroforge: alone" in done.stderr, done.stderr)
 
 

@@ -5,7 +5,7 @@
 // that Gmsh has in memory.
 #include "mutate.h"
 
-#include <retroforge/billet/gmsh_mesher.h>
+#include <retroforge/billet/msh_mesh.h>
 #include <retroforge/core/error.h>
 #include <retroforge/mesh/mesh_checks.h>
 

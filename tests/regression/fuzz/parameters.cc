@@ -70,7 +70,7 @@ std::pair<std::string, std::string> some_override(fuzz::Random &random)
 
 void require_sane(Parameters &parameters)
 {
-  parameters.settle({50., 50.});
+  parameters.resolve_defaults({50., 50.});
   const Process<double> process = parameters.process({50., 50.});
   const StepModel       model   = parameters.step_model();
   using fuzz::require;

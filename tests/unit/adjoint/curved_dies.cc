@@ -245,7 +245,7 @@ int main(int argc, char **argv)
   const Parameters tripods = tripod_scene(), bell = bell_scene(), under_punch = punch_scene();
   Parameters       facets = bell, nodes = tripods;
   facets.dies[1].shape.choose<BellDie>().surface_law = "facets";
-  nodes.contact.points                               = "nodes";
+  nodes.contact.edges_touch                          = false;
   const std::vector<double> errors                   = {check("tripods", Problem(tripods)),
                                                         check("bell", Problem(bell)),
                                                         check("punch with a sharp edge and a rounding",

@@ -37,11 +37,11 @@ namespace retroforge
   /// A scene forged once, its increments kept, to be differentiated and replayed.
   struct RecordedRun
   {
-    /// @param judged  the objectives; those of the parameters when it is empty
+    /// @param given  the objectives; those of the parameters when it is empty
     /// @param scheme  in time; that of the parameters when there is none
     RecordedRun(const Parameters            &all,
                 std::vector<Die>             dies,
-                Objectives                   judged = {},
+                Objectives                   given  = {},
                 const std::optional<Scheme> &scheme = {})
         : parameters(settled(all))
         , process(parameters.process({all.billet.size[2], all.billet.size[2]}))
@@ -60,7 +60,7 @@ namespace retroforge
                    MPI_COMM_WORLD)
         , forging(model, parameters.press, remesher, timings)
         , forged(forging.start(leg, scene.mesh.X))
-        , objectives(judged.empty() ? all.make_objectives(model.dies, scene.mesh) : std::move(judged))
+        , objectives(given.empty() ? all.make_objectives(model.dies, scene.mesh) : std::move(given))
         , trace(objectives, model, process)
     {
       forging.run(process, forged, [&](const IncrementEvent &event) {
@@ -79,7 +79,7 @@ namespace retroforge
     static Parameters settled(Parameters all)
     {
       all.remeshing.when = "never"; // one mesh for all of a run
-      all.settle({all.billet.size[2], all.billet.size[2]});
+      all.resolve_defaults({all.billet.size[2], all.billet.size[2]});
       return all;
     }
 

@@ -28,7 +28,7 @@ Objectives all_objectives(const unsigned int upper)
   const auto path = [&](const std::string &name, auto &&objective) {
     objectives.push_back({name,
                           1.,
-                          Extent::none,
+                          SymmetryScaling::none,
                           invalid_index,
                           std::make_unique<std::decay_t<decltype(objective)>>(std::move(objective)),
                           nullptr});
@@ -36,7 +36,7 @@ Objectives all_objectives(const unsigned int upper)
   const auto at_end = [&](const std::string &name, auto &&objective) {
     objectives.push_back({name,
                           1.,
-                          Extent::none,
+                          SymmetryScaling::none,
                           invalid_index,
                           nullptr,
                           std::make_unique<std::decay_t<decltype(objective)>>(std::move(objective))});

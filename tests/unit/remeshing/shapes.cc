@@ -13,7 +13,7 @@
 
 #include "remeshing_test_tools.h"
 
-#include <retroforge/billet/gmsh_mesher.h>
+#include <retroforge/billet/msh_mesh.h>
 
 #include <gmsh.h>
 

@@ -80,16 +80,17 @@ namespace
     constexpr unsigned int upper = 1;
     const PathWindow       late{PathWindow::Over::stroke, 1.1, 3.};
     Objectives             all;
-    all.push_back({"energy", 1., Extent::none, invalid_index, std::make_unique<EnergyObjective>(), nullptr});
+    all.push_back(
+      {"energy", 1., SymmetryScaling::none, invalid_index, std::make_unique<EnergyObjective>(), nullptr});
     all.push_back({"mean effort",
                    1.,
-                   Extent::none,
+                   SymmetryScaling::none,
                    invalid_index,
                    std::make_unique<MeanEffort>(Effort(upper), late),
                    nullptr});
     all.push_back({"variance of the strain",
                    1.,
-                   Extent::none,
+                   SymmetryScaling::none,
                    invalid_index,
                    nullptr,
                    std::make_unique<StrainObjective>(StrainStatistic::variance)});

@@ -25,6 +25,8 @@
 #include <iostream>
 #include <random>
 
+#include <retroforge/mesh/mesh_quality.h>
+
 #include "../../unit/mesh/block_mesh.h"
 #include "flow_problem.h"
 

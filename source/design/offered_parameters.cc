@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+//
+// The design parameters that a scene offers, by name.
+#include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
+#include <retroforge/design/design.h>
+
+#include <algorithm>
+
+namespace retroforge
+{
+  namespace
+  {
+    using Kind = DesignParameter::Kind;
+  } // namespace
+
+  std::vector<std::string> Design::expanded(const std::vector<std::string> &names) const
+  {
+    const std::vector<DesignParameter> all        = offered();
+    const auto                         is_mode_of = [](const std::string &name, const std::string &form) {
+      const std::string end = "/free form";
+      return form.size() > end.size() && form.substr(form.size() - end.size()) == end &&
+             name.rfind(form + " ", 0) == 0;
+    };
+    std::vector<std::string> single;
+    for (const std::string &name : names)
+    {
+      const std::size_t n = single.size();
+      for (const DesignParameter &parameter : all)
+        if (is_mode_of(parameter.name, name))
+          single.push_back(parameter.name);
+      // One that is given a value stands for itself in all of them.
+      if (single.size() == n && std::none_of(names.begin(), names.end(), [&](const std::string &form) {
+            return is_mode_of(name, form);
+          }))
+        single.push_back(name);
+    }
+    return single;
+  }
+
+  std::map<std::string, std::string> idle_parameters(const std::vector<DieParameters> &dies,
+                                                     const MaterialLaw<double>        &law)
+  {
+    std::map<std::string, std::string> idle;
+    bool                               friction = false;
+    for (const DieParameters &die : dies)
+    {
+      friction |= die.friction > 0.;
+      if (die.friction == 0.)
+        idle["die " + die.name + "/friction"] = "the friction of die " + die.name + " is 0";
+      if (die.velocity.norm() == 0.)
+        idle["die " + die.name + "/speed"] = "the velocity of die " + die.name + " is 0";
+    }
+    if (!friction)
+      idle["dies/friction"] = "the friction of all dies is 0";
+    for (const NumberInfo &number : ContactLaw<double>::info())
+      if (!ContactLaw<double>::depends_on(number.name, friction))
+        idle["contact/" + number.name] = "the friction of all dies is 0";
+    for (const NumberInfo &number : MaterialLaw<double>::info())
+      if (!law.depends_on(number.name))
+        idle["material/" + number.name] = "the strain rate sensitivity is 1";
+    return idle;
+  }
+
+  bool DesignParameter::overlaps(const DesignParameter &other) const
+  {
+    const bool same_die = die == other.die || die == invalid_index || other.die == invalid_index;
+    return kind == other.kind && same_die && number == other.number && measure == other.measure;
+  }
+
+  namespace
+  {
+    /// The numbers of a law, called GROUP/NAME, those that `offers` names.
+    template <typename Law, typename Offers>
+    void add_numbers_of(Law                           law,
+                        const std::string            &group,
+                        const Kind                    kind,
+                        const Offers                 &offers,
+                        std::vector<DesignParameter> &all)
+    {
+      const std::vector<NumberInfo> info = Law::info();
+      for (unsigned int i = 0; i < info.size(); ++i)
+        if (offers(info[i].name))
+        {
+          const double value = number_of(law, i);
+          all.push_back({group + "/" + info[i].name,
+                         info[i].unit,
+                         kind,
+                         value,
+                         value,
+                         invalid_index,
+                         i,
+                         {},
+                         info[i].may_vanish,
+                         info[i].largest});
+        }
+    }
+
+    void add_numbers_of(const DieParameters          &die,
+                        const DieFreeForm            &form,
+                        const NumberInfo             &friction,
+                        const unsigned int            d,
+                        const double                  width,
+                        std::vector<DesignParameter> &all)
+    {
+      const std::string prefix = "die " + die.name + "/";
+      const double      speed  = die.velocity.norm();
+      if (die.friction > 0.)
+        all.push_back({prefix + "friction",
+                       friction.unit,
+                       Kind::friction,
+                       die.friction,
+                       die.friction,
+                       d,
+                       0,
+                       {},
+                       friction.may_vanish,
+                       friction.largest});
+      if (speed > 0.)
+        all.push_back({prefix + "speed", "mm/s", Kind::speed, speed, speed, d});
+      all.push_back({prefix + "offset", "mm", Kind::offset, 0., width, d});
+      for (const auto &[key, measure] : die.shape->measures())
+        all.push_back({prefix + key, measure.unit, Kind::die_shape, measure.value, measure.value, d, 0, key});
+      for (unsigned int i = 0; i < form.n_modes(); ++i)
+        all.push_back(
+          {prefix + "free form " + std::to_string(i + 1), "mm", Kind::die_free_form, 0., width, d, i});
+    }
+  } // namespace
+
+  NumberInfo Design::friction_of(const unsigned int d) const
+  {
+    return interface_law(process_.dies[d].interface_law).coefficient();
+  }
+
+  std::vector<DesignParameter> Design::offered() const
+  {
+    const auto with_friction =
+      std::find_if(dies_.begin(), dies_.end(), [](const DieParameters &die) { return die.friction > 0.; });
+    const bool                   friction = with_friction != dies_.end();
+    std::vector<DesignParameter> all;
+    add_numbers_of(
+      process_.law,
+      "material",
+      Kind::material,
+      [&](const std::string &name) { return process_.law.depends_on(name); },
+      all);
+    add_numbers_of(
+      process_.contact,
+      "contact",
+      Kind::contact,
+      [&](const std::string &name) { return process_.contact.depends_on(name, friction); },
+      all);
+    for (unsigned int j = 0; j < billet_map_.parameters().size(); ++j)
+    {
+      const ShapeParameter &shape = billet_map_.parameters()[j];
+      all.push_back(
+        {"billet/" + shape.name, shape.unit, Kind::billet, shape.nominal, shape.scale, invalid_index, j});
+    }
+    for (unsigned int d = 0; d < dies_.size(); ++d)
+      add_numbers_of(dies_[d], die_forms_[d], friction_of(d), d, width_, all);
+    if (friction)
+      all.push_back({"dies/friction",
+                     friction_of(with_friction - dies_.begin()).unit,
+                     Kind::friction,
+                     with_friction->friction,
+                     with_friction->friction,
+                     invalid_index,
+                     0,
+                     {},
+                     true});
+    return all;
+  }
+
+  void Design::check_offered(const std::string &name, const std::string &where) const
+  {
+    std::vector<std::string> known;
+    for (const DesignParameter &parameter : offered())
+      known.push_back(parameter.name);
+    if (std::find(known.begin(), known.end(), name) != known.end())
+      return;
+    const auto idle = idle_parameters(dies_, process_.law);
+    if (const auto found = idle.find(name); found != idle.end())
+      throw Error(where,
+                  "'" + name + "' changes nothing, as " + found->second,
+                  "a derivative is taken by what acts",
+                  "leave it out, or give that number another value: a friction of 1e-6 is next to none");
+    const std::string near = nearest_name(name, known, 6);
+    throw Error(where,
+                "'" + name + "' is not a parameter of this scene",
+                "it offers " + join(known),
+                near.empty() ? "name some of these" : "did you mean '" + near + "'?");
+  }
+
+  void Design::check_common_friction() const
+  {
+    const DieParameters *first = nullptr;
+    for (const auto &die : dies_)
+      if (die.friction > 0.)
+      {
+        if (first && (first->friction != die.friction || first->friction_law != die.friction_law))
+          throw Error("Design/parameters",
+                      std::string("'dies/friction' stands for all dies with friction, but their ") +
+                        (first->friction_law != die.friction_law ? "laws" : "coefficients") + " differ",
+                      "one number must describe them all",
+                      "name each die, as in 'die " + die.name + "/friction'");
+        first = &die;
+      }
+  }
+} // namespace retroforge

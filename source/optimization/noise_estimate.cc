@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/optimization/noise_estimate.h>
+
+#include <cmath>
+#include <random>
+
+namespace retroforge
+{
+  namespace
+  {
+    /// Values at a design as the gradients at the start predict them.
+    std::vector<double> predicted_values(const Evaluation &start, const std::vector<double> &mu)
+    {
+      std::vector<double> values = start.values;
+      for (std::size_t o = 0; o < start.gradients.size(); ++o)
+        for (std::size_t j = 0; j < mu.size(); ++j)
+          values[o] += start.gradients[o][j] * (mu[j] - start.mu[j]);
+      return values;
+    }
+  } // namespace
+
+  double measure_noise(OptimizationProblem                                             &problem,
+                       const Evaluation                                                &start,
+                       const std::function<void(const Evaluation &evaluation, double)> &tell)
+  {
+    constexpr double              part       = 1e-3; // of the scales: what bends over it is no noise
+    const OptimizationParameters &parameters = problem.parameters();
+    const Criteria               &criteria   = problem.criteria;
+    std::mt19937                  generator(1);
+    double                        sum      = 0.;
+    unsigned int                  n_values = 0;
+    for (unsigned int i = 0;
+         i < parameters.noise_runs && problem.evaluator.n_asked() < parameters.simulations;
+         ++i)
+    {
+      std::vector<double> x(problem.space.size());
+      for (double &entry : x)
+        entry = part * (2. * (generator() / 4294967295.) - 1.);
+      const std::vector<double> mu         = problem.space.values(problem.space.projected(x));
+      const Evaluation          evaluation = problem.evaluate(mu);
+      tell(evaluation, part);
+      if (evaluation.failed())
+        continue;
+      // Values are linear over so short a step; their misfit against data need not be.
+      sum += std::pow(criteria.value(evaluation.values) - criteria.value(predicted_values(start, mu)), 2);
+      ++n_values;
+    }
+    return n_values > 0 ? std::sqrt(sum / n_values) : 0.;
+  }
+} // namespace retroforge
