@@ -24,9 +24,18 @@ namespace retroforge
 
     bool empty() const { return V.empty(); }
 
+    /// Tells whether these are entries at the nodes of a discretisation, as it numbers them.
+    bool belongs_to(const Discretization<dim> &discretization) const
+    {
+      return V.numbering() == discretization.velocity_nodes() &&
+             P.numbering() == discretization.pressure_nodes();
+    }
+
     /// this += scale * other
     void add(const Number &scale, const FlowField &other)
     {
+      Assert(other.V.numbering() == V.numbering() && other.P.numbering() == P.numbering(),
+             dealii::ExcMessage("fields on different discretisations cannot be added"));
       for (unsigned int i = 0; i < V.size(); ++i)
         V.at_place(i) += other.V.at_place(i) * scale;
       for (unsigned int i = 0; i < P.size(); ++i)
