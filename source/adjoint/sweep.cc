@@ -131,10 +131,19 @@ namespace retroforge
                              const ForgingState                  &end,
                              const std::vector<Combination>      &combinations)
   {
+    AssertDimension(end.increments, run.n);
+    AssertDimension(rows.size(), run.objectives.size());
+    Assert(std::all_of(combinations.begin(),
+                       combinations.end(),
+                       [&](const Combination &of) { return of.weights.size() == run.objectives.size(); }),
+           dealii::ExcMessage("a combination has a weight for each objective"));
     std::vector<PathRows<double>> rows_bar(run.objectives.size());
     for (std::size_t o = 0; o < run.objectives.size(); ++o)
       if (run.objectives[o].path)
+      {
+        AssertDimension(rows[o].size(), end.increments);
         rows_bar[o] = run.objectives[o].path->reverse_value(rows[o]);
+      }
     std::vector<Costate>      costates = start_costates(run, end, combinations);
     NodalVectors<double>      X        = end.X;
     std::vector<unsigned int> remeshed = end.remeshed;
@@ -173,6 +182,8 @@ namespace retroforge
   std::vector<Dual>
   tangent_sweep(const RecordedForging &run, const Process<Dual> &process, NodalVectors<Dual> X)
   {
+    AssertDimension(X.size(), run.first->scene.mesh.n_nodes());
+    AssertDimension(process.dies.size(), run.model.dies.size());
     std::shared_ptr<Leg>        leg = run.first;
     std::vector<PathRows<Dual>> rows(run.objectives.size());
     std::vector<Dual>           strain(leg->scene.mesh.n_cells(), Dual(0.));

@@ -57,6 +57,7 @@ namespace retroforge
                                      const ContactSet<Number>   &contact,
                                      const NodalVectors<Number> &X)
   {
+    AssertDimension(X.size(), mesh.n_nodes());
     ContactAreas<Number> areas;
     areas.S.assign(contact.pairs.size(), Number(0.));
     areas.Sf.assign(contact.pairs.size(), Number(0.));
@@ -81,6 +82,11 @@ namespace retroforge
                              NodalVectors<double>       &X_bar,
                              ContactSetBar              &bar)
   {
+    AssertDimension(X.size(), mesh.n_nodes());
+    AssertDimension(X_bar.size(), X.size());
+    AssertDimension(areas_bar.S.size(), contact.pairs.size());
+    AssertDimension(areas_bar.Sf.size(), contact.pairs.size());
+    AssertDimension(bar.ramp.size(), contact.pairs.size());
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (areas_bar.S[p] != 0.)
         contact.pairs[p].point.for_each_face(mesh, topology, [&](const unsigned int f) {

@@ -171,6 +171,13 @@ namespace retroforge
                                       const std::vector<ContactPair> &pairs,
                                       const ContactApproach<Number>  &approach)
   {
+    AssertDimension(view.X.size(), view.mesh.n_nodes());
+    AssertDimension(view.states.size(), view.dies.size());
+    Assert(std::all_of(pairs.begin(),
+                       pairs.end(),
+                       [&](const ContactPair &pair) { return pair.die < view.dies.size(); }),
+           dealii::ExcMessage("a pair is of a die that is not there"));
+    Assert(value_of(approach.tau) > 0., dealii::ExcMessage("gaps close within a positive time"));
     ContactSet<Number> contact;
     const auto &[mesh, topology, dies, states, X, edges, comm] = view;
     contact.edge_stiffness                                     = approach.edge_stiffness;
@@ -226,6 +233,11 @@ namespace retroforge
                            NodalVectors<double>          &X_bar,
                            std::vector<DieState<double>> &dies_bar)
   {
+    AssertDimension(bar.delta.size(), contact.pairs.size());
+    AssertDimension(bar.ramp.size(), contact.pairs.size());
+    AssertDimension(bar.n.size(), contact.pairs.size());
+    AssertDimension(X_bar.size(), view.X.size());
+    AssertDimension(dies_bar.size(), view.dies.size());
     std::vector<double> gaps_bar = bar.delta;
     if (contact.quadratic)
       reverse_level_gaps(view.X, ramp, contact, bar.ramp, gaps_bar, X_bar);

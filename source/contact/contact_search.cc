@@ -103,6 +103,9 @@ namespace retroforge
                                               const double               reach,
                                               const bool                 with_edges)
   {
+    AssertDimension(view.X.size(), view.mesh.n_nodes());
+    AssertDimension(view.states.size(), view.dies.size());
+    Assert(reach >= 0., dealii::ExcMessage("the reach is a distance"));
     const auto              &X     = view.X;
     const auto              &edges = view.topology.surface_edges;
     std::vector<NodeIndex>   nodes;

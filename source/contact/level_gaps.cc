@@ -143,6 +143,9 @@ namespace retroforge
                           std::vector<double>        &gaps_bar,
                           NodalVectors<double>       &X_bar)
   {
+    AssertDimension(ramps_bar.size(), contact.pairs.size());
+    AssertDimension(gaps_bar.size(), contact.pairs.size());
+    AssertDimension(X_bar.size(), X.size());
     const auto            bulges = bulges_of(X, ramp, contact);
     const Offsets<double> offsets(bulges, contact);
     const auto            gap   = [&](const unsigned int p) { return contact.projections[p].delta; };

@@ -65,6 +65,8 @@ namespace retroforge
                             const NodalVectors<double>          &X,
                             MPI_Comm                             comm)
   {
+    AssertDimension(X.size(), mesh.n_nodes());
+    AssertDimension(states.size(), dies.size());
     const auto points       = surface_points(mesh, topology, X);
     const auto [begin, end] = share_of_rank(points.size(), comm);
     Penetration deepest;

@@ -141,6 +141,7 @@ namespace retroforge
   template <typename Number>
   NodalVectors<Number> BilletMap::moved(const std::vector<Number> &mu) const
   {
+    AssertDimension(mu.size(), free_.size());
     NodalVectors<Number> X(X_.size());
     for (std::size_t k = 0; k < X.size(); ++k)
       for (unsigned int i = 0; i < 3; ++i)
@@ -180,6 +181,7 @@ namespace retroforge
   template <typename Number>
   Number BilletMap::held_value(const std::vector<Number> &mu) const
   {
+    Assert(held_, dealii::ExcMessage("no parameter holds the volume"));
     const ShapeParameter &held = shapes_.parameters[*held_];
     NodalVectors<double>  X    = moved(values_of(mu));
     const double          d    = held_by_newton(X);
@@ -277,6 +279,8 @@ namespace retroforge
   std::vector<double> BilletMap::pull_back(const std::vector<double>  &mu,
                                            const NodalVectors<double> &X_bar) const
   {
+    AssertDimension(mu.size(), free_.size());
+    AssertDimension(X_bar.size(), X_.size());
     NodalVectors<double> bar = X_bar;
     if (held_)
     {

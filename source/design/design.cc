@@ -151,6 +151,7 @@ namespace retroforge
   template <typename Number>
   NodalVectors<Number> Design::positions(const std::vector<Number> &mu) const
   {
+    AssertDimension(mu.size(), parameters_.size());
     return billet_map_.positions(shape_of(mu));
   }
 
@@ -174,6 +175,7 @@ namespace retroforge
 
   std::vector<double> Design::held_gradient(const std::vector<double> &mu) const
   {
+    AssertDimension(mu.size(), parameters_.size());
     std::vector<double> gradient;
     for (unsigned int j = 0; j < mu.size(); ++j)
       gradient.push_back(
@@ -194,6 +196,7 @@ namespace retroforge
   template <typename Number>
   Process<Number> Design::process(const std::vector<Number> &mu) const
   {
+    AssertDimension(mu.size(), parameters_.size());
     auto process = converted<Number>(process_);
     for (unsigned int j = 0; j < parameters_.size(); ++j)
     {
@@ -291,6 +294,9 @@ namespace retroforge
                                         const NodalVectors<double> &X_0_bar,
                                         const Process<double>      &bar) const
   {
+    AssertDimension(mu.size(), parameters_.size());
+    AssertDimension(X_0_bar.size(), nominal_X_.size());
+    AssertDimension(bar.dies.size(), dies_.size());
     const std::vector<double> billet = billet_map_.pull_back(shape_of(mu), X_0_bar);
     std::vector<double>       gradient;
     for (unsigned int j = 0; j < parameters_.size(); ++j)

@@ -252,6 +252,8 @@ namespace retroforge
 
   double DieFreeForm::reverse(const unsigned int mode, const NodalVectors<double> &vertices_bar) const
   {
+    AssertIndexRange(mode, moves_.size());
+    AssertDimension(vertices_bar.size(), vertices_.size());
     double sum = 0.;
     for (std::size_t k = 0; k < vertices_bar.size(); ++k)
       sum += moves_[mode][k] * vertices_bar[k];

@@ -98,6 +98,9 @@ namespace retroforge
                                        const Field<double>        &W,
                                        const MaterialLaw<double>  &law)
   {
+    Assert(X.size() == discretization.n_vertices(),
+           dealii::ExcDimensionMismatch(X.size(), discretization.n_vertices()));
+    Assert(W.belongs_to(discretization), dealii::ExcMessage("the velocities are of another discretisation"));
     const DeviatoricRates rates    = deviatoric_rates(discretization, X, W);
     const auto            at_nodes = recovered(discretization, rates);
     std::vector<double>   errors(discretization.cells().range().n, 0.);

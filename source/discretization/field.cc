@@ -10,6 +10,7 @@ namespace retroforge
                                       const std::vector<double>                 &P)
   {
     AssertDimension(V.size(), discretization.n_vertices());
+    AssertDimension(P.size(), discretization.pressure_nodes()->n());
     FlowField<dim, double> W(discretization);
     for (unsigned int place = 0; place < W.V.size(); ++place)
     {

@@ -13,6 +13,11 @@ namespace retroforge
                                         const Number               &dt,
                                         const std::vector<Number>  &q_n)
   {
+    Assert(X.size() == discretization.n_vertices(),
+           dealii::ExcDimensionMismatch(X.size(), discretization.n_vertices()));
+    Assert(q_n.size() == discretization.cells().range().n,
+           dealii::ExcDimensionMismatch(q_n.size(), discretization.cells().range().n));
+    Assert(W.belongs_to(discretization), dealii::ExcMessage("the velocities are of another discretisation"));
     std::vector<Number> q = q_n;
     with_pair(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
@@ -30,6 +35,13 @@ namespace retroforge
                                    Field<double>              &W_bar,
                                    NodalVectors<double>       &X_bar)
   {
+    Assert(X.size() == discretization.n_vertices(),
+           dealii::ExcDimensionMismatch(X.size(), discretization.n_vertices()));
+    Assert(X_bar.size() == X.size(), dealii::ExcDimensionMismatch(X_bar.size(), X.size()));
+    Assert(q_bar.size() == discretization.cells().range().n,
+           dealii::ExcDimensionMismatch(q_bar.size(), discretization.cells().range().n));
+    Assert(W.belongs_to(discretization) && W_bar.belongs_to(discretization),
+           dealii::ExcMessage("the velocities are of another discretisation"));
     double dt_bar = 0.;
     with_pair(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())

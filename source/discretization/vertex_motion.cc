@@ -78,6 +78,14 @@ namespace retroforge
     }
 
     template <typename Number>
+    void check_sizes([[maybe_unused]] const VertexMotionInput<Number> &in)
+    {
+      AssertDimension(in.X.size(), in.mesh.n_nodes());
+      AssertDimension(in.V.size(), in.mesh.n_nodes() + in.middles.size());
+      AssertDimension(in.freedom.size(), in.mesh.n_nodes());
+    }
+
+    template <typename Number>
     std::vector<SurfaceFace<Number>> faces_of_surface(const VertexMotionInput<Number> &in)
     {
       std::vector<SurfaceFace<Number>> faces;
@@ -195,6 +203,7 @@ namespace retroforge
   template <typename Number>
   NodalVectors<Number> vertex_velocities(const VertexMotionInput<Number> &in)
   {
+    check_sizes(in);
     const auto           vertices = vertices_of_surface(in, faces_of_surface(in));
     NodalVectors<Number> w(in.V.begin(), in.V.begin() + in.mesh.n_nodes());
     for (NodeIndex k = 0; k < w.size(); ++k)
@@ -210,6 +219,11 @@ namespace retroforge
                                  const NodalVectors<double>      &w_bar,
                                  VertexMotionBar                 &bar)
   {
+    check_sizes(in);
+    AssertDimension(w_bar.size(), in.mesh.n_nodes());
+    AssertDimension(bar.X.size(), in.X.size());
+    AssertDimension(bar.V.size(), in.V.size());
+    AssertDimension(bar.freedom.size(), in.freedom.size());
     const auto         faces    = faces_of_surface(in);
     const auto         vertices = vertices_of_surface(in, faces);
     const unsigned int n        = in.mesh.n_nodes();

@@ -29,6 +29,8 @@ namespace retroforge
 
   Die Die::moved(NodalVectors<double> vertices) const
   {
+    Assert(surface_ && vertices.size() == surface_->shape.vertices().size(),
+           dealii::ExcMessage("a die is moved by all vertices of its surface"));
     Die             die     = *this;
     TriangleSurface shape   = surface_->shape;
     auto            normals = surface_->normals;
@@ -99,6 +101,9 @@ namespace retroforge
                             Vec3                 &displacement_bar,
                             NodalVectors<double> *vertices_bar) const
   {
+    Assert(feature.found(), dealii::ExcMessage("a point is projected on a feature that was found"));
+    Assert(vertices_bar == nullptr || (surface_ && vertices_bar->size() == surface_->shape.vertices().size()),
+           dealii::ExcMessage("derivatives are in all vertices of a die, or in none"));
     if (surface_ && surface_->normals)
     {
       reverse_project_smoothly(surface_->shape,

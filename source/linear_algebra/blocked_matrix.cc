@@ -56,6 +56,8 @@ namespace retroforge
 
   void BlockedMatrix::vmult(la::Vector &y, const la::Vector &x) const
   {
+    AssertDimension(x.locally_owned_size(), static_cast<unsigned int>(matrix_.trilinos_matrix().NumMyRows()));
+    AssertDimension(y.locally_owned_size(), x.locally_owned_size());
     Multiply(false, x.trilinos_vector(), y.trilinos_vector());
   }
 

@@ -106,6 +106,8 @@ namespace retroforge
 
   void ChebyshevSmoother::smooth(la::Vector &z, const la::Vector &r) const
   {
+    AssertDimension(z.locally_owned_size(), n_rows_);
+    AssertDimension(r.locally_owned_size(), n_rows_);
     std::copy(z.begin(), z.end(), z_.begin());
     std::copy(r.begin(), r.end(), r_.begin());
     const float smallest = largest_ / largest_over_smallest;

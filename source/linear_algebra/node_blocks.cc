@@ -13,6 +13,8 @@ namespace retroforge
     double *entries;
     A.trilinos_matrix().ExtractCrsDataPointers(first, numbers, entries);
     const int n_rows = A.trilinos_matrix().NumMyRows();
+    Assert(n_rows % 3 == 0 && A.trilinos_matrix().NumMyNonzeros() % 9 == 0,
+           dealii::ExcMessage("rows and columns come in threes"));
     for (int row = 0; row < n_rows; row += 3)
     {
       for (int e = first[row]; e < first[row + 1]; e += 3)

@@ -17,6 +17,7 @@ namespace retroforge
                            const Rows<unsigned int> &neighbours)
       : rows_(rows), columns_(columns)
   {
+    AssertDimension(neighbours.size(), rows.n_owned());
     for (unsigned int a = columns.begin; a < columns.end; ++a)
       column_nodes_.push_back(a);
     std::set<unsigned int> others;

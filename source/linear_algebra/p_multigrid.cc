@@ -40,6 +40,7 @@ namespace retroforge
       , linear_r_(P.locally_owned_domain_indices(), A.get_mpi_communicator())
       , linear_z_(linear_r_)
   {
+    AssertDimension(near_kernel.size(), 3 * static_cast<std::size_t>(A.trilinos_matrix().NumMyRows()));
     multiply(A, P, linear_);
     // ML guesses eigenvalues from random vectors: always the same ones.
     ML_set_random_seed(1);

@@ -26,6 +26,8 @@ namespace retroforge
 
   TetCorners corners(const std::array<NodeIndex, 4> &cell, const NodalVectors<double> &X)
   {
+    Assert(*std::max_element(cell.begin(), cell.end()) < X.size(),
+           dealii::ExcMessage("a cell has a node without a position"));
     return {{X[cell[0]], X[cell[1]], X[cell[2]], X[cell[3]]}};
   }
 

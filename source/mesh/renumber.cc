@@ -94,6 +94,11 @@ namespace retroforge
 
   std::vector<NodeIndex> renumber(TetMesh &mesh)
   {
+    Assert(std::all_of(
+             mesh.cells.begin(),
+             mesh.cells.end(),
+             [&](const auto &cell) { return *std::max_element(cell.begin(), cell.end()) < mesh.n_nodes(); }),
+           dealii::ExcMessage("a cell has a node that is not there"));
     const auto           number = reverse_cuthill_mckee(mesh);
     NodalVectors<double> X(mesh.n_nodes());
     for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)

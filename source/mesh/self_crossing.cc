@@ -67,6 +67,7 @@ namespace retroforge
 
   std::vector<SelfCrossing> self_crossings(const TetMesh &mesh, const NodalVectors<double> &X)
   {
+    AssertDimension(X.size(), mesh.n_nodes());
     std::vector<BoundingBox> boxes;
     for (const auto &face : mesh.faces)
       boxes.push_back(box_of(triangle(face, X)));

@@ -142,6 +142,7 @@ namespace retroforge
 
   std::vector<double> DesignSpace::scaled(const std::vector<double> &mu) const
   {
+    AssertDimension(mu.size(), size());
     std::vector<double> x(mu.size());
     for (std::size_t j = 0; j < mu.size(); ++j)
       x[j] = (mu[j] - start_[j]) / scales_[j];
@@ -150,6 +151,7 @@ namespace retroforge
 
   std::vector<double> DesignSpace::values(const std::vector<double> &x) const
   {
+    AssertDimension(x.size(), size());
     std::vector<double> mu(x.size());
     for (std::size_t j = 0; j < x.size(); ++j)
       mu[j] = std::clamp(start_[j] + scales_[j] * x[j], lower_[j], upper_[j]);
@@ -158,6 +160,7 @@ namespace retroforge
 
   std::vector<double> DesignSpace::pull_back(const std::vector<double> &by_mu) const
   {
+    AssertDimension(by_mu.size(), size());
     std::vector<double> by_x(by_mu.size());
     for (std::size_t j = 0; j < by_mu.size(); ++j)
       by_x[j] = by_mu[j] * scales_[j];
@@ -166,6 +169,8 @@ namespace retroforge
 
   DesignSpace::At DesignSpace::at(const std::vector<double> &mu, const std::size_t j) const
   {
+    AssertDimension(mu.size(), size());
+    AssertIndexRange(j, size());
     constexpr double close = 1e-6; // in scales
     return lower_[j] == upper_[j]                    ? At::fixed
            : mu[j] - lower_[j] <= close * scales_[j] ? At::lower
@@ -175,6 +180,7 @@ namespace retroforge
 
   bool DesignSpace::holds_as_equation(const std::vector<double> &mu, const std::size_t relation) const
   {
+    AssertIndexRange(relation, scaled_relations_.size());
     constexpr double      close = 1e-6; // in scales
     const LinearRelation &of    = scaled_relations_[relation];
     const double          at    = of.value(scaled(mu));
@@ -183,6 +189,7 @@ namespace retroforge
 
   std::vector<double> DesignSpace::projected(std::vector<double> x) const
   {
+    AssertDimension(x.size(), size());
     const std::vector<double> low = scaled_lower(), high = scaled_upper();
     const auto                onto_bounds = [&](std::vector<double> &y) {
       for (std::size_t j = 0; j < y.size(); ++j)

@@ -11,7 +11,10 @@ namespace retroforge
   std::vector<double> least_squares(const std::vector<std::vector<double>> &columns,
                                     const std::vector<double>              &right)
   {
-    const std::size_t   m = right.size(), n = columns.size();
+    const std::size_t m = right.size(), n = columns.size();
+    Assert(
+      std::all_of(columns.begin(), columns.end(), [&](const auto &column) { return column.size() == m; }),
+      dealii::ExcMessage("columns are as long as the right-hand side"));
     std::vector<double> x(n, 0.);
     if (m == 0 || n == 0)
       return x;

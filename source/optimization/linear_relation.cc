@@ -97,6 +97,7 @@ namespace retroforge
 
   double LinearRelation::value(const std::vector<double> &mu) const
   {
+    AssertDimension(mu.size(), weights.size());
     double sum = 0.;
     for (std::size_t j = 0; j < mu.size(); ++j)
       sum += weights[j] * mu[j];

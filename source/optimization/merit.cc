@@ -98,6 +98,7 @@ namespace retroforge
 
   double Criteria::value(const std::vector<double> &values) const
   {
+    AssertDimension(values.size(), objective.weights.size());
     double sum = objective(values);
     for (const Datum &datum : data)
       sum += 0.5 * std::pow(datum.misfit(values), 2);
@@ -106,6 +107,7 @@ namespace retroforge
 
   std::vector<double> Criteria::slopes(const std::vector<double> &values) const
   {
+    AssertDimension(values.size(), objective.weights.size());
     std::vector<double> slopes = objective.weights;
     for (const Datum &datum : data)
       slopes[datum.objective] += datum.misfit(values) / datum.deviation;
@@ -140,6 +142,8 @@ namespace retroforge
   std::vector<double> Merit::gradient(const std::vector<double>              &values,
                                       const std::vector<std::vector<double>> &gradients) const
   {
+    AssertDimension(gradients.size(), values.size());
+    Assert(!gradients.empty(), dealii::ExcMessage("a merit is of at least one objective"));
     std::vector<double> by_objective = criteria->slopes(values);
     for (double &weight : by_objective)
       weight /= size;

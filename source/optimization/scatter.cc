@@ -55,6 +55,7 @@ namespace retroforge
 
   std::vector<double> Scatter::sample(std::vector<double> mu, const std::size_t i) const
   {
+    AssertIndexRange(i, n_samples());
     if (!empty())
       mu[parameter_] = values_[i];
     return mu;
@@ -62,6 +63,7 @@ namespace retroforge
 
   Evaluation Scatter::combined(const std::vector<double> &mu, const std::vector<Evaluation> &samples) const
   {
+    AssertDimension(samples.size(), n_samples());
     if (empty())
       return samples.front();
     Evaluation all;

@@ -367,6 +367,8 @@ namespace retroforge
 
   void write_header(const hid_t file, const RecordHeader &header)
   {
+    AssertDimension(header.X_0.size(), header.mesh.n_nodes());
+    AssertDimension(header.die_fingerprints.size(), header.die_facets.size());
     const hdf5::Handle group = hdf5::create_group(file, "header");
     hdf5::write_attribute(group, "format", &format);
     hdf5::write_array(group, "die_facets", {header.die_facets.size()}, header.die_facets.data());

@@ -78,6 +78,9 @@ namespace retroforge
                              const unsigned int          degree,
                              const SizeBounds           &bounds)
   {
+    AssertDimension(X.size(), mesh.n_nodes());
+    AssertDimension(errors.size(), mesh.n_cells());
+    Assert(degree > 0, dealii::ExcMessage("velocities are at least linear"));
     const auto          n = mesh.n_cells();
     OptimalSizes        optimal;
     std::vector<double> present(n), density(n);

@@ -110,6 +110,8 @@ namespace retroforge
                               const TouchesDie           &touches,
                               const double                wanted_volume)
   {
+    AssertDimension(X.size(), mesh.n_nodes());
+    Assert(wanted_volume >= 0., dealii::ExcMessage("a volume is not negative"));
     check_volumes(mesh, X);
     RemeshedMesh result;
     report_before(mesh, X, result.report);

@@ -12,6 +12,7 @@ namespace retroforge
                              const std::function<double(const Vec3 &)> &size,
                              const std::string                         &where)
   {
+    AssertDimension(X.size(), mesh.n_nodes());
     check_boundary_does_not_cross(mesh, X, where);
     std::vector<NodeIndex> new_node(mesh.n_nodes(), invalid_index);
     for (const auto &face : mesh.faces)

@@ -88,6 +88,9 @@ namespace retroforge
                        const RemeshingParameters  &parameters,
                        const std::vector<bool>    &frozen)
   {
+    AssertDimension(X.size(), mesh.n_nodes());
+    Assert(frozen.empty() || frozen.size() == mesh.n_cells(),
+           dealii::ExcDimensionMismatch(frozen.size(), mesh.n_cells()));
     const auto bad = suspects(mesh, X, parameters.trigger_angle);
     if (bad.empty())
       return false;

@@ -11,6 +11,8 @@ namespace retroforge
                                const std::vector<double> &y,
                                const unsigned int         degree)
   {
+    AssertDimension(y.size(), x.size());
+    Assert(degree < x.size(), dealii::ExcMessage("a polynomial needs more points than its degree"));
     const auto [least, most] = std::minmax_element(x.begin(), x.end());
     middle_                  = 0.5 * (*least + *most);
     half_                    = *most > *least ? 0.5 * (*most - *least) : 1.;

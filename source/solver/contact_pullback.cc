@@ -12,6 +12,7 @@ namespace retroforge
 
   void ContactPullback::add_at_fixed_velocity(const unsigned int p, const ContactNodeBar &node_bar)
   {
+    AssertIndexRange(p, areas_bar_.S.size());
     areas_bar_.S[p] += node_bar.S;
     areas_bar_.Sf[p] += node_bar.Sf;
     bar_.contact.delta[p] += node_bar.delta;

@@ -306,6 +306,13 @@ namespace retroforge
                                  const Start          start,
                                  const ActiveSet     &pressed)
   {
+    Assert(&stage.scene == &scene_, dealii::ExcMessage("the stage is of another scene than the matrix"));
+    Assert(W.belongs_to(scene_.discretization),
+           dealii::ExcMessage("the guess is of another discretisation than the stage"));
+    Assert(frozen.empty() || frozen.size() == stage.contact.pairs.size(),
+           dealii::ExcDimensionMismatch(frozen.size(), stage.contact.pairs.size()));
+    Assert(pressed.empty() || pressed.size() == stage.contact.pairs.size(),
+           dealii::ExcDimensionMismatch(pressed.size(), stage.contact.pairs.size()));
     NewtonStatistics statistics;
     const bool       linear    = stage.physics.law.is_linear();
     const bool       from_rest = is_at_rest(scene_.discretization, W);

@@ -27,6 +27,9 @@ namespace retroforge
                               const ActiveSet     &active,
                               const Linearisation  linearisation)
   {
+    Assert(&stage.scene == &scene_, ExcMessage("the stage is of another scene than the matrix"));
+    Assert(active.empty() || active.size() == stage.contact.pairs.size(),
+           ExcDimensionMismatch(active.size(), stage.contact.pairs.size()));
     const ActiveSet chosen = active.empty() ? stage.decide_active(W) : active;
     system_.symmetric      = stage.has_potential();
     frames_                = make_frames(scene_, stage.contact, chosen);
@@ -121,6 +124,7 @@ namespace retroforge
 
   std::pair<double, double> SaddleMatrix::residual_norm(const Field<double> &r) const
   {
+    check_field(r);
     double momentum2 = 0., continuity2 = 0.;
     for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
@@ -145,6 +149,20 @@ namespace retroforge
                            scene_.discretization.comm());
   }
 
+  void SaddleMatrix::check_field([[maybe_unused]] const Field<double> &field) const
+  {
+    Assert(!scale_.empty(), ExcMessage("the matrix is to be assembled first"));
+    Assert(field.belongs_to(scene_.discretization),
+           ExcMessage("the field is of another discretisation than the matrix"));
+  }
+
+  void SaddleMatrix::check_vector([[maybe_unused]] const la::BlockVector &x) const
+  {
+    AssertDimension(x.n_blocks(), 2);
+    AssertDimension(x.block(0).locally_owned_size(), 3 * velocities_.n_owned());
+    AssertDimension(x.block(1).locally_owned_size(), pressures_.n_owned());
+  }
+
   Field<double> SaddleMatrix::condensed(const Field<double> &rhs) const
   {
     const auto   &discretization = scene_.discretization;
@@ -163,6 +181,8 @@ namespace retroforge
   void
   SaddleMatrix::load(const Field<double> &rhs, const Transposition transposition, la::BlockVector &b) const
   {
+    check_field(rhs);
+    check_vector(b);
     const Field<double> from       = condensed(rhs);
     double             *momentum   = b.block(0).begin();
     double             *continuity = b.block(1).begin();
@@ -182,6 +202,8 @@ namespace retroforge
                             const Transposition    transposition,
                             Field<double>         &solution) const
   {
+    check_field(rhs);
+    check_vector(x);
     const auto &discretization = scene_.discretization;
     solution                   = Field<double>(discretization);
     const double *velocity     = x.block(0).begin();
@@ -210,6 +232,8 @@ namespace retroforge
                                 const Transposition  transposition,
                                 la::BlockVector     &x) const
   {
+    check_field(guess);
+    check_vector(x);
     double *velocity = x.block(0).begin();
     double *pressure = x.block(1).begin();
     for (unsigned int local = 0; local < velocities_.n_owned(); ++local)

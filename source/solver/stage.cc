@@ -14,10 +14,37 @@ namespace retroforge
     return states;
   }
 
+  namespace
+  {
+    /// What the sums of a stage need: unknowns of its scene, and a choice for each pair if for any.
+    template <typename Number>
+    void check_arguments([[maybe_unused]] const Stage<Number> &stage,
+                         [[maybe_unused]] const Field<Number> &W,
+                         [[maybe_unused]] const ActiveSet     &active)
+    {
+      Assert(W.belongs_to(stage.scene.discretization),
+             dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
+      Assert(active.empty() || active.size() == stage.contact.pairs.size(),
+             dealii::ExcDimensionMismatch(active.size(), stage.contact.pairs.size()));
+    }
+
+    /// The same of derivatives: an entry for each that the stage depends on.
+    void check_bar([[maybe_unused]] const Stage<double> &stage, [[maybe_unused]] const StageBar &bar)
+    {
+      AssertDimension(bar.X.size(), stage.X.size());
+      AssertDimension(bar.contact.delta.size(), stage.contact.pairs.size());
+      AssertDimension(bar.contact.ramp.size(), stage.contact.pairs.size());
+      AssertDimension(bar.contact.n.size(), stage.contact.pairs.size());
+      AssertDimension(bar.physics.dies.size(), stage.physics.dies.size());
+    }
+  } // namespace
+
   template <typename Number>
   ContactNode<Number>
   Stage<Number>::contact_node(const unsigned int p, const Field<Number> &W, const ActiveSet &active) const
   {
+    AssertIndexRange(p, contact.pairs.size());
+    check_arguments(*this, W, active);
     const ContactPair      &pair = contact.pairs[p];
     const DieState<Number> &die  = physics.dies[pair.die];
     ContactNode<Number>     node;
@@ -58,6 +85,7 @@ namespace retroforge
   template <typename Number>
   Field<Number> Stage<Number>::residual(const Field<Number> &W, const ActiveSet &active) const
   {
+    check_arguments(*this, W, active);
     const Discretization<3> &discretization = scene.discretization;
     const ActiveSet          chosen         = active.empty() ? decide_active(W) : active;
     Field<Number>            r(discretization);
@@ -80,6 +108,7 @@ namespace retroforge
   template <typename Number>
   std::pair<Number, Number> Stage<Number>::power(const Field<Number> &W, const ActiveSet &active) const
   {
+    check_arguments(*this, W, active);
     const Discretization<3>  &discretization = scene.discretization;
     std::pair<Number, Number> power{Number(0.), Number(0.)};
     with_pair(discretization, [&](const auto pair) {
@@ -99,6 +128,7 @@ namespace retroforge
 
   std::pair<double, double> residual_scale(const Stage<double> &stage, const Field<double> &W)
   {
+    check_arguments(stage, W, {});
     const auto         &discretization = stage.scene.discretization;
     const auto         &velocities     = *discretization.velocity_nodes();
     const auto         &pressures      = *discretization.pressure_nodes();
@@ -135,6 +165,7 @@ namespace retroforge
 
   void settle_bubbles(const Stage<double> &stage, Field<double> &W)
   {
+    check_arguments(stage, W, {});
     const Discretization<3> &discretization = stage.scene.discretization;
     if (!discretization.has_bubbles())
       return;
@@ -167,6 +198,7 @@ namespace retroforge
 
   void recover_bubbles(const Stage<double> &stage, Field<double> &W)
   {
+    check_arguments(stage, W, {});
     const Discretization<3> &discretization = stage.scene.discretization;
     if (!discretization.has_bubbles())
       return;
@@ -177,6 +209,9 @@ namespace retroforge
 
   void reverse_residual(const StageView<double> &view, const Field<double> &lambda, StageBar &bar)
   {
+    check_arguments(view.stage, view.W, view.active);
+    check_arguments(view.stage, lambda, {});
+    check_bar(view.stage, bar);
     const Stage<double>     &stage          = view.stage;
     const Discretization<3> &discretization = stage.scene.discretization;
     with_pair(discretization, [&](const auto pair) {
@@ -206,6 +241,9 @@ namespace retroforge
   void
   reverse_power(const StageView<double> &view, const double deformation, const double friction, StageBar &bar)
   {
+    check_arguments(view.stage, view.W, view.active);
+    check_arguments(view.stage, bar.W, {});
+    check_bar(view.stage, bar);
     const Stage<double>     &stage          = view.stage;
     const Discretization<3> &discretization = stage.scene.discretization;
     with_pair(discretization, [&](const auto pair) {

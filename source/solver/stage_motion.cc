@@ -41,6 +41,8 @@ namespace retroforge
   template <typename Number>
   NodalVectors<Number> motion(const Stage<Number> &stage, const Field<Number> &W)
   {
+    Assert(W.belongs_to(stage.scene.discretization),
+           dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
     const Scene &scene          = stage.scene;
     const auto  &discretization = scene.discretization;
     if (!discretization.middles())
@@ -55,6 +57,11 @@ namespace retroforge
                       const NodalVectors<double> &motion_bar,
                       StageBar                   &bar)
   {
+    Assert(W.belongs_to(stage.scene.discretization) && bar.W.belongs_to(stage.scene.discretization),
+           dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
+    AssertDimension(motion_bar.size(), stage.X.size());
+    AssertDimension(bar.X.size(), stage.X.size());
+    AssertDimension(bar.contact.ramp.size(), stage.contact.pairs.size());
     const Scene &scene          = stage.scene;
     const auto  &discretization = scene.discretization;
     const auto   add_to_W       = [&](const NodalVectors<double> &V_bar) {

@@ -23,6 +23,8 @@ namespace retroforge
 
   ForgingState Forging::start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0) const
   {
+    Assert(leg != nullptr, dealii::ExcMessage("a run starts on a mesh"));
+    AssertDimension(X_0.size(), leg->scene.mesh.n_nodes());
     ForgingState state;
     state.X      = X_0;
     state.volume = volume(leg->scene.mesh.cells, X_0);
@@ -68,6 +70,8 @@ namespace retroforge
 
   void Forging::change_mesh(const RemeshRecord &remesh, ForgingState &state) const
   {
+    AssertDimension(remesh.transfer.n_old, state.leg->scene.mesh.n_nodes());
+    AssertDimension(remesh.transfer.n_new(), remesh.mesh.n_nodes());
     state.repaired += remesh.repaired;
     const TransferOperator    &J           = remesh.transfer;
     const std::shared_ptr<Leg> before      = state.leg; // fields know its nodes

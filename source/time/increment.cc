@@ -224,6 +224,13 @@ namespace retroforge
                                      const Guess                &guess,
                                      IncrementRecord            &record)
   {
+    AssertDimension(X.size(), scene_.mesh.n_nodes());
+    AssertDimension(process.dies.size(), scene_.dies.size());
+    Assert(guess.W.belongs_to(scene_.discretization),
+           dealii::ExcMessage("the guess is of another discretisation than the increment"));
+    Assert(record.step > 0., dealii::ExcMessage("an increment has a stroke"));
+    Assert(!replay || record.solves.size() == scheme_of(record).n_stages(),
+           dealii::ExcMessage("a replay obeys a record of each stage"));
     const Physics<double> physics = process.at_stroke(record.stroke);
     if (!replay)
     {
@@ -369,6 +376,15 @@ namespace retroforge
                           const StageSource          &source,
                           std::vector<Costate>       &costates)
   {
+    AssertDimension(X.size(), scene_.mesh.n_nodes());
+    AssertDimension(record.solves.size(), scheme_of(record).n_stages());
+    Assert(std::all_of(costates.begin(),
+                       costates.end(),
+                       [&](const Costate &costate) {
+                         return costate.X.size() == X.size() &&
+                                (costate.strain.empty() || costate.strain.size() == scene_.mesh.n_cells());
+                       }),
+           dealii::ExcMessage("a costate has an entry for each node, and for each cell or none"));
     const MPI_Comm                comm   = scene_.discretization.comm();
     const bool                    first  = dealii::Utilities::MPI::this_mpi_process(comm) == 0;
     const Scheme                 &scheme = scheme_of(record);
@@ -486,6 +502,8 @@ namespace retroforge
                                         const IncrementRecord    &record,
                                         const TangentWatch       &watch)
   {
+    AssertDimension(X.size(), scene_.mesh.n_nodes());
+    AssertDimension(record.solves.size(), scheme_of(record).n_stages());
     const NodalVectors<double> X_value     = values_of(X);
     const auto                 start_value = start_of(values_of(process), X_value, record);
     const IncrementStart<Dual> start(scene_, process, X, record);

@@ -28,6 +28,9 @@ namespace retroforge
                                const std::vector<Number>           &strain,
                                const std::vector<DieState<Number>> &dies)
   {
+    AssertDimension(X.size(), scene.mesh.n_nodes());
+    AssertDimension(strain.size(), scene.mesh.n_cells());
+    AssertDimension(dies.size(), scene.dies.size());
     const unsigned int d     = objective.target_die();
     const bool         moved = d != invalid_index && !dies[d].vertices.empty();
     return {scene, X, strain, dies, moved ? &dies[d].vertices : nullptr};

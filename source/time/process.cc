@@ -9,6 +9,7 @@ namespace retroforge
   template <typename Number>
   Number Process<Number>::speed() const
   {
+    AssertIndexRange(leading_die, dies.size());
     using std::sqrt;
     const Vector3<Number> &v = dies[leading_die].velocity;
     return sqrt(Number(v * v));
@@ -39,6 +40,8 @@ namespace retroforge
                          const PhysicsBar      &bar,
                          Process<double>       &process_bar)
   {
+    AssertDimension(bar.dies.size(), process.dies.size());
+    AssertDimension(process_bar.dies.size(), process.dies.size());
     add_numbers(bar.law, process_bar.law);
     add_numbers(bar.contact, process_bar.contact);
     // In stretch/speed, by which all times are made of strokes.

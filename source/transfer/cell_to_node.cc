@@ -59,6 +59,8 @@ namespace retroforge
   std::vector<Number>
   cell_to_node(const TetMesh &mesh, const NodalVectors<Number> &X, const std::vector<Number> &q_T)
   {
+    AssertDimension(X.size(), mesh.n_nodes());
+    AssertDimension(q_T.size(), mesh.n_cells());
     const auto          volumes = cell_volumes(mesh, X);
     const auto          M       = volumes_at_nodes(mesh, volumes);
     std::vector<Number> q(mesh.n_nodes(), Number(0.));
@@ -77,6 +79,9 @@ namespace retroforge
                             std::vector<double>        &q_T_bar,
                             NodalVectors<double>       &X_bar)
   {
+    AssertDimension(q_k_bar.size(), mesh.n_nodes());
+    AssertDimension(q_T_bar.size(), mesh.n_cells());
+    AssertDimension(X_bar.size(), mesh.n_nodes());
     const auto volumes = cell_volumes(mesh, X);
     const auto M       = volumes_at_nodes(mesh, volumes);
     const auto q_k     = cell_to_node(mesh, X, q_T);
@@ -96,6 +101,7 @@ namespace retroforge
   template <typename Number>
   std::vector<Number> node_to_cell(const TetMesh &mesh, const std::vector<Number> &q_k)
   {
+    AssertDimension(q_k.size(), mesh.n_nodes());
     std::vector<Number> q_T;
     q_T.reserve(mesh.n_cells());
     for (const auto &cell : mesh.cells)
@@ -106,6 +112,8 @@ namespace retroforge
   void
   reverse_node_to_cell(const TetMesh &mesh, const std::vector<double> &q_T_bar, std::vector<double> &q_k_bar)
   {
+    AssertDimension(q_T_bar.size(), mesh.n_cells());
+    AssertDimension(q_k_bar.size(), mesh.n_nodes());
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
       for (const NodeIndex node : mesh.cells[c])
         q_k_bar[node] += 0.25 * q_T_bar[c];

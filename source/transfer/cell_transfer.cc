@@ -32,6 +32,8 @@ namespace retroforge
   std::vector<CellIndex>
   kept_cells(const TetMesh &old_mesh, const TransferOperator &J, const TetMesh &new_mesh)
   {
+    AssertDimension(J.n_old, old_mesh.n_nodes());
+    AssertDimension(J.n_new(), new_mesh.n_nodes());
     std::vector<std::pair<Corners, CellIndex>> old_cells;
     old_cells.reserve(old_mesh.n_cells());
     for (CellIndex c = 0; c < old_mesh.n_cells(); ++c)
@@ -78,6 +80,7 @@ namespace retroforge
                               std::vector<double>        &q_T_bar,
                               NodalVectors<double>       &X_bar)
   {
+    AssertDimension(q_bar.size(), new_mesh.n_cells());
     const auto old_cell = kept_cells(old_mesh, J, new_mesh);
     for (CellIndex c = 0; c < new_mesh.n_cells(); ++c)
       if (old_cell[c] != invalid_index)

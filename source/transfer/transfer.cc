@@ -168,6 +168,7 @@ namespace retroforge
   template <typename Number>
   NodalVectors<Number> TransferOperator::positions(const NodalVectors<Number> &X) const
   {
+    AssertDimension(offset.size(), n_new());
     NodalVectors<Number> moved = apply(X);
     for (unsigned int k = 0; k < n_new(); ++k)
       for (unsigned int d = 0; d < 3; ++d)
@@ -188,6 +189,7 @@ namespace retroforge
 
   void TransferOperator::set_offset(const NodalVectors<double> &X, const NodalVectors<double> &X_new)
   {
+    AssertDimension(X_new.size(), n_new());
     offset = apply(X);
     for (unsigned int k = 0; k < n_new(); ++k)
       offset[k] = X_new[k] - offset[k];

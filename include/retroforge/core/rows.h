@@ -18,6 +18,7 @@ namespace retroforge
     unsigned int               size() const { return begin.size() - 1; }
     dealii::ArrayView<const T> operator[](const unsigned int row) const
     {
+      AssertIndexRange(row, size());
       return {entries.data() + begin[row], begin[row + 1] - begin[row]};
     }
   };

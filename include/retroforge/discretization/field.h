@@ -24,9 +24,22 @@ namespace retroforge
 
     bool empty() const { return V.empty(); }
 
+    /// Tells whether these are entries at the nodes of a discretisation, or of one that is partitioned alike.
+    bool belongs_to(const Discretization<dim> &discretization) const
+    {
+      const auto is_on = [](const auto &values, const auto &nodes) {
+        return values.numbering() == nodes ||
+               (values.numbering() &&
+                values.numbering()->partitioner()->is_compatible(*nodes->partitioner()));
+      };
+      return is_on(V, discretization.velocity_nodes()) && is_on(P, discretization.pressure_nodes());
+    }
+
     /// this += scale * other
     void add(const Number &scale, const FlowField &other)
     {
+      AssertDimension(other.V.size(), V.size());
+      AssertDimension(other.P.size(), P.size());
       for (unsigned int i = 0; i < V.size(); ++i)
         V.at_place(i) += other.V.at_place(i) * scale;
       for (unsigned int i = 0; i < P.size(); ++i)

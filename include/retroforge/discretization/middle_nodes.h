@@ -4,6 +4,8 @@
 
 #include <retroforge/core/types.h>
 
+#include <deal.II/base/exceptions.h>
+
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -34,7 +36,12 @@ namespace retroforge
     const std::vector<Ends> &ends() const { return ends_; }
 
     /// The vertices whose middle node k is.
-    const Ends &ends_of(const NodeIndex k) const { return ends_[k - n_vertices_]; }
+    const Ends &ends_of(const NodeIndex k) const
+    {
+      Assert(k >= n_vertices_ && k - n_vertices_ < ends_.size(),
+             dealii::ExcIndexRange(k, n_vertices_, n_vertices_ + ends_.size()));
+      return ends_[k - n_vertices_];
+    }
 
     /// The node between two vertices, in either order; invalid_index where no edge joins them.
     NodeIndex between(const NodeIndex a, const NodeIndex b) const

@@ -51,17 +51,27 @@ namespace retroforge
     unsigned int     n_owned() const { return range().n_owned(); }
 
     /// Where a node stands in vectors; invalid_index where this rank neither owns nor reads it.
-    unsigned int place(const NodeIndex k) const { return place_.empty() ? k : place_[k]; }
+    unsigned int place(const NodeIndex k) const
+    {
+      AssertIndexRange(k, n());
+      return place_.empty() ? k : place_[k];
+    }
     /// The number of the node at a place.
-    NodeIndex node_at(const unsigned int place) const { return place_.empty() ? place : node_at_[place]; }
+    NodeIndex node_at(const unsigned int place) const
+    {
+      AssertIndexRange(place, n_places());
+      return place_.empty() ? place : node_at_[place];
+    }
     /// Its index.
     unsigned int index_at(const unsigned int place) const
     {
+      AssertIndexRange(place, n_places());
       return place < n_owned() ? range().begin + place : index_of_ghost_[place - n_owned()];
     }
     /// The place of the node with an index.
     unsigned int place_of_index(const unsigned int index) const
     {
+      AssertIndexRange(index, n());
       return range().owns(index) ? index - range().begin : place(nodes_.in_order_of_ranks()[index]);
     }
 

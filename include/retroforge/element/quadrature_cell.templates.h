@@ -58,6 +58,11 @@ namespace retroforge
                                    const unsigned int                     q)
   {
     const ShapeTables<dim> &tables = geometry.element->at_points();
+    AssertDimension(geometry.X.size(), geometry.element->n_positions());
+    Assert(w.V.empty() || w.V.size() == geometry.element->n_velocities(),
+           dealii::ExcDimensionMismatch(w.V.size(), geometry.element->n_velocities()));
+    Assert(w.P.empty() || w.P.size() == geometry.element->n_pressures(),
+           dealii::ExcDimensionMismatch(w.P.size(), geometry.element->n_pressures()));
     PointState<dim, Number> state;
     add_positions(tables.geometry, q, geometry.X, state);
     add_velocities(tables.velocity, q, w.V.size(), w.V, state);
@@ -74,6 +79,8 @@ namespace retroforge
                              QuadratureValues<dim, Number> &w_bar)
   {
     const ShapeTables<dim> &tables = element.at_points();
+    AssertDimension(w_bar.V.size(), element.n_velocities());
+    AssertDimension(w_bar.P.size(), element.n_pressures());
     for (unsigned int a = 0; a < w_bar.V.size(); ++a)
     {
       for (unsigned int i = 0; i < dim; ++i)

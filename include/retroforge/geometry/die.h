@@ -80,6 +80,7 @@ namespace retroforge
     Projection<Number>
     project(const Vector3<Number> &X, const Vector3<Number> &displacement, const DieFeature &feature) const
     {
+      Assert(feature.found(), dealii::ExcMessage("a point is projected on a feature that was found"));
       if (surface_)
         return project_on_surface<Number, double>(nullptr, feature, X, displacement);
       Projection<Number> projection;
@@ -99,6 +100,9 @@ namespace retroforge
     {
       if (state.vertices.empty())
         return project(X, state.displacement, feature);
+      Assert(surface_ && state.vertices.size() == surface_->shape.vertices().size(),
+             dealii::ExcMessage("a state has all vertices of its die, or none"));
+      Assert(feature.found(), dealii::ExcMessage("a point is projected on a feature that was found"));
       return project_on_surface(&state.vertices, feature, X, state.displacement);
     }
 

@@ -63,6 +63,7 @@ namespace retroforge
 
     Row row(const unsigned int i) const
     {
+      AssertIndexRange(i, n_rows());
       return {column_indices_ + begin_[i],
               values_ + begin_[i],
               static_cast<unsigned int>(begin_[i + 1] - begin_[i])};
@@ -71,12 +72,15 @@ namespace retroforge
     /// The entries of column node `position` in the r-th row of a row node.
     double *entry(const unsigned int local_node, const unsigned int r, const unsigned int position) const
     {
+      AssertIndexRange(r, rows_);
+      AssertIndexRange(position, pattern_->row(local_node).size());
       return values_ + begin_[rows_ * local_node + r] + columns_ * position;
     }
 
     /// Global number of a local degree of freedom of the columns.
     unsigned int column(const unsigned int local) const
     {
+      AssertIndexRange(local, n_columns());
       return columns_ * pattern_->column_nodes()[local / columns_] + local % columns_;
     }
 

@@ -91,11 +91,13 @@ namespace retroforge
   public:
     std::vector<double> integrals(const FinalView<double> &view) const override
     {
+      check_sizes(view);
       return self().template compute_integrals<double>(view);
     }
 
     std::vector<Dual> integrals(const FinalView<Dual> &view) const override
     {
+      check_sizes(view);
       return self().template compute_integrals<Dual>(view);
     }
 
@@ -123,6 +125,14 @@ namespace retroforge
     }
 
   private:
+    template <typename Number>
+    static void check_sizes([[maybe_unused]] const FinalView<Number> &view)
+    {
+      AssertDimension(view.X.size(), view.scene.mesh.n_nodes());
+      AssertDimension(view.q.size(), view.scene.mesh.n_cells());
+      AssertDimension(view.dies.size(), view.scene.dies.size());
+    }
+
     const T &self() const { return static_cast<const T &>(*this); }
   };
 } // namespace retroforge

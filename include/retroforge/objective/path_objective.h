@@ -103,11 +103,15 @@ namespace retroforge
   public:
     std::vector<double> integrals(const StageView<double> &view) const override
     {
+      Assert(view.W.belongs_to(view.stage.scene.discretization),
+             dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
       return self().template compute_integrals<double>(view);
     }
 
     std::vector<Dual> integrals(const StageView<Dual> &view) const override
     {
+      Assert(view.W.belongs_to(view.stage.scene.discretization),
+             dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
       return self().template compute_integrals<Dual>(view);
     }
 
@@ -139,6 +143,7 @@ namespace retroforge
       for (const PathRow<Number> &row : rows)
       {
         const std::vector<Number> terms = self().template terms<Number>(row, scale);
+        AssertDimension(terms.size(), T::n_terms);
         for (unsigned int j = 0; j < T::n_terms; ++j)
           sums[j] += terms[j];
       }

@@ -90,6 +90,9 @@ namespace retroforge
     void fill_interpolation();
     /// Cells with a bubble to eliminate, among the visited ones.
     unsigned int n_eliminated() const;
+    /// Assert that the matrix is assembled, and that what it is to work on belongs to it.
+    void check_field(const Field<double> &field) const;
+    void check_vector(const la::BlockVector &x) const;
     /// A right-hand side whose bubbles are eliminated; right on owned nodes.
     Field<double> condensed(const Field<double> &rhs) const;
 

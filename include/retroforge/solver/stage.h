@@ -147,7 +147,11 @@ namespace retroforge
       , physics(physics)
       , contact(contact)
       , X(X)
-      , areas(contact_areas(scene.mesh, scene.topology, contact, X))
+      , areas(contact_areas(scene.mesh, scene.topology, contact, X)) // asks for a position of each node
   {
+    Assert(physics.dies.size() == scene.dies.size(),
+           dealii::ExcDimensionMismatch(physics.dies.size(), scene.dies.size()));
+    Assert(contact.ramps.size() == contact.pairs.size(),
+           dealii::ExcDimensionMismatch(contact.ramps.size(), contact.pairs.size()));
   }
 } // namespace retroforge

@@ -45,6 +45,8 @@ namespace retroforge
       if (weights[s] != 0.)
       {
         const Number time = weights[s] * dt;
+        AssertIndexRange(s, stages.size());
+        AssertDimension(stages[s].motion().size(), X.size());
         for (std::size_t k = 0; k < X.size(); ++k)
           moved[k] += stages[s].motion()[k] * time;
       }
