@@ -153,7 +153,7 @@ namespace retroforge
                         const Offers                 &offers,
                         std::vector<DesignParameter> &all)
     {
-      const std::vector<NumberInfo> info = Law::info();
+      const std::vector<NumberInfo> info = law.info();
       for (unsigned int i = 0; i < info.size(); ++i)
         if (offers(info[i].name))
         {
@@ -214,10 +214,10 @@ namespace retroforge
     const bool                   friction = with_friction != dies_.end();
     std::vector<DesignParameter> all;
     add_numbers_of(
-      process_.law,
+      process_.material,
       "material",
       Kind::material,
-      [&](const std::string &name) { return process_.law.depends_on(name); },
+      [&](const std::string &name) { return process_.material.law.depends_on(name); },
       all);
     add_numbers_of(
       process_.contact,
@@ -253,7 +253,7 @@ namespace retroforge
       known.push_back(parameter.name);
     if (std::find(known.begin(), known.end(), name) != known.end())
       return;
-    const auto idle = idle_parameters(dies_, process_.law);
+    const auto idle = idle_parameters(dies_, process_.material.law);
     if (const auto found = idle.find(name); found != idle.end())
       throw Error(where,
                   "'" + name + "' changes nothing, as " + found->second,
@@ -395,7 +395,7 @@ namespace retroforge
       switch (parameter.kind)
       {
         case Kind::material:
-          number_of(process.law, parameter.number) = mu[j];
+          number_of(process.material, parameter.number) = mu[j];
           break;
         case Kind::friction:
           for (unsigned int d = 0; d < dies_.size(); ++d)
@@ -427,7 +427,7 @@ namespace retroforge
   template <typename Number>
   void Design::set_contact(const std::vector<Number> &mu, Process<Number> &process) const
   {
-    process.contact = contact_.law(process.law, closing_speed(process.dies));
+    process.contact = contact_.law(process.material.law, closing_speed(process.dies));
     for (unsigned int j = 0; j < parameters_.size(); ++j)
       if (parameters_[j].kind == Kind::contact)
         number_of(process.contact, parameters_[j].number) = mu[j];
