@@ -104,6 +104,12 @@ namespace retroforge
       };
     }
 
+    /// The strain at the start of increment i, where laws depend on it; else empty.
+    std::vector<double> strain_at_start(const ForgingState &end, const unsigned int i)
+    {
+      return end.strains.empty() ? std::vector<double>() : end.strains[i];
+    }
+
     /// From the new mesh back to the old: X' = J X + c, and the strain.
     void reverse_change_mesh(const RemeshRecord        &remesh,
                              const TetMesh             &old_mesh,
@@ -155,8 +161,12 @@ namespace retroforge
       const IncrementRecord &record = run.source(i);
       const unsigned int     before = leg->system.n_solves;
       X                             = leg->increment.retreat(run.process, X, record);
-      leg->increment.reverse(
-        run.process, X, record, source_of(run, rows, rows_bar, combinations, i), costates);
+      leg->increment.reverse(run.process,
+                             X,
+                             strain_at_start(end, i),
+                             record,
+                             source_of(run, rows, rows_bar, combinations, i),
+                             costates);
       sweep.linear_solves += leg->system.n_solves - before;
       if (record.remesh)
       {
@@ -201,13 +211,14 @@ namespace retroforge
       end = record.stroke + record.step;
       for (auto &of_objective : rows)
         of_objective.push_back(row_of(record, process));
-      X = leg->increment.tangent(process, X, record, [&](const StageView<Dual> &view, const Dual &dt) {
-        for (std::size_t o = 0; o < run.objectives.size(); ++o)
-          if (run.objectives[o].path)
-            add_integrals(*run.objectives[o].path, view, rows[o].back());
-        strain =
-          accumulate_strain(leg->scene.discretization, view.stage.X, view.W, Dual(view.weight * dt), strain);
-      });
+      X =
+        leg->increment.tangent(process, X, strain, record, [&](const StageView<Dual> &view, const Dual &dt) {
+          for (std::size_t o = 0; o < run.objectives.size(); ++o)
+            if (run.objectives[o].path)
+              add_integrals(*run.objectives[o].path, view, rows[o].back());
+          strain = accumulate_strain(
+            leg->scene.discretization, view.stage.X, view.W, Dual(view.weight * dt), strain);
+        });
       complete_entries(leg->scene.discretization.cells(), strain.data(), 1);
     }
     const auto        dies = process.at_stroke(end).dies;

@@ -104,7 +104,7 @@ namespace retroforge
   double Parameters::mean_pressure(const BilletSize &size) const
   {
     const double speed = closing_speed(initial_states());
-    return open_contact(size).mean_pressure(material.law_at(speed / size.height), speed);
+    return open_contact(size).mean_pressure(material.metal(speed / size.height).law, speed);
   }
 
   OpenContact Parameters::open_contact(const BilletSize &size) const
@@ -118,8 +118,8 @@ namespace retroforge
     process.dies        = initial_states();
     process.leading_die = leading_die();
     const double speed  = closing_speed(process.dies);
-    process.law         = material.law_at(speed / size.height);
-    process.contact     = open_contact(size).law(process.law, speed);
+    process.material    = material.metal(speed / size.height);
+    process.contact     = open_contact(size).law(process.material.law, speed);
     return process;
   }
 

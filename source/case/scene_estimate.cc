@@ -199,16 +199,16 @@ namespace retroforge
     {
       const Process<double> &process = view.process;
       const double           rate = view.speed / height, radius = radius_of(view, height),
-                   stress = flow_stress(process.law, rate), most = stress / std::sqrt(3.);
+                   stress = flow_stress(process.material.law, rate), most = stress / std::sqrt(3.);
       const auto tau = [&](const DieState<double> &die) {
-        return std::min(most, rim_friction(die, process.law, rate, radius));
+        return std::min(most, rim_friction(die, process.material.law, rate, radius));
       };
       double other = 0.;
       for (unsigned int d = 0; d < process.dies.size() && !is_halved(view); ++d)
         if (d != process.leading_die)
           other = std::max(other, tau(process.dies[d]));
       const double friction =
-        (tau(process.dies[process.leading_die]) + other) * radius / ((process.law.m + 3.) * height);
+        (tau(process.dies[process.leading_die]) + other) * radius / ((process.material.law.m + 3.) * height);
       return dealii::numbers::PI * radius * radius * (stress + friction);
     }
 
@@ -269,7 +269,7 @@ namespace retroforge
 
     void warn_of_material(const View &view, const SceneEstimate &estimate, Warnings &warnings)
     {
-      const MaterialLaw<double> &law = view.process.law;
+      const MaterialLaw<double> &law = view.process.material.law;
       if (!(estimate.flow_stress >= least_stress && estimate.flow_stress <= largest_stress))
         warnings.push_back("Material/consistency = " + as_text(law.K) + ": the flow stress is " +
                            as_text(estimate.flow_stress) + " MPa at " + as_text(estimate.strain_rate) +
@@ -288,7 +288,8 @@ namespace retroforge
       const double radius = radius_of(view, estimate.height), shear = estimate.flow_stress / std::sqrt(3.);
       for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
         if (const double part =
-              rim_friction(view.process.dies[d], view.process.law, estimate.strain_rate, radius) / shear;
+              rim_friction(view.process.dies[d], view.process.material.law, estimate.strain_rate, radius) /
+              shear;
             part > largest_friction)
           warnings.push_back(
             view.name(d) + "/friction = " + as_text(view.process.dies[d].friction) + ": its traction is " +
@@ -399,7 +400,7 @@ namespace retroforge
     estimate.speed       = view.speed;
     estimate.height      = height_along(X, view.way);
     estimate.strain_rate = estimate.speed / estimate.height;
-    estimate.flow_stress = flow_stress(process.law, estimate.strain_rate);
+    estimate.flow_stress = flow_stress(process.material.law, estimate.strain_rate);
     estimate.first_force = slab_force(view, estimate.height);
     estimate.final_force =
       slab_force(view, std::max(thinnest * estimate.height, estimate.height - view.closing()));

@@ -204,7 +204,7 @@ namespace retroforge
       switch (parameter.kind)
       {
         case Kind::material:
-          number_of(process.law, parameter.number) = mu[j];
+          number_of(process.material, parameter.number) = mu[j];
           break;
         case Kind::friction:
           for (unsigned int d = 0; d < dies_.size(); ++d)
@@ -236,7 +236,7 @@ namespace retroforge
   template <typename Number>
   void Design::set_contact(const std::vector<Number> &mu, Process<Number> &process) const
   {
-    process.contact = contact_.law(process.law, closing_speed(process.dies));
+    process.contact = contact_.law(process.material.law, closing_speed(process.dies));
     for (unsigned int j = 0; j < parameters_.size(); ++j)
       if (parameters_[j].kind == Kind::contact)
         number_of(process.contact, parameters_[j].number) = mu[j];

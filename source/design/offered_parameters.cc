@@ -79,7 +79,7 @@ namespace retroforge
                         const Offers                 &offers,
                         std::vector<DesignParameter> &all)
     {
-      const std::vector<NumberInfo> info = Law::info();
+      const std::vector<NumberInfo> info = law.info();
       for (unsigned int i = 0; i < info.size(); ++i)
         if (offers(info[i].name))
         {
@@ -140,10 +140,10 @@ namespace retroforge
     const bool                   friction = with_friction != dies_.end();
     std::vector<DesignParameter> all;
     add_numbers_of(
-      process_.law,
+      process_.material,
       "material",
       Kind::material,
-      [&](const std::string &name) { return process_.law.depends_on(name); },
+      [&](const std::string &name) { return process_.material.law.depends_on(name); },
       all);
     add_numbers_of(
       process_.contact,
@@ -179,7 +179,7 @@ namespace retroforge
       known.push_back(parameter.name);
     if (std::find(known.begin(), known.end(), name) != known.end())
       return;
-    const auto idle = idle_parameters(dies_, process_.law);
+    const auto idle = idle_parameters(dies_, process_.material.law);
     if (const auto found = idle.find(name); found != idle.end())
       throw Error(where,
                   "'" + name + "' changes nothing, as " + found->second,

@@ -8,11 +8,9 @@ namespace retroforge
 {
   namespace
   {
-    template <typename T>
-    RETROFORGE_INLINE void compute_state(const CellInput<T> &cell,
-                                         const T (&grad_p)[3],
-                                         const MaterialLaw<double> &law,
-                                         BubbleState<3, T>         &state)
+    template <typename T, typename Law>
+    RETROFORGE_INLINE void
+    compute_state(const CellInput<T> &cell, const T (&grad_p)[3], const Law &law, BubbleState<3, T> &state)
     {
       TangentInput<T> in;
       fill(cell, law, in);
@@ -29,7 +27,7 @@ namespace retroforge
         state.value += 2. * in.half[a] * ratio;
       }
       T block[3][3], inverse[3][3];
-      bubble_block(in, law.is_linear(), block);
+      bubble_block(in, is_linear(law), block);
       invert(block, inverse);
       for (unsigned int i = 0; i < 3; ++i)
         state.newton_step[i] = -dot(inverse[i], state.residual);
@@ -39,10 +37,10 @@ namespace retroforge
     RETROFORGE_ALSO_FOR("avx")
     void compute_states(const CellInput<Pack> &cells,
                         const Pack (&grad_p)[3],
-                        const MaterialLaw<double> &law,
-                        BubbleState<3, Pack>      &states)
+                        const LaneLaws       &laws,
+                        BubbleState<3, Pack> &states)
     {
-      compute_state(cells, grad_p, law, states);
+      compute_state(cells, grad_p, laws, states);
     }
   } // namespace
 
@@ -67,7 +65,7 @@ namespace retroforge
 
   std::array<Vec3, n_lanes> solve_bubbles(const std::array<CellGeometry<double>, n_lanes> &geometry,
                                           const std::array<CellValues<double>, n_lanes>   &w,
-                                          const MaterialLaw<double>                       &law)
+                                          const LaneLaws                                  &laws)
   {
     CellInput<Pack>                      cells = input_of(geometry, w);
     Pack                                 grad_p[3];
@@ -86,7 +84,7 @@ namespace retroforge
       for (unsigned int lane = 0; lane < n_lanes; ++lane)
         for (unsigned int i = 0; i < 3; ++i)
           cells.beta[i][lane] = searches[lane].trial()[i];
-      compute_states(cells, grad_p, law, states);
+      compute_states(cells, grad_p, laws, states);
       for (unsigned int lane = 0; lane < n_lanes; ++lane)
         if (!searches[lane].done())
         {

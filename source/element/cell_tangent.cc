@@ -93,13 +93,11 @@ namespace retroforge
     }
 
     RETROFORGE_ALSO_FOR("fma")
-    void tangent_pack(const CellInput<Pack>     &cell,
-                      const MaterialLaw<double> &law,
-                      const bool                 linear,
-                      TangentPack               &tangent)
+    void
+    tangent_pack(const CellInput<Pack> &cell, const LaneLaws &laws, const bool linear, TangentPack &tangent)
     {
       TangentInput<Pack> input;
-      fill(cell, law, input);
+      fill(cell, laws, input);
       tangent_blocks(input, linear, tangent);
     }
 
@@ -124,13 +122,13 @@ namespace retroforge
 
   void compute_cell_tangents(const std::array<CellGeometry<double>, n_lanes>        &geometry,
                              const std::array<CellValues<double>, n_lanes>          &w,
-                             const MaterialLaw<double>                              &law,
+                             const LaneLaws                                         &laws,
                              const Linearisation                                     linearisation,
                              TangentPack                                            &tangent,
                              const std::array<BubbleElimination<double> *, n_lanes> &elimination)
   {
     tangent_pack(
-      input_of(geometry, w), law, law.is_linear() || linearisation == Linearisation::picard, tangent);
+      input_of(geometry, w), laws, is_linear(laws) || linearisation == Linearisation::picard, tangent);
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
       for_each_entry(static_cast<BubbleElimination<Pack> &>(tangent),
                      *elimination[lane],

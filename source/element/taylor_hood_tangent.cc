@@ -186,13 +186,13 @@ namespace retroforge
       }
     }
 
-    template <typename T>
+    template <typename T, typename Law>
     RETROFORGE_INLINE void tangent_blocks(const TaylorHoodTangentInput<T> &in,
-                                          const MaterialLaw<double>       &law,
+                                          const Law                       &law,
                                           const Linearisation              linearisation,
                                           TaylorHoodBlocks<T>             &t)
     {
-      const bool linear  = law.is_linear() || linearisation == Linearisation::picard;
+      const bool linear  = is_linear(law) || linearisation == Linearisation::picard;
       const T    quarter = 0.25 * in.volume;
       T          eps[4][6], half[4];
       Viscous<T> v;
@@ -217,11 +217,11 @@ namespace retroforge
 
     RETROFORGE_ALSO_FOR("fma")
     void tangent_pack(const TaylorHoodTangentInput<Pack> &input,
-                      const MaterialLaw<double>          &law,
+                      const LaneLaws                     &laws,
                       const Linearisation                 linearisation,
                       TaylorHoodPack                     &tangent)
     {
-      tangent_blocks(input, law, linearisation, tangent);
+      tangent_blocks(input, laws, linearisation, tangent);
     }
 
     TaylorHoodTangentInput<double> input_of(const CellGeometry<double>     &geometry,
@@ -251,7 +251,7 @@ namespace retroforge
 
   void compute_cell_tangents(const std::array<CellGeometry<double>, n_lanes>     &geometry,
                              const std::array<TaylorHoodValues<double>, n_lanes> &w,
-                             const MaterialLaw<double>                           &law,
+                             const LaneLaws                                      &laws,
                              const Linearisation                                  linearisation,
                              TaylorHoodPack                                      &tangent)
   {
@@ -261,6 +261,6 @@ namespace retroforge
       TaylorHoodTangentInput<double> input = input_of(geometry[lane], w[lane]);
       for_each_entry(pack, input, [lane](double &p, const double &x) { (&p)[lane] = x; });
     }
-    tangent_pack(pack, law, linearisation, tangent);
+    tangent_pack(pack, laws, linearisation, tangent);
   }
 } // namespace retroforge

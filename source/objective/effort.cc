@@ -42,8 +42,9 @@ namespace retroforge
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
         if (stage.contact.pairs[p].die == die &&
             stage.scene.discretization.owns(stage.contact.pairs[p].point.nodes[0]))
-          power -= contact_force(
-                     stage.contact_node(p, view.W, view.active), stage.physics.law, stage.physics.contact) *
+          power -= contact_force(stage.contact_node(p, view.W, view.active),
+                                 stage.physics.material.law,
+                                 stage.physics.contact) *
                    stage.physics.dies[die].velocity;
       return power;
     }
@@ -61,9 +62,10 @@ namespace retroforge
             stage.scene.discretization.owns(stage.contact.pairs[p].point.nodes[0]))
         {
           const ContactNode<double> node = stage.contact_node(p, view.W, view.active);
-          pullback.add(p, reverse_contact_force(node, stage.physics.law, stage.physics.contact, -weight * v));
+          pullback.add(
+            p, reverse_contact_force(node, stage.physics.material.law, stage.physics.contact, -weight * v));
           bar.physics.dies[die].velocity -=
-            weight * contact_force(node, stage.physics.law, stage.physics.contact);
+            weight * contact_force(node, stage.physics.material.law, stage.physics.contact);
         }
       pullback.finish();
     }

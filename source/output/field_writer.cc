@@ -65,11 +65,14 @@ namespace retroforge
                            const NodalVectors<double> &X,
                            const NodalVectors<double> &V,
                            const std::vector<double>  &P,
-                           const MaterialLaw<double>  &law)
+                           const Material<double>     &material,
+                           const std::vector<double>  &strain)
     {
       CellFields fields;
-      for (const auto &nodes : mesh.cells)
+      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
       {
+        const auto              &nodes = mesh.cells[c];
+        const auto               law   = material.at({strain[c]});
         Four<Vec3>               x;
         CellValues<double>       linear;
         TaylorHoodValues<double> quadratic;
@@ -124,10 +127,15 @@ namespace retroforge
 
   void FieldWriter::write(const std::string &file, const Workpiece &workpiece) const
   {
-    const TetMesh   &mesh = workpiece.mesh;
-    const CellFields cells =
-      cell_fields(mesh, workpiece.middles, workpiece.position, workpiece.V, workpiece.P, process_.law);
-    FieldFile<3> picture(workpiece.X, mesh.cells);
+    const TetMesh   &mesh  = workpiece.mesh;
+    const CellFields cells = cell_fields(mesh,
+                                         workpiece.middles,
+                                         workpiece.position,
+                                         workpiece.V,
+                                         workpiece.P,
+                                         process_.material,
+                                         workpiece.strain);
+    FieldFile<3>     picture(workpiece.X, mesh.cells);
     picture.add_linear("pressure", "MPa", workpiece.P);
     picture.add_velocity("velocity", "mm/s", workpiece.V, workpiece.middles);
     if (workpiece.displacement)

@@ -18,7 +18,7 @@ namespace retroforge
     bar_.contact.delta[p] += node_bar.delta;
     bar_.contact.n[p] += node_bar.n;
     bar_.physics.tau += node_bar.tau;
-    add_numbers(node_bar.law, bar_.physics.law);
+    add_numbers(node_bar.law, bar_.physics.material.law);
     add_numbers(node_bar.contact, bar_.physics.contact);
     DieState<double> &die = bar_.physics.dies[view_.stage.contact.pairs[p].die];
     die.velocity -= node_bar.u;

@@ -94,14 +94,14 @@ namespace retroforge
         pair.add(discretization,
                  cell_residual(cell_geometry(pair.positions(discretization, X, c)),
                                pair.on_cell(discretization, W, c),
-                               physics.law),
+                               law(c)),
                  c,
                  r);
     });
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (discretization.sees(contact.pairs[p].point.nodes))
         contact.pairs[p].point.add_to_velocity(
-          contact_force(contact_node(p, W, chosen), physics.law, physics.contact), r.V);
+          contact_force(contact_node(p, W, chosen), physics.material.law, physics.contact), r.V);
     return r;
   }
 
@@ -113,13 +113,12 @@ namespace retroforge
     std::pair<Number, Number> power{Number(0.), Number(0.)};
     with_pair(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
-        power.first += cell_dissipation(cell_geometry(pair.positions(discretization, X, c)),
-                                        pair.on_cell(discretization, W, c),
-                                        physics.law);
+        power.first += cell_dissipation(
+          cell_geometry(pair.positions(discretization, X, c)), pair.on_cell(discretization, W, c), law(c));
     });
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (discretization.owns(contact.pairs[p].point.nodes[0]))
-        power.second += friction_power(contact_node(p, W, active), physics.law, physics.contact);
+        power.second += friction_power(contact_node(p, W, active), physics.material.law, physics.contact);
     return power;
   }
 
@@ -138,7 +137,7 @@ namespace retroforge
       {
         const auto   geometry = cell_geometry(pair.positions(discretization, stage.X, c));
         const auto   w        = pair.on_cell(discretization, W, c);
-        const auto   r        = cell_residual(geometry, w, stage.physics.law);
+        const auto   r        = cell_residual(geometry, w, stage.law(c));
         const double flow_c   = 0.25 * cell_volume(geometry) * cell_strain_rate(geometry, w);
         for (unsigned int a = 0; a < r.V.size(); ++a)
           force[discretization.velocity_places(c)[a]] += r.V[a].norm();
@@ -159,7 +158,7 @@ namespace retroforge
     std::vector<Vec3> forces(stage.scene.dies.size());
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       forces[stage.contact.pairs[p].die] -=
-        contact_force(stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact);
+        contact_force(stage.contact_node(p, W, active), stage.physics.material.law, stage.physics.contact);
     return forces;
   }
 
@@ -175,11 +174,12 @@ namespace retroforge
       const QuadraturePair pair{discretization.quadrature()};
       for (const CellIndex c : visited)
         MiniPair::bubble(discretization, W, c) = solve_bubble(
-          pair.positions(discretization, stage.X, c), pair.on_cell(discretization, W, c), stage.physics.law);
+          pair.positions(discretization, stage.X, c), pair.on_cell(discretization, W, c), stage.law(c));
       return;
     }
     std::array<CellGeometry<double>, n_lanes> geometry;
     std::array<CellValues<double>, n_lanes>   w;
+    LaneLaws                                  laws;
     for (std::size_t begin = 0; begin < visited.size(); begin += n_lanes)
     {
       const unsigned int n = std::min<std::size_t>(n_lanes, visited.size() - begin);
@@ -189,8 +189,9 @@ namespace retroforge
         const CellIndex c = visited[begin + std::min(lane, n - 1)];
         geometry[lane]    = geometry_of_cell(discretization, stage.X, c);
         w[lane]           = MiniPair::on_cell(discretization, W, c);
+        laws[lane]        = stage.law(c);
       }
-      const auto beta = solve_bubbles(geometry, w, stage.physics.law);
+      const auto beta = solve_bubbles(geometry, w, laws);
       for (unsigned int lane = 0; lane < n; ++lane)
         MiniPair::bubble(discretization, W, visited[begin + lane]) = beta[lane];
     }
@@ -207,6 +208,23 @@ namespace retroforge
     settle_bubbles(stage, W);
   }
 
+  namespace
+  {
+    /// From the law of a cell to what it follows from.
+    void reverse_law(const Stage<double>       &stage,
+                     const CellIndex            c,
+                     const MaterialLaw<double> &law_bar,
+                     PhysicsBar                &bar)
+    {
+      PointState<double> state_bar;
+      reverse_at(stage.physics.material, stage.state(c), law_bar, bar.material, state_bar);
+      if (!stage.physics.material.depends_on_state())
+        return;
+      bar.strain.resize(stage.scene.mesh.n_cells(), 0.);
+      bar.strain[c] += state_bar.strain;
+    }
+  } // namespace
+
   void reverse_residual(const StageView<double> &view, const Field<double> &lambda, StageBar &bar)
   {
     check_arguments(view.stage, view.W, view.active);
@@ -220,11 +238,12 @@ namespace retroforge
         const auto X        = pair.positions(discretization, stage.X, c);
         const auto w        = pair.on_cell(discretization, view.W, c);
         const auto lambda_c = pair.on_cell(discretization, lambda, c);
-        auto       s        = reverse_cell_residual(cell_geometry(X), w, lambda_c, stage.physics.law);
+        const auto law      = stage.law(c);
+        auto       s        = reverse_cell_residual(cell_geometry(X), w, lambda_c, law);
         if (bar.shape.method != ShapeDerivatives::Method::exact)
-          s.X = difference_cell_residual(X, w, lambda_c, stage.physics.law, bar.shape);
+          s.X = difference_cell_residual(X, w, lambda_c, law, bar.shape);
         add_to_positions(discretization, s.X, c, bar.X);
-        add_numbers(s.law, bar.physics.law);
+        reverse_law(stage, c, s.law, bar.physics);
       }
     });
     ContactPullback pullback(view, bar);
@@ -232,7 +251,7 @@ namespace retroforge
       if (const ContactPoint &point = stage.contact.pairs[p].point; discretization.owns(point.nodes[0]))
         pullback.add_at_fixed_velocity(p,
                                        reverse_contact_force(stage.contact_node(p, view.W, view.active),
-                                                             stage.physics.law,
+                                                             stage.physics.material.law,
                                                              stage.physics.contact,
                                                              point.velocity(lambda.V)));
     pullback.finish();
@@ -252,21 +271,23 @@ namespace retroforge
         const auto X     = pair.positions(discretization, stage.X, c);
         const auto w     = pair.on_cell(discretization, view.W, c);
         auto       w_bar = pair.no_values();
-        auto       s = reverse_cell_dissipation(cell_geometry(X), w, stage.physics.law, deformation, w_bar);
+        const auto law   = stage.law(c);
+        auto       s     = reverse_cell_dissipation(cell_geometry(X), w, law, deformation, w_bar);
         if (bar.shape.method != ShapeDerivatives::Method::exact)
-          s.X = difference_cell_dissipation(X, w, stage.physics.law, deformation, bar.shape);
+          s.X = difference_cell_dissipation(X, w, law, deformation, bar.shape);
         add_to_positions(discretization, s.X, c, bar.X);
         pair.add(discretization, w_bar, c, bar.W);
-        add_numbers(s.law, bar.physics.law);
+        reverse_law(stage, c, s.law, bar.physics);
       }
     });
     ContactPullback pullback(view, bar);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (discretization.owns(stage.contact.pairs[p].point.nodes[0]))
-        pullback.add(
-          p,
-          reverse_friction_power(
-            stage.contact_node(p, view.W, view.active), stage.physics.law, stage.physics.contact, friction));
+        pullback.add(p,
+                     reverse_friction_power(stage.contact_node(p, view.W, view.active),
+                                            stage.physics.material.law,
+                                            stage.physics.contact,
+                                            friction));
     pullback.finish();
   }
 } // namespace retroforge

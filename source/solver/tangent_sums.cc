@@ -55,25 +55,25 @@ namespace retroforge
 
       void compute(const std::array<CellGeometry<double>, n_lanes> &geometry,
                    const std::array<CellValues<double>, n_lanes>   &w,
-                   const MaterialLaw<double>                       &law,
+                   const LaneLaws                                  &laws,
                    const Linearisation                              linearisation,
                    BubbleElimination<double>                       *elimination)
       {
         std::array<BubbleElimination<double> *, n_lanes> of_lanes;
         for (unsigned int lane = 0; lane < n_lanes; ++lane)
           of_lanes[lane] = elimination + lane;
-        compute_cell_tangents(geometry, w, law, linearisation, *this, of_lanes);
+        compute_cell_tangents(geometry, w, laws, linearisation, *this, of_lanes);
       }
 
       void compute(const std::array<QuadratureGeometry<3, double>, n_lanes> &geometry,
                    const std::array<QuadratureValues<3, double>, n_lanes>   &w,
-                   const MaterialLaw<double>                                &law,
+                   const LaneLaws                                           &laws,
                    const Linearisation                                       linearisation,
                    BubbleElimination<double>                                *elimination)
       {
         for (unsigned int lane = 0; lane < n_lanes; ++lane)
         {
-          QuadratureTangent<3> t = cell_tangent(geometry[lane], w[lane], law, linearisation);
+          QuadratureTangent<3> t = cell_tangent(geometry[lane], w[lane], laws[lane], linearisation);
           elimination[lane]      = elimination_of(eliminate_bubble(t));
           fill_lane(t, lane, *this);
           for (unsigned int a = 0; a < 4; ++a)
@@ -94,21 +94,21 @@ namespace retroforge
 
       void compute(const std::array<CellGeometry<double>, n_lanes>     &geometry,
                    const std::array<TaylorHoodValues<double>, n_lanes> &w,
-                   const MaterialLaw<double>                           &law,
+                   const LaneLaws                                      &laws,
                    const Linearisation                                  linearisation,
                    BubbleElimination<double> *)
       {
-        compute_cell_tangents(geometry, w, law, linearisation, *this);
+        compute_cell_tangents(geometry, w, laws, linearisation, *this);
       }
 
       void compute(const std::array<QuadratureGeometry<3, double>, n_lanes> &geometry,
                    const std::array<QuadratureValues<3, double>, n_lanes>   &w,
-                   const MaterialLaw<double>                                &law,
+                   const LaneLaws                                           &laws,
                    const Linearisation                                       linearisation,
                    BubbleElimination<double> *)
       {
         for (unsigned int lane = 0; lane < n_lanes; ++lane)
-          fill_lane(cell_tangent(geometry[lane], w[lane], law, linearisation), lane, *this);
+          fill_lane(cell_tangent(geometry[lane], w[lane], laws[lane], linearisation), lane, *this);
       }
 
       RETROFORGE_INLINE Pack of_pressures(unsigned int, unsigned int) const { return Pack{}; }
@@ -226,6 +226,7 @@ namespace retroforge
     using Geometry = std::decay_t<decltype(cell_geometry(pair.positions(discretization, stage.X, 0)))>;
     std::array<Geometry, n_lanes>                               geometry;
     std::array<typename Pair::template Values<double>, n_lanes> w;
+    LaneLaws                                                    laws;
     Tangents                                                    tangents;
     for (unsigned int pack = 0; pack < n_packs(discretization); ++pack)
     {
@@ -236,12 +237,10 @@ namespace retroforge
         const CellIndex c = visited[begin + std::min(lane, n - 1)];
         geometry[lane]    = cell_geometry(pair.positions(discretization, stage.X, c));
         w[lane]           = pair.on_cell(discretization, W, c);
+        laws[lane]        = stage.law(c);
       }
-      tangents.compute(geometry,
-                       w,
-                       stage.physics.law,
-                       linearisation,
-                       eliminations_.empty() ? nullptr : &eliminations_[begin]);
+      tangents.compute(
+        geometry, w, laws, linearisation, eliminations_.empty() ? nullptr : &eliminations_[begin]);
       add_pack(tangents, &pairs_[pack_width * pack], blocks_.data(), schur_.data());
       for (unsigned int lane = 0; lane < n; ++lane)
         if (discretization.cells().owns(visited[begin + lane]))

@@ -42,7 +42,7 @@ namespace retroforge
   {
     try
     {
-      solved = state.leg->increment.forward(process, state.X, false, guess, record);
+      solved = state.leg->increment.forward(process, state.X, state.strain, false, guess, record);
     }
     catch (const NoEquilibrium &failure)
     {
@@ -110,7 +110,7 @@ namespace retroforge
     W.P.take(state.solution.P);
     return optimal_sizes(scene.mesh,
                          state.X,
-                         indicated_errors(scene.discretization, state.X, W, process.law),
+                         indicated_errors(scene.discretization, state.X, W, process.material, state.strain),
                          velocity_degree(scene.discretization),
                          remesher_.error_size_bounds());
   }
@@ -146,6 +146,8 @@ namespace retroforge
                                  const Watch           &watch) const
   {
     const NodalVectors<double> X_before = std::exchange(state.X, solved.X);
+    if (process.material.depends_on_state())
+      state.strains.push_back(state.strain);
     add_strain(solved, state);
     state.next                 = state.leg->increment.guess_after(solved, record);
     const auto &discretization = state.leg->scene.discretization;
@@ -275,7 +277,7 @@ namespace retroforge
         state.X = record.remesh->mesh.X;
       }
       finish_increment(
-        process, record, state.leg->increment.recorded(process, state.X, record), state, watch);
+        process, record, state.leg->increment.recorded(process, state.X, state.strain, record), state, watch);
     }
   }
 
@@ -291,8 +293,9 @@ namespace retroforge
       record.newton = record.krylov = record.linear_solves = 0;
       if (record.remesh)
         change_mesh(*record.remesh, state);
-      const Guess           guess  = state.leg->increment.recorded_guess(record);
-      const SolvedIncrement solved = state.leg->increment.forward(process, state.X, true, guess, record);
+      const Guess           guess = state.leg->increment.recorded_guess(record);
+      const SolvedIncrement solved =
+        state.leg->increment.forward(process, state.X, state.strain, true, guess, record);
       finish_increment(process, record, solved, state, watch);
     }
   }

@@ -23,6 +23,15 @@ namespace retroforge
       MPI_Allreduce(MPI_IN_PLACE, x.data()->begin_raw(), 3 * x.size(), MPI_DOUBLE, MPI_SUM, comm);
     }
 
+    /// @param part  this rank's; empty: none
+    void add_over_ranks(std::vector<double> part, MPI_Comm comm, std::vector<double> &sum)
+    {
+      part.resize(sum.size(), 0.);
+      dealii::Utilities::MPI::sum(part, comm, part);
+      for (std::size_t c = 0; c < sum.size(); ++c)
+        sum[c] += part[c];
+    }
+
     Vector3<Dual> make_dual(const Vec3 &value, const Vec3 &dot)
     {
       Vector3<Dual> x;
@@ -78,6 +87,7 @@ namespace retroforge
   IncrementStart<Number>::IncrementStart(const Scene                &scene,
                                          const Process<Number>      &process,
                                          const NodalVectors<Number> &X,
+                                         const std::vector<Number>  &strain_before,
                                          const IncrementRecord      &record)
       : physics(process.at_stroke(record.stroke))
       , dt(process.time(record.step))
@@ -88,6 +98,8 @@ namespace retroforge
                                           record.contact.approach_law(record.step),
                                           record.contact.edge_stiffness}))
   {
+    if (process.material.depends_on_state())
+      strain = strain_before;
   }
 
   SolvedStage::SolvedStage(const Scene                  &scene,
@@ -99,7 +111,7 @@ namespace retroforge
       : X(std::move(positions))
       , active(solve.active)
       , weight(weight)
-      , stage(scene, start.physics, start.contact, X)
+      , stage(scene, start.physics, start.contact, X, start.strain)
       , W(scene.discretization)
   {
     if (!bubbles.empty())
@@ -155,10 +167,11 @@ namespace retroforge
 
   std::shared_ptr<const IncrementStart<double>> Increment::start_of(const Process<double>      &process,
                                                                     const NodalVectors<double> &X,
+                                                                    const std::vector<double>  &strain,
                                                                     const IncrementRecord      &record) const
   {
     const auto timing = timings_.scope("contact");
-    return std::make_shared<const IncrementStart<double>>(scene_, process, X, record);
+    return std::make_shared<const IncrementStart<double>>(scene_, process, X, strain, record);
   }
 
   const Scheme &Increment::scheme_of(const IncrementRecord &record) const
@@ -181,7 +194,7 @@ namespace retroforge
     for (unsigned int s = 0; s < scheme.n_stages() && !lost; ++s)
     {
       const NodalVectors<double> position = advanced(X, start.dt, scheme.a[s], solves);
-      const Stage<double>        stage(scene_, start.physics, start.contact, position);
+      const Stage<double>        stage(scene_, start.physics, start.contact, position, start.strain);
       const ActiveSet            frozen = replay ? record.solves[s].active : ActiveSet();
       const Start                known  = s == 0 ? guess.known : Start::near;
       guess.advance(s == 0 ? guess.ahead : record.step * (scheme.node(s) - scheme.node(s - 1)), W);
@@ -220,6 +233,7 @@ namespace retroforge
 
   SolvedIncrement Increment::forward(const Process<double>      &process,
                                      const NodalVectors<double> &X,
+                                     const std::vector<double>  &strain,
                                      const bool                  replay,
                                      const Guess                &guess,
                                      IncrementRecord            &record)
@@ -252,7 +266,7 @@ namespace retroforge
         all_found = reach > model_.reach && record.pairs.size() == n_watched;
         n_watched = record.pairs.size();
       }
-      const auto start  = start_of(process, X, record);
+      const auto start  = start_of(process, X, strain, record);
       auto       solves = solve_stages(*start, X, replay, all_found, guess, record);
       if (solves.empty())
         continue;
@@ -291,9 +305,10 @@ namespace retroforge
 
   SolvedIncrement Increment::recorded(const Process<double>      &process,
                                       const NodalVectors<double> &X,
+                                      const std::vector<double>  &strain,
                                       const IncrementRecord      &record) const
   {
-    return recorded(start_of(process, X, record), X, record);
+    return recorded(start_of(process, X, strain, record), X, record);
   }
 
   Field<double> Increment::rate(const IncrementRecord &record) const
@@ -372,6 +387,7 @@ namespace retroforge
 
   void Increment::reverse(const Process<double>      &process,
                           const NodalVectors<double> &X,
+                          const std::vector<double>  &strain,
                           const IncrementRecord      &record,
                           const StageSource          &source,
                           std::vector<Costate>       &costates)
@@ -389,11 +405,14 @@ namespace retroforge
     const bool                    first  = dealii::Utilities::MPI::this_mpi_process(comm) == 0;
     const Scheme                 &scheme = scheme_of(record);
     const unsigned int            n      = scheme.n_stages();
-    const auto                    shared = start_of(process, X, record);
+    const auto                    shared = start_of(process, X, strain, record);
     const IncrementStart<double> &start  = *shared;
     std::vector<IncrementBar>     bars(
       costates.size(),
       {ContactSetBar(record.pairs.size()), PhysicsBar(scene_.dies), std::vector<NodalVectors<double>>(n)});
+    if (process.material.depends_on_state())
+      for (Costate &costate : costates)
+        costate.strain.resize(scene_.mesh.n_cells(), 0.);
     earlier_lambdas_.resize(n);
     earlier_bubbles_.resize(n);
     // The first stage of a midpoint step, which leads to half a step, has a right-hand side, and a share in
@@ -467,6 +486,8 @@ namespace retroforge
       for (unsigned int s = n; s-- > 0;)
         for (std::size_t k = 0; k < X.size(); ++k)
           costates[j].X[k] += bars[j].Y[s][k];
+      if (process.material.depends_on_state())
+        add_over_ranks(std::move(bars[j].physics.strain), comm, costates[j].strain);
       reverse_at_stroke(
         process, {record.stroke, record.step}, record.contact.approach, bars[j].physics, costates[j].process);
     }
@@ -499,20 +520,23 @@ namespace retroforge
 
   NodalVectors<Dual> Increment::tangent(const Process<Dual>      &process,
                                         const NodalVectors<Dual> &X,
+                                        const std::vector<Dual>  &strain,
                                         const IncrementRecord    &record,
                                         const TangentWatch       &watch)
   {
     AssertDimension(X.size(), scene_.mesh.n_nodes());
     AssertDimension(record.solves.size(), scheme_of(record).n_stages());
-    const NodalVectors<double> X_value     = values_of(X);
-    const auto                 start_value = start_of(values_of(process), X_value, record);
-    const IncrementStart<Dual> start(scene_, process, X, record);
+    const NodalVectors<double> X_value = values_of(X);
+    std::vector<double>        strain_value;
+    convert(strain, strain_value);
+    const auto                 start_value = start_of(values_of(process), X_value, strain_value, record);
+    const IncrementStart<Dual> start(scene_, process, X, strain, record);
     const Scheme              &scheme = scheme_of(record);
     std::vector<Moved>         stages;
     for (unsigned int s = 0; s < scheme.n_stages(); ++s)
     {
       const NodalVectors<Dual> position = advanced(X, start.dt, scheme.a[s], stages);
-      const Stage<Dual>        stage(scene_, start.physics, start.contact, position);
+      const Stage<Dual>        stage(scene_, start.physics, start.contact, position, start.strain);
       const Field<Dual>        W = tangent_field(stage, *recorded_stage(*start_value, X_value, record, s));
       stages.push_back({retroforge::motion(stage, W)});
       if (scheme.b[s] != 0.)

@@ -24,7 +24,7 @@ namespace retroforge
   template <typename Number>
   Physics<Number> Process<Number>::at_stroke(const double stroke) const
   {
-    Physics<Number> physics{law, contact, dies};
+    Physics<Number> physics{material, contact, dies};
     const Number    passed = time(stroke);
     for (auto &die : physics.dies)
       die.displacement += die.velocity * passed;
@@ -42,7 +42,8 @@ namespace retroforge
   {
     AssertDimension(bar.dies.size(), process.dies.size());
     AssertDimension(process_bar.dies.size(), process.dies.size());
-    add_numbers(bar.law, process_bar.law);
+    process_bar.material.numbers.resize(process.material.numbers.size(), 0.);
+    add_numbers(bar.material, process_bar.material);
     add_numbers(bar.contact, process_bar.contact);
     // In stretch/speed, by which all times are made of strokes.
     double pace_bar = (bar.dt + approach * bar.tau) * step.step;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/discretization/element_pairs.h>
+#include <retroforge/material/material.h>
 
 namespace retroforge
 {
@@ -19,11 +20,13 @@ namespace retroforge
   /// eps the deviatoric strain rate of the cell, eps* the recovered one: at each node the mean of the cells
   /// around it, by their volumes, and linear between. The power functional is convex with the stress s as its
   /// gradient, so that this is twice its error to second order if eps* were exact.
-  /// @param X, W  positions [mm] and velocities [mm/s]
+  /// @param X, W    positions [mm] and velocities [mm/s]
+  /// @param strain  of each cell, dimensionless
   /// @return of all cells, on every rank. Collective.
   /// Cells that are inverted count as flat: nothing. @cite Zienkiewicz1987
   std::vector<double> indicated_errors(const Discretization<3>    &discretization,
                                        const NodalVectors<double> &X,
                                        const Field<double>        &W,
-                                       const MaterialLaw<double>  &law);
+                                       const Material<double>     &material,
+                                       const std::vector<double>  &strain);
 } // namespace retroforge

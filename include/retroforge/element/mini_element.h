@@ -113,7 +113,7 @@ namespace retroforge
   /// @param elimination  where each lane's part that must be kept goes
   void compute_cell_tangents(const std::array<CellGeometry<double>, n_lanes>        &geometry,
                              const std::array<CellValues<double>, n_lanes>          &w,
-                             const MaterialLaw<double>                              &law,
+                             const LaneLaws                                         &laws,
                              Linearisation                                           linearisation,
                              TangentPack                                            &tangent,
                              const std::array<BubbleElimination<double> *, n_lanes> &elimination);
@@ -127,5 +127,5 @@ namespace retroforge
   /// The same of n_lanes cells: the bits of each are those of solve_bubble.
   std::array<Vec3, n_lanes> solve_bubbles(const std::array<CellGeometry<double>, n_lanes> &geometry,
                                           const std::array<CellValues<double>, n_lanes>   &w,
-                                          const MaterialLaw<double>                       &law);
+                                          const LaneLaws                                  &laws);
 } // namespace retroforge

@@ -64,9 +64,9 @@ namespace retroforge
     e[5] += 0.5 * scale * (v[0] * g[1] + v[1] * g[0]);
   }
 
-  template <typename T>
-  RETROFORGE_INLINE void
-  fill(const CellInput<T> &cell, const MaterialLaw<double> &law, TangentInput<T> &input)
+  /// @param law  of the cell, or LaneLaws
+  template <typename T, typename Law>
+  RETROFORGE_INLINE void fill(const CellInput<T> &cell, const Law &law, TangentInput<T> &input)
   {
     input.volume      = cell.volume;
     const T quarter   = 0.25 * cell.volume;

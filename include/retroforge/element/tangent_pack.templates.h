@@ -4,7 +4,6 @@
 
 #include <retroforge/core/processors.h>
 #include <retroforge/element/tangent_pack.h>
-#include <retroforge/material/material_law.h>
 
 /// @file
 /// One source for one cell (T = double) and for a pack of cells (T = Pack).
@@ -51,12 +50,12 @@ namespace retroforge
     slope  = law.slope(eps2);
   }
 
-  RETROFORGE_INLINE void ask_law(const MaterialLaw<double> &law, const Pack &eps2, Pack &factor, Pack &slope)
+  RETROFORGE_INLINE void ask_law(const LaneLaws &laws, const Pack &eps2, Pack &factor, Pack &slope)
   {
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
     {
-      factor[lane] = law(eps2[lane]);
-      slope[lane]  = law.slope(eps2[lane]);
+      factor[lane] = laws[lane](eps2[lane]);
+      slope[lane]  = laws[lane].slope(eps2[lane]);
     }
   }
 
@@ -67,9 +66,9 @@ namespace retroforge
     ratio = law.potential_ratio(eps2);
   }
 
-  RETROFORGE_INLINE void ask_potential_ratio(const MaterialLaw<double> &law, const Pack &eps2, Pack &ratio)
+  RETROFORGE_INLINE void ask_potential_ratio(const LaneLaws &laws, const Pack &eps2, Pack &ratio)
   {
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
-      ratio[lane] = law.potential_ratio(eps2[lane]);
+      ratio[lane] = laws[lane].potential_ratio(eps2[lane]);
   }
 } // namespace retroforge

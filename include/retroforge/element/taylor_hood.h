@@ -108,7 +108,7 @@ namespace retroforge
   /// As compute_cell_tangent, for n_lanes cells.
   void compute_cell_tangents(const std::array<CellGeometry<double>, n_lanes>     &geometry,
                              const std::array<TaylorHoodValues<double>, n_lanes> &w,
-                             const MaterialLaw<double>                           &law,
+                             const LaneLaws                                      &laws,
                              Linearisation                                        linearisation,
                              TaylorHoodPack                                      &tangent);
 } // namespace retroforge

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/material/material_law.h>
+#include <retroforge/material/material.h>
 
 #include <deal.II/base/parameter_handler.h>
 
@@ -10,13 +10,16 @@ namespace retroforge
 {
   struct MaterialParameters
   {
-    MaterialLaw<double> law{1.693, 0.139, 0.};
+    std::string         type = "Norton-Hoff";
+    MaterialLaw<double> law{1.693, 0.139, 0.}; ///< of metal in its initial state
+    std::vector<double> numbers;               ///< of the type, beyond these
 
     void add_parameters(dealii::ParameterHandler &prm);
 
-    /// With the regularising strain rate where it is left open: 1e-3 /s or, where the metal is strained
-    /// slowly, a hundredth of its rate, which changes the stress by less than 5e-5.
+    /// Returns the metal, with the regularising strain rate where it is left open: 1e-3 /s or, where the
+    /// metal is strained slowly, a hundredth of its rate, which changes the stress by less than 5e-5.
     /// @param rate  strain rate of the scene [1/s]
-    MaterialLaw<double> law_at(double rate) const;
+    /// @throws Error  where there is no such law, or its numbers are not what it has
+    Material<double> metal(double rate) const;
   };
 } // namespace retroforge

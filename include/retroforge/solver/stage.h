@@ -6,6 +6,7 @@
 #include <retroforge/contact/interface_law.h>
 #include <retroforge/discretization/field.h>
 #include <retroforge/element/semi_analytic.h>
+#include <retroforge/material/material.h>
 
 namespace retroforge
 {
@@ -38,31 +39,41 @@ namespace retroforge
   template <typename Number>
   struct Physics
   {
-    MaterialLaw<Number>           law;
+    Material<Number>              material;
     ContactLaw<Number>            contact;
     std::vector<DieState<Number>> dies;
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[law, contact, dies] = self;
-      return std::tie(law, contact, dies);
+      auto &[material, contact, dies] = self;
+      return std::tie(material, contact, dies);
     }
   };
 
   /// Zero derivatives in the states of dies, their vertices included.
   std::vector<DieState<double>> no_derivatives(const std::vector<Die> &dies);
 
-  /// Derivatives of a scalar in what Physics holds, and in the increment's times.
+  /// Derivatives of a scalar in what Physics holds, in the increment's times, and in the strain of each cell
+  /// at its start, of the cells this rank owns; empty: none.
   struct PhysicsBar : Physics<double>
   {
-    double dt = 0., tau = 0.;
+    double              dt = 0., tau = 0.;
+    std::vector<double> strain;
 
     explicit PhysicsBar(const std::vector<Die> &dies) { this->dies = no_derivatives(dies); }
   };
 
   /// Which pairs are pressed; empty: decide from the velocity. A replay passes what was recorded.
   using ActiveSet = std::vector<char>;
+
+  /// The strain of metal in its initial state.
+  template <typename Number>
+  const std::vector<Number> &no_strain()
+  {
+    static const std::vector<Number> none;
+    return none;
+  }
 
   /// Equilibrium at given positions: the sums over cells and contact nodes of value, residual, tangent data,
   /// and their reverse. Entries of results are right on owned nodes and in visited cells;
@@ -71,10 +82,19 @@ namespace retroforge
   class Stage
   {
   public:
+    /// What is passed must live as long.
+    /// @param strain  of each cell at the start of the increment; empty: none
     Stage(const Scene                &scene,
           const Physics<Number>      &physics,
           const ContactSet<Number>   &contact,
-          const NodalVectors<Number> &X);
+          const NodalVectors<Number> &X,
+          const std::vector<Number>  &strain = no_strain<Number>());
+
+    /// The law of the metal in a cell.
+    MaterialLaw<Number> law(const CellIndex c) const { return physics.material.at(state(c)); }
+
+    /// The state of the metal in a cell.
+    PointState<Number> state(CellIndex c) const;
 
     /// Pair p as its force sees it. @param active  empty: its own h > 0; or the choice
     ContactNode<Number> contact_node(unsigned int p, const Field<Number> &W, const ActiveSet &active) const;
@@ -95,6 +115,7 @@ namespace retroforge
     const Physics<Number>      &physics;
     const ContactSet<Number>   &contact;
     const NodalVectors<Number> &X;
+    const std::vector<Number>  &strain;
     ContactAreas<Number>        areas;
   };
 
@@ -142,16 +163,26 @@ namespace retroforge
   Stage<Number>::Stage(const Scene                &scene,
                        const Physics<Number>      &physics,
                        const ContactSet<Number>   &contact,
-                       const NodalVectors<Number> &X)
+                       const NodalVectors<Number> &X,
+                       const std::vector<Number>  &strain)
       : scene(scene)
       , physics(physics)
       , contact(contact)
       , X(X)
+      , strain(strain)
       , areas(contact_areas(scene.mesh, scene.topology, contact, X)) // asks for a position of each node
   {
     Assert(physics.dies.size() == scene.dies.size(),
            dealii::ExcDimensionMismatch(physics.dies.size(), scene.dies.size()));
     Assert(contact.ramps.size() == contact.pairs.size(),
            dealii::ExcDimensionMismatch(contact.ramps.size(), contact.pairs.size()));
+    Assert(strain.size() == scene.mesh.n_cells() || (strain.empty() && !physics.material.depends_on_state()),
+           dealii::ExcDimensionMismatch(strain.size(), scene.mesh.n_cells()));
+  }
+
+  template <typename Number>
+  PointState<Number> Stage<Number>::state(const CellIndex c) const
+  {
+    return strain.empty() ? PointState<Number>{} : PointState<Number>{strain[c]};
   }
 } // namespace retroforge

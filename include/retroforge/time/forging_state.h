@@ -36,5 +36,6 @@ namespace retroforge
     unsigned int                     increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;
     std::vector<unsigned int>        remeshed;       ///< the increments, from 0, that began on a new mesh
     std::vector<std::vector<double>> strains_before; ///< of each remeshing, on the mesh it left
+    std::vector<std::vector<double>> strains; ///< at the start of each increment, where laws depend on them
   };
 } // namespace retroforge

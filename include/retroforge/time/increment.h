@@ -52,10 +52,13 @@ namespace retroforge
     Physics<Number>    physics;
     Number             dt; ///< [s]
     ContactSet<Number> contact;
+    /// Of each cell, where laws depend on it; else empty.
+    std::vector<Number> strain;
 
     IncrementStart(const Scene                &scene,
                    const Process<Number>      &process,
                    const NodalVectors<Number> &X,
+                   const std::vector<Number>  &strain,
                    const IncrementRecord      &record);
   };
 
@@ -101,11 +104,13 @@ namespace retroforge
               LinearSystem           &system,
               Timings                &timings);
 
-    /// From X_i to X_{i+1}. @param record  in: stroke, step; with `replay`, the recorded decisions are
-    /// obeyed. Out: scheme, contact, pairs, solves, energies, forces; iterations are added.
+    /// From X_i to X_{i+1}, in metal of strain q_i. @param record  in: stroke, step; with `replay`, the
+    /// recorded decisions are obeyed. Out: scheme, contact, pairs, solves, energies, forces; iterations are
+    /// added.
     /// @param guess  where the first stage begins
     SolvedIncrement forward(const Process<double>      &process,
                             const NodalVectors<double> &X,
+                            const std::vector<double>  &strain,
                             bool                        replay,
                             const Guess                &guess,
                             IncrementRecord            &record);
@@ -113,11 +118,13 @@ namespace retroforge
     /// The same from what was recorded, to the bit: nothing is solved.
     SolvedIncrement recorded(const Process<double>      &process,
                              const NodalVectors<double> &X,
+                             const std::vector<double>  &strain,
                              const IncrementRecord      &record) const;
 
-    /// Derivative of X_{i+1} along (X, process), at a recorded increment.
+    /// Derivative of X_{i+1} along (X, strain, process), at a recorded increment.
     NodalVectors<Dual> tangent(const Process<Dual>      &process,
                                const NodalVectors<Dual> &X,
+                               const std::vector<Dual>  &strain,
                                const IncrementRecord    &record,
                                const TangentWatch       &watch);
 
@@ -126,6 +133,7 @@ namespace retroforge
     /// q_i on exit.
     void reverse(const Process<double>      &process,
                  const NodalVectors<double> &X,
+                 const std::vector<double>  &strain,
                  const IncrementRecord      &record,
                  const StageSource          &source,
                  std::vector<Costate>       &costates);
@@ -148,6 +156,7 @@ namespace retroforge
   private:
     std::shared_ptr<const IncrementStart<double>> start_of(const Process<double>      &process,
                                                            const NodalVectors<double> &X,
+                                                           const std::vector<double>  &strain,
                                                            const IncrementRecord      &record) const;
     /// That of the record, which is the model's unless the run was restarted with another.
     const Scheme &scheme_of(const IncrementRecord &record) const;

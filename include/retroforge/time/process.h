@@ -18,7 +18,7 @@ namespace retroforge
   template <typename Number>
   struct Process
   {
-    MaterialLaw<Number>           law;
+    Material<Number>              material;
     ContactLaw<Number>            contact;
     std::vector<DieState<Number>> dies;
     unsigned int                  leading_die = 0;
@@ -29,8 +29,8 @@ namespace retroforge
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[law, contact, dies, leading_die, stretch] = self;
-      return std::tie(law, contact, dies, leading_die, stretch);
+      auto &[material, contact, dies, leading_die, stretch] = self;
+      return std::tie(material, contact, dies, leading_die, stretch);
     }
 
     Number speed() const;

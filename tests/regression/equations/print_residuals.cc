@@ -114,7 +114,7 @@ void print_case(RandomNumbers    &random,
 {
   const Scene     scene(one_cell(random), {pair}, {made.die}, MPI_COMM_WORLD);
   const auto     &X       = scene.mesh.X;
-  Physics<double> physics = {{1.7, m, 0.1}, {20., 0.05}, {{}}};
+  Physics<double> physics = {MaterialLaw<double>{1.7, m, 0.1}, {20., 0.05}, {{}}};
   physics.dies            = {{0.2 * random.vector(), 0.05 * random.vector(), 0.4, {}}};
   const FrictionRamp ramp{0.5, false};
   const double       tau = 0.4, part = 0.5, edge_stiffness = 0.3, reach = 1.;
@@ -138,9 +138,9 @@ void print_case(RandomNumbers    &random,
     {"middles",
      scene.discretization.middles() ? Json(scene.discretization.middles()->ends()) : Json::array()},
     {"W", as_json(W, scene.discretization)},
-    {"K", physics.law.K},
+    {"K", physics.material.law.K},
     {"m", m},
-    {"e_0", physics.law.e0},
+    {"e_0", physics.material.law.e0},
     {"rho", physics.contact.rho},
     {"v_0", physics.contact.v0},
     {"alpha", physics.dies[0].friction},

@@ -34,16 +34,24 @@ namespace retroforge
     return p;
   }
 
+  enum class Meshes
+  {
+    one, ///< for all of a run
+    anew ///< as the parameters have it
+  };
+
   /// A scene forged once, its increments kept, to be differentiated and replayed.
   struct RecordedRun
   {
     /// @param given  the objectives; those of the parameters when it is empty
     /// @param scheme  in time; that of the parameters when there is none
+    /// @param meshes  whether the mesh may be made anew
     RecordedRun(const Parameters            &all,
                 std::vector<Die>             dies,
                 Objectives                   given  = {},
-                const std::optional<Scheme> &scheme = {})
-        : parameters(settled(all))
+                const std::optional<Scheme> &scheme = {},
+                const Meshes                 meshes = Meshes::one)
+        : parameters(settled(all, meshes))
         , process(parameters.process({all.billet.size[2], all.billet.size[2]}))
         , model{parameters.discretization.choice(),
                 std::move(dies),
@@ -76,9 +84,10 @@ namespace retroforge
       return model;
     }
 
-    static Parameters settled(Parameters all)
+    static Parameters settled(Parameters all, const Meshes meshes)
     {
-      all.remeshing.when = "never"; // one mesh for all of a run
+      if (meshes == Meshes::one)
+        all.remeshing.when = "never";
       all.resolve_defaults({all.billet.size[2], all.billet.size[2]});
       return all;
     }

@@ -288,7 +288,7 @@ namespace retroforge
       CellValues<double> w_bar = {};
       const auto s = reverse_cell_dissipation(geometry_of_cell(stage.scene.discretization, stage.X, c),
                                               MiniPair::on_cell(stage.scene.discretization, W, c),
-                                              stage.physics.law,
+                                              stage.physics.material.law,
                                               weight * dt,
                                               w_bar);
       for (unsigned int a = 0; a < 4; ++a)
@@ -301,7 +301,7 @@ namespace retroforge
     }
     const auto reverse_node = [&](const unsigned int p) {
       const auto node = reverse_friction_power(
-        stage.contact_node(p, W, active), stage.physics.law, stage.physics.contact, weight * dt);
+        stage.contact_node(p, W, active), stage.physics.material.law, stage.physics.contact, weight * dt);
       stage.contact.pairs[p].point.add_to_velocity(node.u, W_bar.V);
       return node;
     };
@@ -330,13 +330,13 @@ namespace retroforge
       const auto s = reverse_cell_residual(geometry_of_cell(stage.scene.discretization, stage.X, c),
                                            MiniPair::on_cell(stage.scene.discretization, W, c),
                                            MiniPair::on_cell(stage.scene.discretization, lambda, c),
-                                           stage.physics.law);
+                                           stage.physics.material.law);
       for (unsigned int a = 0; a < 4; ++a)
         X_bar[mesh.cells[c][a]] += s.X[a];
     }
     const auto reverse_node = [&](const unsigned int p) {
       return reverse_contact_force(stage.contact_node(p, W, active),
-                                   stage.physics.law,
+                                   stage.physics.material.law,
                                    stage.physics.contact,
                                    stage.contact.pairs[p].point.velocity(lambda.V));
     };

@@ -13,6 +13,20 @@
 
 namespace retroforge
 {
+  /// Laws that differ from lane to lane, the first one `law`.
+  inline LaneLaws laws_around(const MaterialLaw<double> &law)
+  {
+    LaneLaws laws;
+    for (unsigned int lane = 0; lane < n_lanes; ++lane)
+    {
+      laws[lane] = law;
+      laws[lane].K *= 1. + 0.3 * lane;
+      laws[lane].m /= 1. + 0.1 * lane;
+      laws[lane].e0 *= 1. + 0.2 * lane;
+    }
+    return laws;
+  }
+
   /// And cells, and what is in them.
   class Random : public RandomNumbers
   {

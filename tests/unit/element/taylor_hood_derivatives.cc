@@ -84,6 +84,7 @@ void check_picard(const TaylorHoodCase &c, Errors &errors)
 
 void check_lanes(Random &random, const NortonHoff<double> &law, Errors &errors)
 {
+  const LaneLaws                                laws = laws_around(law);
   std::array<CellGeometry<double>, n_lanes>     geometry;
   std::array<TaylorHoodValues<double>, n_lanes> w;
   for (unsigned int lane = 0; lane < n_lanes; ++lane)
@@ -94,11 +95,11 @@ void check_lanes(Random &random, const NortonHoff<double> &law, Errors &errors)
   for (const auto linearisation : {Linearisation::newton, Linearisation::picard})
   {
     TaylorHoodPack pack;
-    compute_cell_tangents(geometry, w, law, linearisation, pack);
+    compute_cell_tangents(geometry, w, laws, linearisation, pack);
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
     {
       TaylorHoodTangent one;
-      compute_cell_tangent(geometry[lane], w[lane], law, linearisation, one);
+      compute_cell_tangent(geometry[lane], w[lane], laws[lane], linearisation, one);
       std::vector<double> of_pack, of_cell;
       for (unsigned int k = 0; k < sizeof(one) / sizeof(double); ++k)
       {

@@ -55,9 +55,9 @@ struct PathInputs
                                          {"Y", {}},
                                          {"V", {}},
                                          {"bubbles", {}},
-                                         {"K", {&physics.law.K}},
-                                         {"m", {&physics.law.m}},
-                                         {"e0", {&physics.law.e0}},
+                                         {"K", {&physics.material.law.K}},
+                                         {"m", {&physics.material.law.m}},
+                                         {"e0", {&physics.material.law.e0}},
                                          {"rho", {&physics.contact.rho}},
                                          {"v0", {&physics.contact.v0}},
                                          {"v_die", {}},
@@ -96,11 +96,11 @@ PathInputs<Number> empty_inputs(const Scene &scene)
     state.V.resize(scene.discretization.condensed_nodes()->n());
     state.bubbles.resize(scene.discretization.has_bubbles() ? scene.mesh.n_cells() : 0);
   }
-  inputs.physics.law.K   = Number(0.);
-  inputs.physics.law.m   = Number(0.);
-  inputs.physics.contact = {Number(0.), Number(0.)};
-  inputs.tau             = Number(0.);
-  inputs.speed           = Number(0.);
+  inputs.physics.material.law.K = Number(0.);
+  inputs.physics.material.law.m = Number(0.);
+  inputs.physics.contact        = {Number(0.), Number(0.)};
+  inputs.tau                    = Number(0.);
+  inputs.speed                  = Number(0.);
   inputs.physics.dies.resize(scene.dies.size());
   for (auto &die : inputs.physics.dies)
     die.friction = Number(0.);
@@ -128,10 +128,10 @@ struct PathProblem
       : scene(half_box_mesh(Vec3({10., 8., 6.}), {{3, 6, 4}}), {pair}, make_dies(curved), MPI_COMM_WORLD)
       , at(empty_inputs<double>(scene))
   {
-    at.physics.law     = {1.3, 0.4, 0.2};
-    at.physics.contact = {2., 0.3};
-    at.tau             = 1.5;
-    at.speed           = 2.;
+    at.physics.material.law = {1.3, 0.4, 0.2};
+    at.physics.contact      = {2., 0.3};
+    at.tau                  = 1.5;
+    at.speed                = 2.;
     for (auto &die : at.physics.dies)
       die = {2. * random.vector(), 0.1 * random.vector(), 0.3, {}};
     for (unsigned int i = 0; i < n_increments; ++i)
@@ -237,7 +237,7 @@ struct PathProblem
                           set_bar,
                           bar.states[i].X,
                           physics_bar.dies);
-      add_numbers(physics_bar.law, bar.physics.law);
+      add_numbers(physics_bar.material.law, bar.physics.material.law);
       add_numbers(physics_bar.contact, bar.physics.contact);
       bar.tau += physics_bar.tau * dt(inputs, i);
       if (dealii::Utilities::MPI::this_mpi_process(scene.discretization.comm()) == 0)

@@ -65,10 +65,11 @@ public:
       Field<double> W(scene_.discretization);
       W.V.take(V);
       const Vec3            lower({0., 0., 0.}), upper({0., 0., -v - faster});
-      const Physics<double> physics{
-        {K, 1., 0.}, {rho, 0.}, {{lower, Vec3(), 0., {}}, {upper, Vec3({0., 0., -i * step}), 0., {}}}};
-      const FrictionRamp ramp{0.1, false};
-      const auto         pairs = find_contact_pairs(scene_.view(physics.dies, X), ramp, 1., true);
+      const Physics<double> physics{MaterialLaw<double>{K, 1., 0.},
+                                    {rho, 0.},
+                                    {{lower, Vec3(), 0., {}}, {upper, Vec3({0., 0., -i * step}), 0., {}}}};
+      const FrictionRamp    ramp{0.1, false};
+      const auto            pairs = find_contact_pairs(scene_.view(physics.dies, X), ramp, 1., true);
       const auto contact = make_contact_set<double>(scene_.view(physics.dies, X), pairs, {ramp, 5. * dt});
       const Stage<double> stage(scene_, physics, contact, X);
       const ActiveSet     active = stage.decide_active(W);
@@ -89,10 +90,11 @@ public:
   double pressure_with_edges(const ContactPressure &objective) const
   {
     const NodalVectors<double> &X = scene_.mesh.X;
-    const Physics<double>       physics{
-      {K, 1., 0.}, {rho, 0.}, {{Vec3(), Vec3(), 0., {}}, {Vec3({0., 0., -faster}), Vec3(), 0., {}}}};
-    const FrictionRamp       ramp{0.1, false};
-    std::vector<ContactPair> pairs = find_contact_pairs(scene_.view(physics.dies, X), ramp, 1., true);
+    const Physics<double>       physics{MaterialLaw<double>{K, 1., 0.},
+                                  {rho, 0.},
+                                  {{Vec3(), Vec3(), 0., {}}, {Vec3({0., 0., -faster}), Vec3(), 0., {}}}};
+    const FrictionRamp          ramp{0.1, false};
+    std::vector<ContactPair>    pairs = find_contact_pairs(scene_.view(physics.dies, X), ramp, 1., true);
     for (const auto &[a, b] : scene_.topology.surface_edges)
       if (is_linear() && is_on_top(a) && is_on_top(b))
         pairs.push_back({ContactPoint::middle(a, b), 1, true, DieFeature()});

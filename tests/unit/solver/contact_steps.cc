@@ -203,7 +203,7 @@ int main(int argc, char **argv)
     if (chosen(p))
     {
       const auto   node  = stiff.stage().contact_node(p, leaning, {});
-      const double force = contact_force(node, stiff.physics.law, stiff.physics.contact) * node.n;
+      const double force = contact_force(node, stiff.physics.material.law, stiff.physics.contact) * node.n;
       ++leant;
       unbalanced = std::max(unbalanced, std::abs(r.V[pairs[p].point.velocity_node] * node.n) / force);
     }

@@ -38,7 +38,7 @@ namespace retroforge
     {
       for (Vec3 &x : X)
         x += 0.05 * random.vector();
-      physics = {{1.3, 0.4, 0.2}, {rho, 0.3}, {{}, {}}};
+      physics = {MaterialLaw<double>{1.3, 0.4, 0.2}, {rho, 0.3}, {{}, {}}};
       for (auto &die : physics.dies)
         die = {0.3 * random.vector(), Vec3(), 0.3, {}};
       const FrictionRamp ramp{0.5, false};

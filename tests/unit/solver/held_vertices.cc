@@ -82,7 +82,7 @@ int main(int argc, char **argv)
         const auto          node    = stage.contact_node(p, W, active);
         ContactNode<double> sliding = node;
         sliding.Sf                  = 0.;
-        n_pulls += contact_force(sliding, corner.physics.law, corner.physics.contact) * node.n < 0.;
+        n_pulls += contact_force(sliding, corner.physics.material.law, corner.physics.contact) * node.n < 0.;
       }
     }
     const Field<double> r = stage.residual(W, active), decided = stage.residual(W, {});

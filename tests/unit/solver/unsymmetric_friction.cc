@@ -54,7 +54,7 @@ namespace
     {
       for (Vec3 &x : X)
         x += 0.05 * random.vector();
-      physics                  = {{1.3, 0.2, 0.05}, {rho, 0.1}, {{}, {}}};
+      physics                  = {MaterialLaw<double>{1.3, 0.2, 0.05}, {rho, 0.1}, {{}, {}}};
       physics.dies[1].velocity = Vec3({0., 0.3, -2.});
       for (auto &die : physics.dies)
       {

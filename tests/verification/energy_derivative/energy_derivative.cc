@@ -143,7 +143,7 @@ namespace
 
   NodalVectors<double> by_automatic_differentiation(const Equilibrium &e)
   {
-    const auto law     = converted<Dual>(e.physics.law);
+    const auto law     = converted<Dual>(e.physics.material.law);
     const auto contact = converted<Dual>(e.physics.contact);
     return gather(
       e,
@@ -180,14 +180,14 @@ namespace
           CellValues<double>          w,
           const unsigned int          a,
           const unsigned int          i) {
-        const double here = cell_dissipation(geometry, w, e.physics.law);
+        const double here = cell_dissipation(geometry, w, e.physics.material.law);
         w.V[a][i] += step;
-        return (cell_dissipation(geometry, w, e.physics.law) - here) / step;
+        return (cell_dissipation(geometry, w, e.physics.material.law) - here) / step;
       },
       [&](ContactNode<double> node, const unsigned int i) {
-        const double here = friction_power(node, e.physics.law, e.physics.contact);
+        const double here = friction_power(node, e.physics.material.law, e.physics.contact);
         node.u[i] += step;
-        return (friction_power(node, e.physics.law, e.physics.contact) - here) / step;
+        return (friction_power(node, e.physics.material.law, e.physics.contact) - here) / step;
       });
   }
 
