@@ -148,7 +148,8 @@ namespace retroforge
           , point{node.Sf,
                   node.alpha,
                   Number(dv * dv),
-                  node.active ? Number(contact.rho * approach_excess(node)) : Number(0.),
+                  node.active && !law.has_potential() ? Number(contact.rho * approach_excess(node))
+                                                      : Number(0.),
                   metal,
                   contact}
           , factor(law.factor(point))

@@ -20,7 +20,9 @@ namespace retroforge
     Number area;        ///< S^f [mm^2]
     Number coefficient; ///< of the die: DieState::friction
     Number slip2;       ///< |dv|^2 [mm^2/s^2]
-    Number pressure;    ///< N/S [MPa]; 0 where the point is not pressed, less where it is held and pulls
+    /// N/S [MPa]; 0 where the point is not pressed, less where it is held and pulls. To a law with a
+    /// potential, which cannot follow it, it is not told: 0.
+    Number pressure;
 
     const MaterialLaw<Number> &metal;
     const ContactLaw<Number>  &contact;

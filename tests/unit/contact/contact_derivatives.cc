@@ -8,8 +8,9 @@
 // - the reverse sweeps of force and friction power agree with forward differentiation in each of their 15
 // inputs:
 //   pressed or not, sliding or stuck (zero slip), Newtonian without regularisation, without friction area;
-// - the same of friction after Coulomb, but that its tangent is not symmetric where a sliding node is
-// pressed; a law that is not known is refused by its name, with those that are;
+// - the same of friction after Coulomb, which follows the pressure, but for the symmetry of its tangent; a
+// law
+//   that is not known is refused by its name, with those that are;
 // - the same within a layer, whose approach speed is smooth through zero and slower than delta/tau outside;
 // - gaps, ramps, areas under two tilted dies: <A x, y> = <x, A^T y> for A the forward derivative, where the
 // smooth ramp,

@@ -31,7 +31,7 @@ using namespace retroforge;
 
 namespace
 {
-  constexpr MPI_Comm comm = MPI_COMM_WORLD;
+  const MPI_Comm comm = MPI_COMM_WORLD;
 
   void say(const std::string &what, const bool right)
   {

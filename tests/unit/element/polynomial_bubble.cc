@@ -193,7 +193,7 @@ void compare_residuals(const double m)
     CellValues<double> w = random.cell_values();
     for (unsigned int a = 0; a < 4; ++a)
       w.V[a] = v0 + L * mesh.X[mesh.cells[c][a]];
-    w.beta              = Vec3();
+    w.beta = Vec3();
     Four<Vec3> X;
     for (unsigned int a = 0; a < 4; ++a)
       X[a] = mesh.X[mesh.cells[c][a]];
