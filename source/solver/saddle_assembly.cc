@@ -239,7 +239,7 @@ namespace retroforge
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
     {
       const ContactPoint &point = stage.contact.pairs[p].point;
-      if (!scene_.discretization.sees(point.nodes))
+      if (!scene_.sees(point))
         continue;
       const Tensor<2, 3> of_point =
         point.velocity_weight() * point.velocity_weight() *

@@ -99,7 +99,7 @@ namespace retroforge
                  r);
     });
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-      if (discretization.sees(contact.pairs[p].point.nodes))
+      if (scene.sees(contact.pairs[p].point))
         contact.pairs[p].point.add_to_velocity(
           contact_force(contact_node(p, W, chosen), physics.material.law, physics.contact), r.V);
     return r;

@@ -27,6 +27,15 @@ namespace retroforge
     }
     Scene(const Scene &) = delete; // a discretisation is not copied
 
+    /// Whether what acts on a point acts on a velocity of this rank.
+    bool sees(const ContactPoint &point) const
+    {
+      bool seen = false;
+      for (unsigned int i = 0; i < point.n_velocity_nodes(); ++i)
+        seen = seen || discretization.owns(point.velocity_node_at(i));
+      return seen;
+    }
+
     /// With dies and nodes there. What is passed must live as long.
     template <typename Number>
     ContactView<Number> view(const std::vector<DieState<Number>> &states, const NodalVectors<Number> &X) const

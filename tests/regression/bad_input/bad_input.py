@@ -313,7 +313,7 @@ def full_disk():
     in the record's head, which grow with the program: sizes are what is left beside them."""
     parameters = os.path.getsize(os.path.join("twice", "parameters.prm"))
     beside = lambda left: f"{8 * math.ceil(parameters / 4096) + left}k"  # noqa: E731
-    for size, name, more in (("4k", "first files", ""), (beside(56), "fields", ""),
+    for size, name, more in (("4k", "first files", ""), (beside(70), "fields", ""),
                              (beside(60), "record", "--set 'Output/fields every=0' --set Press/increments=60")):
         disk, saved = f"disk_{name.replace(' ', '_')}", f"saved_{name.replace(' ', '_')}"
         os.mkdir(disk)
