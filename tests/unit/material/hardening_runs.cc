@@ -105,8 +105,6 @@ namespace
     std::cout << "upsetting, " << element << ", " << scheme.name << ": increments " << run.records.size()
               << ", energy by hand within 1e-7: " << yes(error < 1e-7)
               << ", hardening adds a tenth or more: " << yes(by_hand > 1.1 * soft) << "\n";
-    std::cerr << "upsetting, " << element << ", " << scheme.name << ": " << error << ", hardening adds "
-              << by_hand / soft - 1. << "\n";
   }
 
   /// A direction, or numbers of the metal: K, m, e0, a, n.
@@ -152,10 +150,11 @@ namespace
   Objectives objectives()
   {
     Objectives all;
-    all.push_back({"energy", 1., Extent::none, invalid_index, std::make_unique<EnergyObjective>(), nullptr});
+    all.push_back(
+      {"energy", 1., SymmetryScaling::none, invalid_index, std::make_unique<EnergyObjective>(), nullptr});
     all.push_back({"variance of the strain",
                    1.,
-                   Extent::none,
+                   SymmetryScaling::none,
                    invalid_index,
                    nullptr,
                    std::make_unique<StrainObjective>(StrainStatistic::variance)});
@@ -195,14 +194,11 @@ namespace
       largest.tangent    = std::max(largest.tangent, tangent);
       largest.difference = std::max(largest.difference, best);
       largest.order      = std::max(largest.order, std::abs(order - 2.));
-      std::cerr << "  " << run.objectives[o].name << ", " << way.direction.name << ": " << adjoint
-                << ", tangent " << tangent << ", difference " << best << ", order " << order << "\n";
     }
   }
 
   void check_gradients(const std::string &name, const Parameters &p, const Meshes meshes)
   {
-    std::cerr << name << "\n";
     RecordedRun run(p, {p.dies[0].die(), p.dies[1].die()}, objectives(), {}, meshes);
     run.trace.values(run.forged, true);
     const auto sweep = adjoint_sweep(run.recorded(), run.trace.rows(), run.forged, each(run.objectives));
