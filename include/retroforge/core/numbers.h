@@ -41,13 +41,12 @@ namespace retroforge
     };
 
     template <typename T>
-    struct IsList : std::false_type
-    {
-    };
+    std::true_type is_list(const std::vector<T> *);
+    std::false_type is_list(const void *);
+
+    /// A list is a std::vector or made from one.
     template <typename T>
-    struct IsList<std::vector<T>> : std::true_type
-    {
-    };
+    using IsList = decltype(is_list(static_cast<const T *>(nullptr)));
 
     template <std::size_t i, typename F, typename... Tuples>
     void visit_member(const F &f, const Tuples &...members)
