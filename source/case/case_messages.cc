@@ -109,12 +109,13 @@ namespace retroforge
         size > 0. && forging_case.parameters.remeshing.when != "never")
       add(note_on_fineness(
         "Remeshing/element size", size, expected_cells(std::pow(forging_case.size().side, 3), size)));
-    if (forging_case.process.stretch != 1.)
-      notes.push_back("die " + forging_case.parameters.dies[forging_case.process.leading_die].name +
-                      " follows the billet: its path is " +
-                      as_text(forging_case.process.stretch * forging_case.parameters.press.stroke) +
-                      " mm long; strokes are given as the nominal design's, " +
-                      as_text(forging_case.parameters.press.stroke) + " mm");
+    if (forging_case.process.operations.front().path_scale != 1.)
+      notes.push_back(
+        "die " + forging_case.parameters.dies[forging_case.process.operations.front().leading_die].name +
+        " follows the billet: its path is " +
+        as_text(forging_case.process.operations.front().path_scale * forging_case.parameters.press.stroke) +
+        " mm long; strokes are given as the nominal design's, " +
+        as_text(forging_case.parameters.press.stroke) + " mm");
     return notes;
   }
 

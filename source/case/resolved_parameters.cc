@@ -115,11 +115,16 @@ namespace retroforge
   Process<double> Parameters::process(const BilletSize &size) const
   {
     Process<double> process;
-    process.dies        = initial_states();
-    process.leading_die = leading_die();
-    const double speed  = closing_speed(process.dies);
-    process.material    = material.metal(speed / size.height);
-    process.contact     = open_contact(size).law(process.material.law, speed);
+    process.dies = initial_states();
+    process.operations.resize(1);
+    Operation<double> &operation = process.operations.front();
+    operation.leading_die        = leading_die();
+    operation.motion             = press.motion();
+    for (unsigned int d = 0; d < process.dies.size(); ++d)
+      operation.dies.push_back(d);
+    const double speed = closing_speed(process.dies);
+    process.material   = material.metal(speed / size.height);
+    process.contact    = open_contact(size).law(process.material.law, speed);
     return process;
   }
 

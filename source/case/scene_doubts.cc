@@ -173,7 +173,7 @@ namespace retroforge
     {
       const MetalSurface metal = metal_surface(scene.mesh, X);
       const double       edge = parameters.edge_length(scene.mesh), near = touching_distance(scene, X);
-      const Vec3        &lead = process.dies[process.leading_die].velocity;
+      const Vec3        &lead = process.leading_velocity();
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
       {
         if (!scene.dies[d].surface())
@@ -181,9 +181,10 @@ namespace retroforge
         // Metal is pressed against a die that stands.
         const bool   moves = process.dies[d].velocity.norm() > 0.;
         const Vec3   way   = moves ? process.dies[d].velocity : Vec3(-lead);
-        const double most  = path(parameters, process, moves ? d : process.leading_die).norm();
-        const auto   met   = moves ? approaches[d].meeting
-                                   : first_meeting(scene.dies[d], process.dies[d].displacement, way, metal, near);
+        const double most =
+          path(parameters, process, moves ? d : process.operations.front().leading_die).norm();
+        const auto met = moves ? approaches[d].meeting
+                               : first_meeting(scene.dies[d], process.dies[d].displacement, way, metal, near);
         if (!met || !(met->travel < most))
           continue;
         const double travel = met->travel + std::min(most - met->travel, 0.5 * edge);

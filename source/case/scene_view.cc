@@ -134,7 +134,7 @@ namespace retroforge
 
   void SceneView::lead(Parts &parts)
   {
-    const unsigned int die = parts.process.leading_die;
+    const unsigned int die = parts.process.operations.front().leading_die;
     parts.leading_die      = parts.parameters.dies[die].name;
     parts.seconds          = parts.process.time(parts.parameters.press.stroke);
     parts.path             = parts.seconds * parts.process.dies[die].velocity;

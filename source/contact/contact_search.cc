@@ -120,6 +120,8 @@ namespace retroforge
     };
     for (unsigned int d = 0; d < view.dies.size(); ++d)
     {
+      if (view.states[d].in_press == 0)
+        continue;
       const auto add = [&](const ContactPoint &point, const Seen &seen) {
         if (seen.delta <= reach)
           pairs.push_back({point, d, seen.delta <= ramp.width, seen.feature});

@@ -121,7 +121,7 @@ namespace retroforge
     const ReplicatedEntries &cells  = scene.discretization.cells();
     const std::vector<Die>  &dies   = case_.model.dies;
     const double             size   = volume(scene.mesh, state.workpiece.X, cells);
-    const auto               states = case_.process.at_stroke(state.stroke).dies;
+    const auto               states = case_.process.at_stroke(state.stroke, state.operation).dies;
     const Penetration        deepest =
       deepest_point(scene.mesh, scene.topology, dies, states, state.workpiece.X, case_.comm);
     if (!(deepest.depth <= deepest_.depth))
@@ -130,7 +130,7 @@ namespace retroforge
                   state.stroke,
                   {{deepest.place[0], deepest.place[1], deepest.place[2]}},
                   deepest.die == invalid_index ? "" : dies[deepest.die].name};
-    const unsigned int leading  = case_.nominal.leading_die;
+    const unsigned int leading  = case_.nominal.operations[state.operation].leading_die;
     const Vec3        &velocity = case_.nominal.dies[leading].velocity;
     const double       force    = event.record.forces[leading] * velocity / velocity.norm();
     const double       energy   = state.energy.total();

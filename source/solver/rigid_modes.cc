@@ -201,6 +201,8 @@ namespace retroforge
         resistance.resist(k, direction);
     for (unsigned int d = 0; d < scene.dies.size(); ++d)
     {
+      if (physics.dies[d].in_press == 0)
+        continue;
       const Vec3 &displacement = physics.dies[d].displacement;
       double      reach        = within.value_or(0.);
       if (!within)

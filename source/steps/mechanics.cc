@@ -12,8 +12,8 @@ namespace retroforge
                                          const Process<Number>           &process,
                                          const WorkpieceState<3, Number> &state,
                                          const IncrementRecord           &record)
-      : physics(process.at_stroke(record.stroke))
-      , dt(process.time(record.step))
+      : physics(process.over(place(record)))
+      , dt(process.duration(place(record)))
       , contact(make_contact_set<Number>(scene.view(physics.dies, state.X),
                                          record.pairs,
                                          {record.contact.ramp,
@@ -66,7 +66,8 @@ namespace retroforge
         watched[pair.die][pair.point.velocity_node] = true;
     // A point that was not watched must not have run into a die. Each rank looks at its own.
     const auto runs_into = [&](const unsigned int d, const ContactPoint &point) {
-      if (!nodes.owns(point.velocity_node) || watched[d][point.velocity_node])
+      if (!nodes.owns(point.velocity_node) || watched[d][point.velocity_node] ||
+          stage.physics.dies[d].in_press == 0)
         return false;
       const auto  &die = stage.physics.dies[d];
       const Vec3   u = point.velocity(W.V) - die.velocity, x = point.position(stage.X);
@@ -170,7 +171,7 @@ namespace retroforge
     Assert(record.step > 0., dealii::ExcMessage("an increment has a stroke"));
     Assert(!replay || record.solves.size() == scheme_of(record).n_stages(),
            dealii::ExcMessage("a replay obeys a record of each stage"));
-    const Physics<double> physics = process.at_stroke(record.stroke);
+    const Physics<double> physics = process.over(place(record));
     if (!replay)
     {
       record.scheme  = model_.scheme.name;
@@ -275,6 +276,6 @@ namespace retroforge
                                           const NodalVectors<double> &X_next,
                                           const IncrementRecord      &record) const
   {
-    return advanced(X_next, -process.time(record.step), scheme_of(record).b, record.solves);
+    return advanced(X_next, -process.duration(place(record)), scheme_of(record).b, record.solves);
   }
 } // namespace retroforge

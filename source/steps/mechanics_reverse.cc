@@ -158,8 +158,7 @@ namespace retroforge
         for (std::size_t c = 0; c < workpiece.strain.size(); ++c)
           workpiece.strain[c] += strain_bar[c];
       }
-      reverse_at_stroke(
-        process, {record.stroke, record.step}, record.contact.approach, physics, costates[j].process.part());
+      reverse_over(process, place(record), record.contact.approach, physics, costates[j].process.part());
     }
   }
 } // namespace retroforge

@@ -20,7 +20,7 @@ namespace retroforge
   {
   }
 
-  ForgingState Forging::start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0) const
+  ForgingState Forging::start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0)
   {
     Assert(leg != nullptr, dealii::ExcMessage("a run starts on a mesh"));
     AssertDimension(X_0.size(), leg->scene.mesh.n_nodes());
@@ -117,7 +117,7 @@ namespace retroforge
     const double repairable = remesher_.largest_repair() * state.volume - state.repaired;
     record.remesh           = remesher_.remesh(state.leg->scene.mesh,
                                      state.workpiece.X,
-                                     process.at_stroke(state.stroke).dies,
+                                     process.at_stroke(state.stroke, state.operation).dies,
                                      error_sizes(process, state),
                                      repairable,
                                      timings_);
@@ -129,7 +129,7 @@ namespace retroforge
                                  const IncrementRecord &record,
                                  const SolvedIncrement &solved,
                                  ForgingState          &state,
-                                 const Watch           &watch) const
+                                 const Observer        &observer) const
   {
     const NodalVectors<double> X_before = state.workpiece.X;
     if (process.material.depends_on_state())
@@ -158,8 +158,8 @@ namespace retroforge
     while (state.depth > 0 && limits_.allow(state.slip * whole / (1 << (state.depth - 1))) &&
            std::abs(done * (1 << (state.depth - 1)) - std::round(done * (1 << (state.depth - 1)))) < 1e-9)
       --state.depth;
-    if (watch)
-      watch({record, X_before, solved, state, process.time(state.stroke)});
+    if (observer)
+      observer({record, X_before, solved, state, process.time(state.stroke, state.operation)});
   }
 
   void Forging::change_numerics(std::optional<std::string> parameters, ForgingState &state)
@@ -172,10 +172,10 @@ namespace retroforge
 
   bool Forging::is_left(const ForgingState &state) const
   {
-    return state.stroke < press_.stroke - 1e-9 * whole();
+    return state.stroke < press_.stroke - 1e-9 * nominal_step();
   }
 
-  void Forging::run(const Process<double> &process, ForgingState &state, const Watch &watch) const
+  void Forging::run(const Process<double> &process, ForgingState &state, const Observer &observer) const
   {
     std::vector<bool> frozen;
     if (remesher_.enabled())
@@ -201,18 +201,20 @@ namespace retroforge
       const bool crossed = remesher_.enabled() && crosses(state);
       if (crossed && state.repaired >= remesher_.largest_repair() * state.volume)
         limits_.check_fold(state);
-      if (crossed || (remesher_.enabled() && (remesher_.due(state.leg->scene.mesh,
-                                                            state.workpiece.X,
-                                                            process.at_stroke(state.stroke).dies,
-                                                            frozen,
-                                                            since_remeshing(),
-                                                            state.increments == 0) ||
-                                              ask_for_other_sizes(error_sizes(process, state)))))
+      if (crossed ||
+          (remesher_.enabled() && (remesher_.due(state.leg->scene.mesh,
+                                                 state.workpiece.X,
+                                                 process.at_stroke(state.stroke, state.operation).dies,
+                                                 frozen,
+                                                 since_remeshing(),
+                                                 state.increments == 0) ||
+                                   ask_for_other_sizes(error_sizes(process, state)))))
         renew();
       if (crossed)
         limits_.check_fold(state);
+      record.operation  = state.operation;
       record.stroke     = state.stroke;
-      record.step       = std::min(whole() / (1 << state.depth), press_.stroke - state.stroke);
+      record.step       = std::min(nominal_step() / (1 << state.depth), press_.stroke - state.stroke);
       record.parameters = std::exchange(state.parameters, std::nullopt);
       SolvedIncrement solved;
       Guess           guess   = state.next;
@@ -238,27 +240,28 @@ namespace retroforge
           limits_.stop(process, state, record, refusal);
         }
       }
-      finish_increment(process, record, solved, state, watch);
+      finish_increment(process, record, solved, state, observer);
       limits_.check_progress(state);
       // With remeshing, the next increment begins with a repair.
       const bool last = !is_left(state);
-      if (remesher_.enabled() ? last && !remesher_.repairs(state.leg->scene.mesh,
-                                                           state.workpiece.X,
-                                                           process.at_stroke(state.stroke).dies)
-                              : last || state.increments % fold_interval == 0)
+      if (remesher_.enabled()
+            ? last && !remesher_.repairs(state.leg->scene.mesh,
+                                         state.workpiece.X,
+                                         process.at_stroke(state.stroke, state.operation).dies)
+            : last || state.increments % fold_interval == 0)
         limits_.check_fold(state);
     }
   }
 
   void Forging::restore(const Process<double> &process,
                         const unsigned int     n,
-                        const Source          &source,
+                        const RecordAccess    &access,
                         ForgingState          &state,
-                        const Watch           &watch) const
+                        const Observer        &observer) const
   {
     for (unsigned int i = 0; i < n; ++i)
     {
-      const IncrementRecord &record = source(i);
+      const IncrementRecord &record = access(i);
       if (record.parameters)
         change_numerics({}, state);
       if (record.remesh)
@@ -270,26 +273,26 @@ namespace retroforge
                        record,
                        state.leg->increment.mechanics.recorded(process, state.workpiece, record),
                        state,
-                       watch);
+                       observer);
     }
   }
 
   void Forging::replay(const Process<double> &process,
                        const unsigned int     n,
-                       const Source          &source,
+                       const RecordAccess    &access,
                        ForgingState          &state,
-                       const Watch           &watch) const
+                       const Observer        &observer) const
   {
     for (unsigned int i = 0; i < n; ++i)
     {
-      IncrementRecord record = source(i);
+      IncrementRecord record = access(i);
       record.newton = record.krylov = record.linear_solves = 0;
       if (record.remesh)
         change_mesh(*record.remesh, state);
       const Guess           guess = state.leg->increment.mechanics.recorded_guess(record);
       const SolvedIncrement solved =
         state.leg->increment.mechanics.forward(process, state.workpiece, true, guess, record);
-      finish_increment(process, record, solved, state, watch);
+      finish_increment(process, record, solved, state, observer);
     }
   }
 } // namespace retroforge

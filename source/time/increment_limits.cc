@@ -96,7 +96,7 @@ namespace retroforge
     for (const ContactPair &pair : record.pairs)
       if (pair.touching && pair.point.is_node())
         touches[pair.point.nodes[0]] = true;
-    const auto dies    = process.at_stroke(record.stroke + record.step).dies;
+    const auto dies    = process.at_stroke(record.stroke + record.step, record.operation).dies;
     double     surface = 0., touching = 0., inside = 0.;
     const auto is_touched = [&](const BoundaryFace &face) {
       return touches[face.nodes[0]] && touches[face.nodes[1]] && touches[face.nodes[2]];
@@ -118,7 +118,8 @@ namespace retroforge
         {
           double depth = 0.;
           for (unsigned int d = 0; d < scene.dies.size(); ++d)
-            depth = std::max(depth, scene.dies[d].depth_of(X[k], dies[d].displacement, within));
+            if (dies[d].in_press != 0)
+              depth = std::max(depth, scene.dies[d].depth_of(X[k], dies[d].displacement, within));
           inside += area / 3. * depth;
         }
       }
@@ -168,9 +169,9 @@ namespace retroforge
   {
     if (!remesher_.enabled())
       return {};
-    const auto      dies = process.at_stroke(record.stroke).dies;
+    const auto      dies = process.over(place(record)).dies;
     const SizeField size = remesher_.size_field(dies);
-    const double    time = process.time(record.step);
+    const double    time = process.duration(place(record));
     Slip            largest;
     for (const ContactPair &pair : record.pairs)
       if (pair.point.is_node() && model_.dies[pair.die].surface())
@@ -213,12 +214,12 @@ namespace retroforge
                                    const std::string     &what) const
   {
     const Scene             &scene   = state.leg->scene;
-    const Physics<double>    physics = process.at_stroke(stroke);
+    const Physics<double>    physics = process.at_stroke(stroke, state.operation);
     std::vector<std::string> touching;
     for (unsigned int d = 0; d < scene.dies.size(); ++d)
       if (touches(scene, state.workpiece.X, scene.dies[d], physics.dies[d].displacement))
         touching.push_back(scene.dies[d].name);
-    const Vec3 &way    = process.dies[process.leading_die].velocity;
+    const Vec3 &way    = process.leading_velocity(state.operation);
     const auto  planes = symmetry_planes(scene.mesh);
     const bool  is_held =
       touching.size() > 1 || std::any_of(planes.begin(), planes.end(), [&](const Plane &plane) {

@@ -15,7 +15,11 @@ namespace retroforge
   template <typename Number>
   PathRow<Number> row_of(const IncrementRecord &record, const Process<Number> &process)
   {
-    return {{}, process.time(record.step), process.time(record.stroke), record.stroke, record.step};
+    return {{},
+            process.duration(place(record)),
+            process.time(record.stroke, record.operation),
+            record.stroke,
+            record.step};
   }
 
   template PathRow<double> row_of(const IncrementRecord &, const Process<double> &);
@@ -61,7 +65,7 @@ namespace retroforge
   std::vector<double>
   ObjectiveTrace::values(const ForgingState &state, const bool decide, const bool complete) const
   {
-    const auto          dies = process_.at_stroke(state.stroke).dies;
+    const auto          dies = process_.at_stroke(state.stroke, state.operation).dies;
     std::vector<double> values;
     for (std::size_t j = 0; j < objectives_.size(); ++j)
       try
@@ -89,7 +93,7 @@ namespace retroforge
 
   std::vector<ObjectiveTrace::Diagnostics> ObjectiveTrace::diagnostics(const ForgingState &state) const
   {
-    const auto               dies = process_.at_stroke(state.stroke).dies;
+    const auto               dies = process_.at_stroke(state.stroke, state.operation).dies;
     std::vector<Diagnostics> diagnostics;
     for (const NamedObjective &objective : objectives_)
       if (objective.path)

@@ -205,7 +205,7 @@ namespace retroforge
               !size.below(middle, length / coarse))
             continue;
           for (unsigned int d = 0; d < dies_.size(); ++d)
-            if (near_die_[d])
+            if (near_die_[d] && states[d].in_press != 0)
               if (const DieFeature feature = dies_[d].closest(middle, states[d].displacement, 0.5 * length);
                   feature.found())
                 return true;
@@ -222,7 +222,7 @@ namespace retroforge
   {
     double deepest = 0.;
     for (unsigned int d = 0; d < dies_.size(); ++d)
-      if (dies_[d].surface())
+      if (dies_[d].surface() && states[d].in_press != 0)
       {
         const double      touching = 0.1 * parameters_.fit * element_size_;
         std::vector<bool> on_die(mesh.n_nodes(), false);
@@ -264,7 +264,7 @@ namespace retroforge
     return [this, states, errors = std::move(errors)](const Vec3 &x, const SizeQuestion &question) {
       double size = errors ? (*errors)(x) : element_size_;
       for (unsigned int d = 0; d < dies_.size() && size >= question.enough; ++d)
-        if (near_die_[d])
+        if (near_die_[d] && states[d].in_press != 0)
           size =
             (*near_die_[d])(x - states[d].displacement, {question.enough, std::min(size, question.most)});
       return size;
@@ -276,7 +276,8 @@ namespace retroforge
     return [this, &states](const Vec3 &x) {
       Vec3 moved = x;
       for (unsigned int d = 0; d < dies_.size(); ++d)
-        if (const DieFeature feature = dies_[d].closest(moved, states[d].displacement, 0.); feature.found())
+        if (const DieFeature feature = dies_[d].closest(moved, states[d].displacement, 0.);
+            feature.found() && states[d].in_press != 0)
         {
           const auto projection = dies_[d].project(moved, states[d].displacement, feature);
           if (projection.delta < 0. && dies_[d].surface())
@@ -292,7 +293,8 @@ namespace retroforge
       const double near = touching_distance * element_size_;
       for (unsigned int d = 0; d < dies_.size(); ++d)
         if (const DieFeature feature = dies_[d].closest(x, states[d].displacement, near);
-            feature.found() && dies_[d].project(x, states[d].displacement, feature).delta < near)
+            feature.found() && states[d].in_press != 0 &&
+            dies_[d].project(x, states[d].displacement, feature).delta < near)
           return true;
       return false;
     };

@@ -12,7 +12,7 @@ namespace retroforge
     const ForgingModel    &model;
     std::shared_ptr<Leg>   first; ///< the leg in which the run began
     const Process<double> &process;
-    Forging::Source        source;
+    Forging::RecordAccess  record;
     unsigned int           n; ///< increments
     const Objectives      &objectives;
     Timings               &timings;

@@ -21,12 +21,13 @@ namespace retroforge
     NodalVectors<Number> vertices = {};
     /// Which law of friction the coefficient is of (contact/interface_law.h); 0: Norton's.
     unsigned int interface_law = 0;
+    unsigned int in_press      = 1; ///< whether it stands in the press: 0 or 1
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[velocity, displacement, friction, vertices, interface_law] = self;
-      return std::tie(velocity, displacement, friction, vertices, interface_law);
+      auto &[velocity, displacement, friction, vertices, interface_law, in_press] = self;
+      return std::tie(velocity, displacement, friction, vertices, interface_law, in_press);
     }
   };
 

@@ -17,7 +17,7 @@
 /// largest value before they are summed.
 ///
 /// Backwards:  reverse_value() gives dPhi/d(a_i, dt_i, t_i) for all increments at once;  at increment i
-/// reverse_integrals() adds what follows from a_i, and dt_bar() is added to PhysicsBar::dt on one rank.
+/// reverse_integrals() adds what follows from a_i; what follows from dt_i and t_i the sweep adds once.
 namespace retroforge
 {
   /// One increment as objectives see it, the same on every rank.
@@ -33,13 +33,6 @@ namespace retroforge
 
   template <typename Number>
   using PathRows = std::vector<PathRow<Number>>;
-
-  /// Derivative in dt of what depends on dt and time: both are strokes over the one speed, so that
-  /// d time = stroke/step d dt.
-  inline double dt_bar(const PathRow<double> &row, const PathRow<double> &row_bar)
-  {
-    return row_bar.dt + row_bar.time * row.stroke / row.step;
-  }
 
   class PathObjective
   {

@@ -63,11 +63,11 @@ namespace retroforge
   /// Zero derivatives in the states of dies, their vertices included.
   std::vector<DieState<double>> no_derivatives(const std::vector<Die> &dies);
 
-  /// Derivatives of a scalar in what Physics holds, in the increment's times, and in the strain of each cell
-  /// at its start, of the cells this rank owns; empty: none.
+  /// Derivatives of a scalar in what Physics holds, in the increment's times (dt, approach time, and the time
+  /// at its start), and in the strain of each cell at its start, of the cells this rank owns; empty: none.
   struct PhysicsBar : Physics<double>
   {
-    double              dt = 0., tau = 0.;
+    double              dt = 0., tau = 0., time = 0.;
     std::vector<double> strain;
 
     explicit PhysicsBar(const std::vector<Die> &dies) { this->dies = no_derivatives(dies); }

@@ -132,7 +132,7 @@ namespace
 
   std::vector<Direction> directions(const Problem &problem)
   {
-    const NodalVectors<double> still(problem.forged.workpiece.X.size());
+    const NodalVectors<double> still(problem.state().workpiece.X.size());
     return {{"random X_0", random_vectors(still.size()), 0., 0., {}},
             {"speed", still, 1., 0., {}},
             {"offset", still, 0., 1., {}}};
@@ -154,7 +154,7 @@ namespace
     NodalVectors<double>                                             X = problem.scene.mesh.X;
     for (const IncrementRecord &record : problem.records)
     {
-      const auto states = problem.process.at_stroke(record.stroke).dies;
+      const auto states = problem.process().at_stroke(record.stroke).dies;
       for (unsigned int p = 0; p < record.pairs.size(); ++p)
         if (const ContactPair &pair = record.pairs[p]; record.solves.back().active[p])
         {
@@ -168,7 +168,7 @@ namespace
             problem.scene.dies[pair.die].project(pair.point.position(X), states[pair.die], pair.feature).n;
           pressed.tilt = std::max(pressed.tilt, std::acos(std::min(1., std::abs(n[2]))) * 180. / M_PI);
         }
-      X = problem.leg->increment.mechanics.recorded(problem.process, {X, {}}, record).X;
+      X = problem.first_leg().increment.mechanics.recorded(problem.process(), {X, {}}, record).X;
     }
     return pressed;
   }
@@ -181,7 +181,7 @@ namespace
               << ", on faces: " << some(pressed.faces)
               << ", on edges or vertices of a die: " << some(pressed.sharp)
               << ", changing feature: " << yes(pressed.changed > 0) << "\n  friction works: "
-              << yes(problem.forged.energy.friction > 1e-3 * problem.forged.energy.total())
+              << yes(problem.state().energy.friction > 1e-3 * problem.state().energy.total())
               << ", normals tilted by 15 degrees and more: " << yes(pressed.tilt > 15.) << "\n";
   }
 

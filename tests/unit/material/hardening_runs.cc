@@ -101,7 +101,7 @@ namespace
     harden(p);
     const RecordedRun run(p, {p.dies[0].die(), p.dies[1].die()}, {}, scheme);
     const double      by_hand = energy_by_hand(scheme, p, a), soft = energy_by_hand(scheme, p, 0.);
-    const double      error = relative_error(run.forged.energy.total(), by_hand);
+    const double      error = relative_error(run.state().energy.total(), by_hand);
     std::cout << "upsetting, " << element << ", " << scheme.name << ": increments " << run.records.size()
               << ", energy by hand within 1e-7: " << yes(error < 1e-7)
               << ", hardening adds a tenth or more: " << yes(by_hand > 1.1 * soft) << "\n";
@@ -131,12 +131,7 @@ namespace
   std::vector<double> values(const RecordedRun &run, const Way &way, const double t)
   {
     const auto [process, X] = at<double>(run, way, t);
-    ForgingState   state    = run.forging.start(run.leg, X);
-    ObjectiveTrace trace(run.objectives, run.model, process);
-    run.forging.replay(process, run.records.size(), run.source(), state, [&](const IncrementEvent &event) {
-      trace.add(event);
-    });
-    return trace.values(state, false);
+    return run.replayed_values(process, X);
   }
 
   double by_adjoint(const RecordedRun &run, const AdjointResult &bar, const Way &way)
@@ -170,7 +165,7 @@ namespace
   void check_way(RecordedRun &run, const Way &way, const std::vector<AdjointResult> &bars, Largest &largest)
   {
     const auto [process, X]                        = at<Dual>(run, way, 0.);
-    const auto                            tangents = tangent_sweep(run.recorded(), process, X);
+    const auto                            tangents = run.tangent(process, X);
     std::map<double, std::vector<double>> known;
     const auto                            value = [&](const std::size_t o, const double t) {
       if (known.count(t) == 0)
@@ -199,9 +194,8 @@ namespace
 
   void check_gradients(const std::string &name, const Parameters &p, const Meshes meshes)
   {
-    RecordedRun run(p, {p.dies[0].die(), p.dies[1].die()}, objectives(), {}, meshes);
-    run.trace.values(run.forged, true);
-    const auto sweep = adjoint_sweep(run.recorded(), run.trace.rows(), run.forged, each(run.objectives));
+    RecordedRun                run(p, {p.dies[0].die(), p.dies[1].die()}, objectives(), {}, meshes);
+    const auto                 sweep = run.sweep(each(run.objectives()));
     const NodalVectors<double> still(run.scene.mesh.n_nodes());
     const auto                 metal = [&](const std::string &number, const unsigned int i) {
       Way way{{number, still, 0., 0., {}}};
@@ -217,7 +211,7 @@ namespace
                            metal("a", 3),
                            metal("n", 4)})
       check_way(run, way, sweep.gradients, largest);
-    std::cout << name << ": meshes made anew: " << (run.forged.remeshed.empty() ? "none" : "some")
+    std::cout << name << ": meshes made anew: " << (run.state().remeshed.empty() ? "none" : "some")
               << ", direct method within 1e-10: " << yes(largest.tangent < 1e-10)
               << ", differences within 1e-6: " << yes(largest.difference < 1e-6)
               << ", remainders of second order: " << yes(largest.order < 0.1) << "\n";
