@@ -89,10 +89,10 @@ namespace retroforge
     }
   } // namespace
 
-  std::vector<char> hold_on_dies(const Stage<double> &stage, Field<double> &W, const ActiveSet &pressed)
+  std::vector<char> hold_on_dies(const Stage<double> &stage, Field<double> &W, const ActiveChoice &pressed)
   {
     const auto       &pairs = stage.contact.pairs;
-    std::vector<char> held  = pressed.empty() ? pressed_by_metal(stage, W) : pressed;
+    std::vector<char> held  = pressed.is_given() ? *pressed : pressed_by_metal(stage, W);
     for (unsigned int sweep = 0; sweep < sweeps; ++sweep)
       for (unsigned int p = 0; p < pairs.size(); ++p)
         if (pairs[p].point.has_own_velocity())

@@ -24,13 +24,13 @@ namespace retroforge
 
   void SaddleMatrix::assemble(const Stage<double> &stage,
                               const Field<double> &W,
-                              const ActiveSet     &active,
+                              const ActiveChoice  &active,
                               const Linearisation  linearisation)
   {
     Assert(&stage.scene == &scene_, ExcMessage("the stage is of another scene than the matrix"));
-    Assert(active.empty() || active.size() == stage.contact.pairs.size(),
-           ExcDimensionMismatch(active.size(), stage.contact.pairs.size()));
-    const ActiveSet chosen = active.empty() ? stage.decide_active(W) : active;
+    Assert(active.fits(stage.contact.pairs.size()),
+           ExcMessage("a choice of active contacts has an entry for each pair"));
+    const ActiveSet chosen = active.is_given() ? *active : stage.decide_active(W);
     system_.symmetric      = stage.has_potential();
     frames_                = make_frames(scene_, stage.contact, chosen);
     sums_->assemble(stage, W, linearisation);

@@ -20,12 +20,12 @@ namespace retroforge
     template <typename Number>
     void check_arguments([[maybe_unused]] const Stage<Number> &stage,
                          [[maybe_unused]] const Field<Number> &W,
-                         [[maybe_unused]] const ActiveSet     &active)
+                         [[maybe_unused]] const ActiveChoice  &active)
     {
       Assert(W.belongs_to(stage.scene.discretization),
              dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
-      Assert(active.empty() || active.size() == stage.contact.pairs.size(),
-             dealii::ExcDimensionMismatch(active.size(), stage.contact.pairs.size()));
+      Assert(active.fits(stage.contact.pairs.size()),
+             dealii::ExcMessage("a choice of active contacts has an entry for each pair"));
     }
 
     /// The same of derivatives: an entry for each that the stage depends on.
@@ -41,7 +41,7 @@ namespace retroforge
 
   template <typename Number>
   ContactNode<Number>
-  Stage<Number>::contact_node(const unsigned int p, const Field<Number> &W, const ActiveSet &active) const
+  Stage<Number>::contact_node(const unsigned int p, const Field<Number> &W, const ActiveChoice &active) const
   {
     AssertIndexRange(p, contact.pairs.size());
     check_arguments(*this, W, active);
@@ -57,7 +57,7 @@ namespace retroforge
     node.Sf            = areas.Sf[p];
     node.alpha         = die.friction;
     node.interface_law = die.interface_law;
-    node.active        = active.empty() ? value_of(approach_excess(node)) > 0. : active[p] != 0;
+    node.active        = active.is_given() ? (*active)[p] != 0 : value_of(approach_excess(node)) > 0.;
     return node;
   }
 
@@ -83,11 +83,11 @@ namespace retroforge
   }
 
   template <typename Number>
-  Field<Number> Stage<Number>::residual(const Field<Number> &W, const ActiveSet &active) const
+  Field<Number> Stage<Number>::residual(const Field<Number> &W, const ActiveChoice &active) const
   {
     check_arguments(*this, W, active);
     const Discretization<3> &discretization = scene.discretization;
-    const ActiveSet          chosen         = active.empty() ? decide_active(W) : active;
+    const ActiveSet          chosen         = active.is_given() ? *active : decide_active(W);
     Field<Number>            r(discretization);
     with_pair(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.visited_cells())
@@ -106,7 +106,7 @@ namespace retroforge
   }
 
   template <typename Number>
-  std::pair<Number, Number> Stage<Number>::power(const Field<Number> &W, const ActiveSet &active) const
+  std::pair<Number, Number> Stage<Number>::power(const Field<Number> &W, const ActiveChoice &active) const
   {
     check_arguments(*this, W, active);
     const Discretization<3>  &discretization = scene.discretization;

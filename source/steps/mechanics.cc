@@ -121,16 +121,16 @@ namespace retroforge
     {
       const NodalVectors<double> position = advanced(X, start.dt, scheme.a[s], solves);
       const Stage<double>        stage(scene_, start.physics, start.contact, position, start.strain);
-      const ActiveSet            frozen = replay ? record.solves[s].active : ActiveSet();
+      const ActiveChoice         frozen = replay ? ActiveChoice(record.solves[s].active) : ActiveChoice();
       const Start                known  = s == 0 ? guess.known : Start::near;
       guess.advance(s == 0 ? guess.ahead : record.step * (scheme.node(s) - scheme.node(s - 1)), W);
       const NewtonStatistics statistics =
-        newton_.solve(stage, W, frozen, known, s == 0 ? ActiveSet() : solves.back().active);
+        newton_.solve(stage, W, frozen, known, s == 0 ? ActiveChoice() : ActiveChoice(solves.back().active));
       record.newton += statistics.iterations;
       record.krylov += statistics.krylov;
       solves.push_back({W.V.complete(*scene_.discretization.condensed_nodes()),
                         W.P.complete(*scene_.discretization.pressure_nodes()),
-                        replay ? frozen : stage.decide_active(W)});
+                        replay ? *frozen : stage.decide_active(W)});
       if (scene_.discretization.middles())
         solves.back().vertices = motion(stage, W);
       lost = !replay && !all_found && contacts_missed(stage, W);
@@ -236,7 +236,7 @@ namespace retroforge
     return recorded(start_of(process, state, record), state.X, record);
   }
 
-  Field<double> Mechanics::rate(const IncrementRecord &record) const
+  std::optional<Field<double>> Mechanics::rate(const IncrementRecord &record) const
   {
     const Scheme &scheme = scheme_of(record);
     const double  stroke = record.step * (scheme.node(scheme.n_stages() - 1) - scheme.node(0));

@@ -32,11 +32,11 @@ namespace retroforge
     return state;
   }
 
-  Refusal Forging::attempt(const Process<double> &process,
-                           const ForgingState    &state,
-                           Guess                 &guess,
-                           IncrementRecord       &record,
-                           SolvedIncrement       &solved) const
+  std::optional<StepRejection> Forging::attempt(const Process<double> &process,
+                                                const ForgingState    &state,
+                                                Guess                 &guess,
+                                                IncrementRecord       &record,
+                                                SolvedIncrement       &solved) const
   {
     try
     {
@@ -44,7 +44,7 @@ namespace retroforge
     }
     catch (const NoEquilibrium &failure)
     {
-      return {failure.what()};
+      return StepRejection{failure.what()};
     }
     catch (const NoLinearSolution &)
     {
@@ -55,7 +55,7 @@ namespace retroforge
     guess.known       = Start::near;
     guess.ahead       = 0.;
     const auto timing = timings_.scope("checks");
-    return limits_.refusal(process, *state.leg, record, state.workpiece.X, solved.X);
+    return limits_.rejection(process, *state.leg, record, state.workpiece.X, solved.X);
   }
 
   namespace
@@ -82,9 +82,10 @@ namespace retroforge
     };
     auto workpiece = retroforge::change_mesh(before->scene.mesh, remesh, state.workpiece);
     state.left_behind.push_back(without_positions(std::exchange(state.workpiece, std::move(workpiece))));
-    state.leg       = std::make_shared<Leg>(remesh.mesh, model_, timings_);
-    state.next.W    = transferred(state.next.W);
-    state.next.rate = transferred(state.next.rate);
+    state.leg    = std::make_shared<Leg>(remesh.mesh, model_, timings_);
+    state.next.W = transferred(state.next.W);
+    if (state.next.rate)
+      state.next.rate = transferred(*state.next.rate);
     // Fields on the new mesh are shown, and measured, where an increment fails that began with it.
     const auto &discretization = state.leg->scene.discretization;
     state.solution             = LastSolution{state.next.W.V.complete(*discretization.condensed_nodes()),
@@ -221,23 +222,23 @@ namespace retroforge
       bool            is_full = false;
       for (;;)
       {
-        Refusal refusal = attempt(process, state, guess, record, solved);
-        if (refusal.reason.empty())
+        auto rejection = attempt(process, state, guess, record, solved);
+        if (!rejection)
           break;
-        is_full = refusal.is_full |= is_full;
-        if (refusal.of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0)
+        is_full = rejection->is_full |= is_full;
+        if (rejection->of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0)
         {
           renew();
           guess = state.next;
           continue;
         }
-        record.step = std::ldexp(record.step, -static_cast<int>(refusal.halvings));
-        record.cuts += refusal.halvings;
+        record.step = std::ldexp(record.step, -static_cast<int>(rejection->halvings));
+        record.cuts += rejection->halvings;
         if (limits_.too_short(record.step))
         {
           // A fold that is closing is the true reason.
           limits_.check_fold(state);
-          limits_.stop(process, state, record, refusal);
+          limits_.stop(process, state, record, *rejection);
         }
       }
       finish_increment(process, record, solved, state, observer);

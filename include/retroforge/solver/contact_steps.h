@@ -17,9 +17,10 @@ namespace retroforge
   /// Makes a velocity field from elsewhere (an earlier increment, another mesh) respect the dies: the normal
   /// velocity of nodes that would go through one, or that are pressed against it, becomes the die's.
   /// Then the residual is the metal's, and not that of a normal that turned, times a penalty.
-  /// @param pressed  of each pair, whether it is; empty: where the metal presses when no node is held
+  /// @param pressed  which pairs are; else those where the metal presses when no node is held
   /// @return of each pair, whether its node was put onto its die
-  std::vector<char> hold_on_dies(const Stage<double> &stage, Field<double> &W, const ActiveSet &pressed = {});
+  std::vector<char>
+  hold_on_dies(const Stage<double> &stage, Field<double> &W, const ActiveChoice &pressed = {});
 
   /// Lets the nodes that were put onto dies sink in as far as the metal presses them: without that, the
   /// forces of the dies were missing from the residual, and a step of Newton's method would find them.

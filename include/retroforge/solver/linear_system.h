@@ -15,7 +15,7 @@ namespace retroforge
     /// Matrix of `stage` at W; velocities fixed by symmetry are eliminated.
     void assemble(const Stage<double> &stage,
                   const Field<double> &W,
-                  const ActiveSet     &active,
+                  const ActiveChoice  &active,
                   Linearisation        linearisation = Linearisation::newton);
 
     /// Solution of the uncondensed system, or of the transposed one, for the right-hand side rhs (owned

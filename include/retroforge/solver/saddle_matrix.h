@@ -40,7 +40,7 @@ namespace retroforge
     /// Matrix of `stage` at W; velocities fixed by symmetry are eliminated.
     void assemble(const Stage<double> &stage,
                   const Field<double> &W,
-                  const ActiveSet     &active,
+                  const ActiveChoice  &active,
                   Linearisation        linearisation);
 
     const SaddleSystem &system() const { return system_; }

@@ -62,13 +62,14 @@ namespace retroforge
     void change_mesh(const RemeshRecord &remesh, ForgingState &state) const;
 
   private:
-    /// Solves an increment of record.step. @param guess  out: what was found, for a shorter increment
-    Refusal attempt(const Process<double> &process,
-                    const ForgingState    &state,
-                    Guess                 &guess,
-                    IncrementRecord       &record,
-                    SolvedIncrement       &solved) const;
-    void    remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
+    /// Solves an increment of record.step, and returns why it is rejected, if it is.
+    /// @param guess  out: what was found, for a shorter increment
+    std::optional<StepRejection> attempt(const Process<double> &process,
+                                         const ForgingState    &state,
+                                         Guess                 &guess,
+                                         IncrementRecord       &record,
+                                         SolvedIncrement       &solved) const;
+    void remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
     /// What the last solution's errors ask for; empty where sizes do not follow them, or nothing is solved.
     std::optional<OptimalSizes> error_sizes(const Process<double> &process, const ForgingState &state) const;
     /// Takes the state to the increment's end, and tells `observer`.
