@@ -32,8 +32,8 @@ namespace retroforge
     /// Derivatives of one scalar that an increment collects from its stages.
     struct IncrementBar
     {
-      ContactSetBar       contact;
-      RankSum<PhysicsBar> physics;
+      RankSum<ContactSetBar> contact;
+      RankSum<PhysicsBar>    physics;
       /// In the positions of each stage: of those that follow the one that is reversed.
       std::vector<NodalVectors<double>> Y;
     };
@@ -87,7 +87,7 @@ namespace retroforge
     const auto                    shared = start_of(process, state, record);
     const IncrementStart<double> &start  = *shared;
     std::vector<IncrementBar>     bars(costates.size(),
-                                   {ContactSetBar(record.pairs.size()),
+                                   {{ContactSetBar(record.pairs.size()), comm},
                                         {PhysicsBar(scene_.dies), comm},
                                         std::vector<NodalVectors<double>>(n)});
     earlier_lambdas_.resize(n);
@@ -108,7 +108,7 @@ namespace retroforge
         PhysicsBar                   &physics = bar.physics.part();
         RankSum<NodalVectors<double>> position_bar(NodalVectors<double>(X.size()), comm);
         Field<double>                 rhs(scene_.discretization);
-        StageBar   stage_bar{rhs, position_bar.part(), bar.contact, physics, model_.shape_derivatives};
+        StageBar   stage_bar{rhs, position_bar.part(), bar.contact.part(), physics, model_.shape_derivatives};
         const auto led_to = led_to_by(scheme, s, costates[j].workpiece.X, bar);
         bar.physics.add_once([&](PhysicsBar &part) {
           for (const auto &[weight, there] : led_to)
@@ -123,7 +123,7 @@ namespace retroforge
         for (const auto &[weight, there] : led_to)
           for (std::size_t k = 0; k < X.size(); ++k)
             motion_bar[k] += weight * start.dt * (*there)[k];
-        reverse_motion(at->stage, at->W, motion_bar, stage_bar);
+        reverse_motion(at->stage, at->W, motion_bar, rhs, position_bar, bar.contact);
         Field<double> minus_rhs(scene_.discretization), lambda;
         minus_rhs.add(-1., rhs);
         auto        &guesses = earlier_lambdas_[s][j];
@@ -138,7 +138,7 @@ namespace retroforge
           reverse_contact_set(scene_.view(start.physics.dies, X),
                               start.contact,
                               record.contact.ramp,
-                              bar.contact,
+                              bar.contact.part(),
                               position_bar.part(),
                               physics.dies);
         bar.Y[s] = position_bar.complete();
