@@ -21,20 +21,15 @@ namespace retroforge
         to[k] += weight * from[k];
     }
 
-    /// Derivatives of an objective of the end, complete but for the process.
-    FinalBar
-    reverse_at_end(const RecordedForging &run, const ForgingState &end, const FinalObjective &objective)
+    /// Derivatives of objective o, one of the end.
+    FinalBar reverse_at_end(const RecordedForging &run, const ForgingState &end, const std::size_t o)
     {
-      const MPI_Comm comm      = run.model.comm;
-      const auto     dies      = run.process.at_stroke(end.stroke).dies;
-      const auto     view      = final_view(objective, end.leg->scene, end.X, end.strain, dies);
-      const auto     integrals = sum_over_ranks(objective.integrals(view), comm);
-      const auto     d         = objective.target_die();
-      FinalBar bar(end.leg->scene, d == invalid_index ? 0 : run.model.dies[d].surface()->vertices().size());
-      objective.reverse_integrals(view, objective.reverse_value(integrals), bar);
-      MPI_Allreduce(MPI_IN_PLACE, bar.X.data()->begin_raw(), 3 * bar.X.size(), MPI_DOUBLE, MPI_SUM, comm);
-      bar.q = sum_over_ranks(std::move(bar.q), comm);
-      return bar;
+      const FinalObjective &objective = *run.objectives[o].at_end;
+      const FinalDecisions &decisions = run.traced.decisions[o];
+      const auto            dies      = run.process.at_stroke(end.stroke).dies;
+      const auto            view      = final_view(objective, end.leg->scene, end.X, end.strain, dies);
+      const auto            integrals = objective.integrals(view, decisions).complete();
+      return objective.derivatives(view, decisions, objective.reverse_value(integrals, decisions)).complete();
     }
 
     bool is_zero(const std::vector<double> &x)
@@ -54,7 +49,7 @@ namespace retroforge
       {
         if (!run.objectives[o].at_end)
           continue;
-        const FinalBar bar        = reverse_at_end(run, end, *run.objectives[o].at_end);
+        const FinalBar bar        = reverse_at_end(run, end, o);
         const bool     has_strain = !is_zero(bar.q);
         for (std::size_t j = 0; j < costates.size(); ++j)
         {
@@ -74,7 +69,8 @@ namespace retroforge
             physics_bar.dies[d].displacement = weight * bar.dies[d].displacement;
             add(weight, bar.dies[d].vertices, physics_bar.dies[d].vertices);
           }
-          reverse_at_stroke(run.process, {end.stroke, 0.}, 0., physics_bar, costates[j].process);
+          if (is_first(run.model.comm)) // those of the process are summed over the ranks
+            reverse_at_stroke(run.process, {end.stroke, 0.}, 0., physics_bar, costates[j].process);
         }
       }
       return costates;
@@ -82,12 +78,11 @@ namespace retroforge
 
     /// What objectives of the path give to increment i.
     StageSource source_of(const RecordedForging               &run,
-                          const std::vector<PathRows<double>> &rows,
                           const std::vector<PathRows<double>> &rows_bar,
                           const std::vector<Combination>      &combinations,
                           const unsigned int                   i)
     {
-      return [&run, &rows, &rows_bar, &combinations, i](
+      return [&run, &rows_bar, &combinations, i](
                const std::size_t j, const StageView<double> &view, StageBar &bar) {
         for (std::size_t o = 0; o < run.objectives.size(); ++o)
         {
@@ -99,7 +94,7 @@ namespace retroforge
             w *= weight;
           run.objectives[o].path->reverse_integrals(view, weights, bar);
           if (is_first(run.model.comm))
-            bar.physics.dt += weight * dt_bar(rows[o][i], rows_bar[o][i]);
+            bar.physics.dt += weight * dt_bar(run.traced.rows[o][i], rows_bar[o][i]);
         }
       };
     }
@@ -132,13 +127,14 @@ namespace retroforge
     }
   } // namespace
 
-  AdjointSweep adjoint_sweep(const RecordedForging               &run,
-                             const std::vector<PathRows<double>> &rows,
-                             const ForgingState                  &end,
-                             const std::vector<Combination>      &combinations)
+  AdjointSweep adjoint_sweep(const RecordedForging          &run,
+                             const ForgingState             &end,
+                             const std::vector<Combination> &combinations)
   {
+    const std::vector<PathRows<double>> &rows = run.traced.rows;
     AssertDimension(end.increments, run.n);
     AssertDimension(rows.size(), run.objectives.size());
+    AssertDimension(run.traced.decisions.size(), run.objectives.size());
     Assert(std::all_of(combinations.begin(),
                        combinations.end(),
                        [&](const Combination &of) { return of.weights.size() == run.objectives.size(); }),
@@ -161,12 +157,8 @@ namespace retroforge
       const IncrementRecord &record = run.source(i);
       const unsigned int     before = leg->system.n_solves;
       X                             = leg->increment.retreat(run.process, X, record);
-      leg->increment.reverse(run.process,
-                             X,
-                             strain_at_start(end, i),
-                             record,
-                             source_of(run, rows, rows_bar, combinations, i),
-                             costates);
+      leg->increment.reverse(
+        run.process, X, strain_at_start(end, i), record, source_of(run, rows_bar, combinations, i), costates);
       sweep.linear_solves += leg->system.n_solves - before;
       if (record.remesh)
       {
@@ -230,7 +222,8 @@ namespace retroforge
       {
         const FinalObjective &objective = *run.objectives[o].at_end;
         const auto            view      = final_view(objective, leg->scene, X, strain, dies);
-        values.push_back(objective.value(sum_over_ranks(objective.integrals(view), run.model.comm)));
+        const FinalDecisions &decisions = run.traced.decisions[o];
+        values.push_back(objective.value(objective.integrals(view, decisions).complete(), decisions));
       }
     return values;
   }

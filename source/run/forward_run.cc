@@ -48,7 +48,7 @@ namespace retroforge
       , model_(first_model(forging_case, process))
       , process_(std::move(process))
       , objectives_(forging_case.parameters.make_objectives(model_.dies, forging_case.billet))
-      , trace_(objectives_, model_, process_)
+      , trace_(objectives_, process_)
       , first_leg_(std::make_shared<Leg>(forging_case.billet, model_, timings_))
       , keep_(keep)
       , recording_("", keep == Keep::increments)
@@ -86,7 +86,8 @@ namespace retroforge
 
   std::vector<double> ForwardRun::values()
   {
-    std::vector<double> values = trace_.values(state_, true);
+    trace_.decide(state_);
+    const std::vector<double> values = trace_.values(state_);
     for (std::size_t j = 0; j < values.size(); ++j)
       if (!std::isfinite(values[j]))
         throw Error("Objective " + objectives_[j].name,
@@ -113,8 +114,14 @@ namespace retroforge
   {
     AssertThrow(keep_ == Keep::increments,
                 dealii::ExcMessage("a run is swept back whose increments are not kept"));
-    const RecordedForging recorded{
-      model_, first_leg_, process_, recording_.source(), state_.increments, objectives_, timings_};
-    return adjoint_sweep(recorded, trace_.rows(), state_, combinations);
+    const RecordedForging recorded{model_,
+                                   first_leg_,
+                                   process_,
+                                   recording_.source(),
+                                   state_.increments,
+                                   objectives_,
+                                   trace_.recorded(),
+                                   timings_};
+    return adjoint_sweep(recorded, state_, combinations);
   }
 } // namespace retroforge

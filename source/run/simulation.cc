@@ -77,7 +77,7 @@ namespace retroforge
       , first_leg_(std::make_shared<Leg>(case_.billet, case_.model, timings_))
       , remesher_(case_.remesher(case_.parameters, case_.model.dies))
       , forging_(case_.model, case_.parameters.press, remesher_, timings_)
-      , trace_(case_.objectives, case_.model, case_.process)
+      , trace_(case_.objectives, case_.process)
       , recording_(command.output_directory, kept_in_memory(case_))
       , warnings_(check_scene(case_.parameters, first_leg_->scene, case_.process, case_.X_0))
   {
@@ -229,7 +229,8 @@ namespace retroforge
     if (root_)
       set_interrupt_message(resume_hint(case_));
     forge_on();
-    values_ = trace_.values(forged_, true);
+    trace_.decide(forged_);
+    values_ = trace_.values(forged_);
     {
       const auto timing = timings_.scope("record");
       recording_.finish();
@@ -320,6 +321,7 @@ namespace retroforge
             recording_.source(),
             forged_.increments,
             case_.objectives,
+            trace_.recorded(),
             timings_};
   }
 
@@ -349,7 +351,7 @@ namespace retroforge
 
   void Simulation::sweep_back()
   {
-    const AdjointSweep sweep       = adjoint_sweep(recorded(), trace_.rows(), forged_, case_.combinations);
+    const AdjointSweep sweep       = adjoint_sweep(recorded(), forged_, case_.combinations);
     summary_.linear_solves_adjoint = sweep.linear_solves;
     for (std::size_t j = 0; j < sensitivities_.size(); ++j)
     {

@@ -21,11 +21,11 @@ namespace retroforge
     differences.replayed = [&forging_case, &forging, recorded](const std::vector<double> &mu,
                                                                const ShapePerturbation   &shift) {
       const Process<double> process = process_at(forging_case, mu, shift);
-      ObjectiveTrace        trace(forging_case.objectives, forging_case.model, process);
+      ObjectiveTrace        trace(forging_case.objectives, process, recorded.traced.decisions);
       ForgingState          state = forging.start(recorded.first, positions_at(forging_case, mu, shift));
       forging.replay(
         process, recorded.n, recorded.source, state, [&](const IncrementEvent &event) { trace.add(event); });
-      return forging_case.combine(trace.values(state, false));
+      return forging_case.combine(trace.values(state));
     };
     differences.tangent = [&forging_case, recorded](const std::vector<double> &mu_dot,
                                                     const ShapePerturbation   &shift_dot) {

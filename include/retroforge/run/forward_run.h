@@ -35,8 +35,8 @@ namespace retroforge
     /// Returns the values of the objectives, after forge().  @throws Error  for one that is not finite
     std::vector<double> values();
 
-    /// Returns what is reported beside each of them. Collective.
-    std::vector<ObjectiveTrace::Diagnostics> diagnostics() const { return trace_.diagnostics(state_); }
+    /// Returns them with what is reported beside each, after values(). Collective.
+    std::vector<ObjectiveTrace::Evaluation> evaluations() const { return trace_.evaluate(state_); }
 
     /// Goes back through the increments, which must be kept, after values().
     AdjointSweep sweep(const std::vector<Combination> &combinations);

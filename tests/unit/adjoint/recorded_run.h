@@ -69,12 +69,13 @@ namespace retroforge
         , forging(model, parameters.press, remesher, timings)
         , forged(forging.start(leg, scene.mesh.X))
         , objectives(given.empty() ? all.make_objectives(model.dies, scene.mesh) : std::move(given))
-        , trace(objectives, model, process)
+        , trace(objectives, process)
     {
       forging.run(process, forged, [&](const IncrementEvent &event) {
         records.push_back(event.record);
         trace.add(event);
       });
+      trace.decide(forged);
     }
 
     static StepModel step_model(const Parameters &parameters, const std::optional<Scheme> &scheme)
@@ -101,14 +102,18 @@ namespace retroforge
 
     RecordedForging recorded()
     {
-      return {model, leg, process, source(), static_cast<unsigned int>(records.size()), objectives, timings};
+      return {model,
+              leg,
+              process,
+              source(),
+              static_cast<unsigned int>(records.size()),
+              objectives,
+              trace.recorded(),
+              timings};
     }
 
     /// Of the first objective.
-    AdjointResult adjoint()
-    {
-      return adjoint_sweep(recorded(), trace.rows(), forged, each(objectives)).of[0];
-    }
+    AdjointResult adjoint() { return adjoint_sweep(recorded(), forged, each(objectives)).of[0]; }
 
     double tangent(const Process<Dual> &along, const NodalVectors<Dual> &X)
     {

@@ -132,11 +132,11 @@ namespace
   {
     const auto [process, X] = at<double>(run, way, t);
     ForgingState   state    = run.forging.start(run.leg, X);
-    ObjectiveTrace trace(run.objectives, run.model, process);
+    ObjectiveTrace trace(run.objectives, process, run.trace.recorded().decisions);
     run.forging.replay(process, run.records.size(), run.source(), state, [&](const IncrementEvent &event) {
       trace.add(event);
     });
-    return trace.values(state, false);
+    return trace.values(state);
   }
 
   double by_adjoint(const RecordedRun &run, const AdjointResult &bar, const Way &way)
@@ -199,9 +199,8 @@ namespace
 
   void check_gradients(const std::string &name, const Parameters &p, const Meshes meshes)
   {
-    RecordedRun run(p, {p.dies[0].die(), p.dies[1].die()}, objectives(), {}, meshes);
-    run.trace.values(run.forged, true);
-    const auto sweep = adjoint_sweep(run.recorded(), run.trace.rows(), run.forged, each(run.objectives));
+    RecordedRun                run(p, {p.dies[0].die(), p.dies[1].die()}, objectives(), {}, meshes);
+    const auto                 sweep = adjoint_sweep(run.recorded(), run.forged, each(run.objectives));
     const NodalVectors<double> still(run.scene.mesh.n_nodes());
     const auto                 metal = [&](const std::string &number, const unsigned int i) {
       Way way{{number, still, 0., 0., {}}};

@@ -68,10 +68,10 @@ std::vector<double>
 replayed(const RecordedRun &run, const Process<double> &process, const NodalVectors<double> &X_0)
 {
   ForgingState   state = run.forging.start(run.leg, X_0);
-  ObjectiveTrace trace(run.objectives, run.model, process);
+  ObjectiveTrace trace(run.objectives, process, run.trace.recorded().decisions);
   run.forging.replay(
     process, run.records.size(), run.source(), state, [&](const IncrementEvent &event) { trace.add(event); });
-  return trace.values(state, false);
+  return trace.values(state);
 }
 
 /// Central differences of all objectives, of fourth order: what cancels is far below what is left out.
@@ -107,9 +107,8 @@ int main(int argc, char **argv)
   const Parameters                         parameters = tilted_block();
   const unsigned int                       upper      = 1;
   RecordedRun run(parameters, {parameters.dies[0].die(), parameters.dies[1].die()}, all_objectives(upper));
-  run.trace.values(run.forged, true); // those of the end choose their features
-  const auto sweep   = adjoint_sweep(run.recorded(), run.trace.rows(), run.forged, each(run.objectives));
-  const auto tangent = tangent_in_speed(run);
+  const auto  sweep   = adjoint_sweep(run.recorded(), run.forged, each(run.objectives));
+  const auto  tangent = tangent_in_speed(run);
 
   Random               random;
   NodalVectors<double> X_dot(run.forged.X.size());

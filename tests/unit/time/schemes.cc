@@ -101,11 +101,11 @@ namespace
   {
     const auto [process, X] = along<double>(run, direction, t);
     ForgingState   state    = run.forging.start(run.leg, X);
-    ObjectiveTrace trace(run.objectives, run.model, process);
+    ObjectiveTrace trace(run.objectives, process, run.trace.recorded().decisions);
     run.forging.replay(process, run.records.size(), run.source(), state, [&](const IncrementEvent &event) {
       trace.add(event);
     });
-    return trace.values(state, false);
+    return trace.values(state);
   }
 
   void judge(const std::string &what, const double found, const double bar)
@@ -120,8 +120,7 @@ namespace
   {
     const Parameters parameters = tilted_block();
     RecordedRun run(parameters, {parameters.dies[0].die(), parameters.dies[1].die()}, objectives(), kutta);
-    run.trace.values(run.forged, true);
-    const auto sweep = adjoint_sweep(run.recorded(), run.trace.rows(), run.forged, each(run.objectives));
+    const auto  sweep = adjoint_sweep(run.recorded(), run.forged, each(run.objectives));
     const NodalVectors<double> still(run.forged.X.size());
     const double               h = 1e-5;
     for (const Direction &direction : {Direction{"nodes", random_vectors(run.forged.X.size()), 0., 0., {}},
