@@ -15,20 +15,15 @@ namespace retroforge
         to[k] += weight * from[k];
     }
 
-    /// Derivatives of an objective of the end, complete but for the process.
-    FinalBar
-    reverse_at_end(const RecordedForging &run, const ForgingState &end, const FinalObjective &objective)
+    /// Derivatives of objective o, one of the end.
+    FinalBar reverse_at_end(const RecordedForging &run, const ForgingState &end, const std::size_t o)
     {
-      const MPI_Comm comm = run.model.comm;
-      const auto     dies = run.process.at_stroke(end.stroke, end.operation).dies;
+      const FinalObjective &objective = *run.objectives[o].at_end;
+      const FinalDecisions &decisions = run.traced.decisions[o];
+      const auto            dies      = run.process.at_stroke(end.stroke, end.operation).dies;
       const auto view = final_view(objective, end.leg->scene, end.workpiece.X, end.workpiece.strain, dies);
-      const auto integrals = sum_over_ranks(objective.integrals(view), comm);
-      const auto d         = objective.target_die();
-      FinalBar   bar(end.leg->scene, d == invalid_index ? 0 : run.model.dies[d].surface()->vertices().size());
-      objective.reverse_integrals(view, objective.reverse_value(integrals), bar);
-      MPI_Allreduce(MPI_IN_PLACE, bar.X.data()->begin_raw(), 3 * bar.X.size(), MPI_DOUBLE, MPI_SUM, comm);
-      bar.q = sum_over_ranks(std::move(bar.q), comm);
-      return bar;
+      const auto integrals = objective.integrals(view, decisions).complete();
+      return objective.derivatives(view, decisions, objective.reverse_value(integrals, decisions)).complete();
     }
 
     /// The costates of the workpiece at the end of the run.
@@ -43,7 +38,7 @@ namespace retroforge
       {
         if (!run.objectives[o].at_end)
           continue;
-        const FinalBar bar = reverse_at_end(run, end, *run.objectives[o].at_end);
+        const FinalBar bar = reverse_at_end(run, end, o);
         for (std::size_t j = 0; j < costates.size(); ++j)
         {
           const double weight = combinations[j].weights[o];
@@ -60,8 +55,9 @@ namespace retroforge
             physics_bar.dies[d].displacement = weight * bar.dies[d].displacement;
             add(weight, bar.dies[d].vertices, physics_bar.dies[d].vertices);
           }
-          reverse_over(
-            run.process, {end.stroke, 0., end.operation}, 0., physics_bar, costates[j].process.part());
+          costates[j].process.add_once([&](Process<double> &part) {
+            reverse_over(run.process, {end.stroke, 0., end.operation}, 0., physics_bar, part);
+          });
         }
       }
       return costates;
@@ -93,6 +89,7 @@ namespace retroforge
                        const std::vector<PathRows<double>> &rows_bar,
                        const Combination                   &combination,
                        const unsigned int                   i,
+                       const IncrementRecord               &record,
                        Costate                             &costate)
     {
       PhysicsBar bar(run.model.dies);
@@ -104,17 +101,18 @@ namespace retroforge
         }
       if (bar.dt != 0. || bar.time != 0.)
         costate.process.add_once(
-          [&](Process<double> &part) { reverse_over(run.process, place(run.record(i)), 0., bar, part); });
+          [&](Process<double> &part) { reverse_over(run.process, place(record), 0., bar, part); });
     }
   } // namespace
 
-  AdjointSweep adjoint_sweep(const RecordedForging               &run,
-                             const std::vector<PathRows<double>> &rows,
-                             const ForgingState                  &end,
-                             const std::vector<Combination>      &combinations)
+  AdjointSweep adjoint_sweep(const RecordedForging          &run,
+                             const ForgingState             &end,
+                             const std::vector<Combination> &combinations)
   {
+    const std::vector<PathRows<double>> &rows = run.traced.rows;
     AssertDimension(end.increments, run.n);
     AssertDimension(rows.size(), run.objectives.size());
+    AssertDimension(run.traced.decisions.size(), run.objectives.size());
     Assert(std::all_of(combinations.begin(),
                        combinations.end(),
                        [&](const Combination &of) { return of.weights.size() == run.objectives.size(); }),
@@ -142,7 +140,7 @@ namespace retroforge
       state.X = X;
       leg->increment.reverse(run.process, state, record, source_of(run, rows_bar, combinations, i), costates);
       for (std::size_t j = 0; j < costates.size(); ++j)
-        reverse_times(run, rows_bar, combinations[j], i, costates[j]);
+        reverse_times(run, rows_bar, combinations[j], i, record, costates[j]);
       sweep.linear_solves += leg->system.n_solves - before;
       if (record.remesh)
       {
@@ -202,7 +200,8 @@ namespace retroforge
       {
         const FinalObjective &objective = *run.objectives[o].at_end;
         const auto            view      = final_view(objective, leg->scene, state.X, state.strain, dies);
-        values.push_back(objective.value(sum_over_ranks(objective.integrals(view), run.model.comm)));
+        const FinalDecisions &decisions = run.traced.decisions[o];
+        values.push_back(objective.value(objective.integrals(view, decisions).complete(), decisions));
       }
     return values;
   }

@@ -269,8 +269,8 @@ namespace retroforge
     if (name == "best" && scenario == 0)
     {
       results_.details.clear();
-      for (const ObjectiveTrace::Diagnostics &diagnostics : run.diagnostics()) // by all ranks of the group
-        results_.details.push_back(diagnostics.details);
+      for (const ObjectiveTrace::Evaluation &evaluation : run.evaluations()) // by all ranks of the group
+        results_.details.push_back(evaluation.details);
     }
     if (!writes)
       return;

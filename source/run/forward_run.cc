@@ -95,7 +95,7 @@ namespace retroforge
       : problem_(std::move(problem))
       , timings_(timings)
       , first_leg_(std::make_shared<Leg>(*problem_.billet, problem_.model, timings_))
-      , trace_(problem_.objectives, problem_.model, problem_.process)
+      , trace_(problem_.objectives, problem_.process)
       , can_go_back_(keep == Keep::increments || !directory.empty())
       , recording_(directory, keep == Keep::increments)
       , state_(Forging::start(first_leg_, problem_.X_0))
@@ -165,7 +165,8 @@ namespace retroforge
 
   std::vector<double> ForwardRun::values()
   {
-    std::vector<double> values = trace_.values(state_, true);
+    trace_.decide(state_);
+    const std::vector<double> values = trace_.values(state_);
     for (std::size_t j = 0; j < values.size(); ++j)
       if (!std::isfinite(values[j]))
         throw Error("Objective " + problem_.objectives[j].name,
@@ -201,12 +202,13 @@ namespace retroforge
             recording_.access(),
             state_.increments,
             problem_.objectives,
+            trace_.recorded(),
             timings_};
   }
 
   AdjointSweep ForwardRun::sweep(const std::vector<Combination> &combinations) const
   {
-    return adjoint_sweep(recorded(), trace_.rows(), state_, combinations);
+    return adjoint_sweep(recorded(), state_, combinations);
   }
 
   std::vector<Dual> ForwardRun::tangent(const Process<Dual> &process, NodalVectors<Dual> X_0) const
@@ -226,8 +228,8 @@ namespace retroforge
   std::vector<double> ForwardRun::replayed_values(const Process<double>      &process,
                                                   const NodalVectors<double> &X_0) const
   {
-    ObjectiveTrace     trace(problem_.objectives, problem_.model, process);
+    ObjectiveTrace     trace(problem_.objectives, process, trace_.recorded().decisions);
     const ForgingState state = replay(process, X_0, [&](const IncrementEvent &event) { trace.add(event); });
-    return trace.values(state, false);
+    return trace.values(state);
   }
 } // namespace retroforge

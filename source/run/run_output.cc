@@ -87,14 +87,13 @@ namespace retroforge
   {
     const auto              timing      = timings_.scope("objectives");
     const Objectives       &objectives  = case_.objectives;
-    const auto              values      = trace_.values(state, true, false);
-    const auto              diagnostics = trace_.diagnostics(state);
+    const auto              evaluations = trace_.evaluate_so_far(state);
     std::vector<NamedValue> columns;
     for (std::size_t j = 0; j < objectives.size(); ++j)
     {
       const std::string unit = " [" + objectives[j].unit() + "]";
-      columns.emplace_back(objectives[j].name + unit, values[j]);
-      for (const auto *numbers : {&diagnostics[j].parts, &diagnostics[j].details})
+      columns.emplace_back(objectives[j].name + unit, evaluations[j].value);
+      for (const auto *numbers : {&evaluations[j].parts, &evaluations[j].details})
         for (const auto &[name, value] : *numbers)
           columns.emplace_back(objectives[j].name + ": " + name + unit, value);
     }

@@ -69,14 +69,14 @@ namespace retroforge
                             const std::vector<double> &values,
                             Summary                   &summary)
   {
-    const auto diagnostics = trace.diagnostics(forged);
+    const auto evaluations = trace.evaluate(forged);
     for (std::size_t o = 0; o < forging_case.objectives.size(); ++o)
       summary.objectives.push_back(
         {forging_case.objectives[o].name,
          values[o],
          forging_case.objectives[o].unit(),
-         diagnostics[o].parts,
-         diagnostics[o].details,
+         evaluations[o].parts,
+         evaluations[o].details,
          copies(forging_case, forging_case.objectives[o], summary.whole) * values[o]});
     if (forging_case.parameters.objectives.combined)
       summary.objectives.push_back({forging_case.combinations[0].name,

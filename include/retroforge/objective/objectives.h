@@ -22,12 +22,12 @@ namespace retroforge
   /// An objective under the name that the user gave it: of one of the two kinds.
   struct NamedObjective
   {
-    std::string                     name;
-    double                          weight  = 1.; ///< in the combination
-    SymmetryScaling                 scaling = SymmetryScaling::none;
-    unsigned int                    die     = invalid_index; ///< of a scaling `force`
-    std::unique_ptr<PathObjective>  path;                    ///< null for one of the end
-    std::unique_ptr<FinalObjective> at_end;                  ///< null for one of the path
+    std::string                           name;
+    double                                weight  = 1.; ///< in the combination
+    SymmetryScaling                       scaling = SymmetryScaling::none;
+    unsigned int                          die     = invalid_index; ///< of a scaling `force`
+    std::unique_ptr<const PathObjective>  path;                    ///< null for one of the end
+    std::unique_ptr<const FinalObjective> at_end;                  ///< null for one of the path
 
     std::string unit() const { return path ? path->unit() : at_end->unit(); }
   };

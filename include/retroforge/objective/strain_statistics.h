@@ -29,30 +29,34 @@ namespace retroforge
 
     /// The reference to which strains are taken: the mean for mean and variance (what is small would else be
     /// a difference of large numbers), the true maximum for the maximum. Phi does not depend on it; frozen.
-    void decide(const FinalView<double> &view) override;
+    struct Decisions
+    {
+      double reference;
+    };
+    Decisions compute_decisions(const FinalView<double> &view) const;
 
-    double true_maximum() const { return reference_; }
+    /// Returns the true maximum beside the smooth one.
+    std::map<std::string, double> details(const std::vector<double> &,
+                                          const FinalDecisions &decisions) const override;
 
-    std::map<std::string, double> details(const std::vector<double> &) const override;
+    template <typename Number>
+    std::vector<Number> compute_integrals(const FinalView<Number> &view, const Decisions &decisions) const;
+    template <typename Number>
+    Number combine(const std::vector<Number> &integrals, const Decisions &decisions) const;
 
     void reverse_integrals(const FinalView<double>   &view,
+                           const Decisions           &decisions,
                            const std::vector<double> &weights,
-                           FinalBar                  &bar) const override;
-
-    template <typename Number>
-    std::vector<Number> compute_integrals(const FinalView<Number> &view) const;
-    template <typename Number>
-    Number combine(const std::vector<Number> &integrals) const;
+                           FinalBar                  &bar) const;
 
   private:
     /// What of a cell's strain is integrated: two functions and their slopes.
     template <typename Number>
-    std::array<Number, 2> integrands(const Number &q) const;
-    std::array<double, 2> slopes(double q) const;
+    std::array<Number, 2> integrands(const Number &q, double reference) const;
+    std::array<double, 2> slopes(double q, double reference) const;
 
     StrainStatistic statistic_;
     SmoothMaximum   smooth_;
-    double          reference_ = 0.;
   };
 
   /// Return the types of these objectives, as parameter files offer them.

@@ -39,23 +39,6 @@ namespace retroforge
     std::string  unit() const override { return "mm^3"; }
     unsigned int target_die() const override { return target_.die(); }
 
-    /// @throws Error  when the workpiece's surface is folded onto itself
-    void decide(const FinalView<double> &view) override;
-
-    void reverse_integrals(const FinalView<double>   &view,
-                           const std::vector<double> &weights,
-                           FinalBar                  &bar) const override;
-
-    template <typename Number>
-    std::vector<Number> compute_integrals(const FinalView<Number> &view) const;
-
-    template <typename Number>
-    Number combine(const std::vector<Number> &integrals) const
-    {
-      return integrals[0];
-    }
-
-  private:
     struct Sample
     {
       Vec3       x;
@@ -63,21 +46,49 @@ namespace retroforge
       DieFeature target, workpiece; ///< a target of none: deep in a cavity within
     };
 
-    void   lay_grid(const FinalView<double> &view);
-    double sign() const { return cavity_ == Cavity::within ? -1. : 1.; }
+    /// The workpiece's surface at that moment, and what of the grid counts.
+    struct Decisions
+    {
+      double              width; ///< l [mm]
+      WorkpieceSurface    workpiece;
+      std::vector<Sample> samples; ///< of this rank's share
+    };
+
+    /// @throws Error  when the workpiece's surface is folded onto itself
+    Decisions compute_decisions(const FinalView<double> &view) const;
 
     template <typename Number>
-    Number step(const Number &x) const;
-    double slope(double x) const;
+    std::vector<Number> compute_integrals(const FinalView<Number> &view, const Decisions &decisions) const;
 
-    TargetSurface               target_;
-    Cavity                      cavity_;
-    unsigned int                n_samples_;
-    double                      layer_, width_ = 0.; ///< in spacings, and l [mm]
-    std::array<unsigned int, 3> n_ = {};
-    Vec3                        origin_, spacing_;
-    WorkpieceSurface            workpiece_;
-    std::vector<Sample>         samples_;
+    template <typename Number>
+    Number combine(const std::vector<Number> &integrals, const Decisions &) const
+    {
+      return integrals[0];
+    }
+
+    void reverse_integrals(const FinalView<double>   &view,
+                           const Decisions           &decisions,
+                           const std::vector<double> &weights,
+                           FinalBar                  &bar) const;
+
+  private:
+    struct Grid
+    {
+      std::array<unsigned int, 3> n;
+      Vec3                        origin, spacing;
+      double                      width; ///< l
+
+      unsigned int n_samples() const { return n[0] * n[1] * n[2]; }
+      Vec3         sample(unsigned int g) const;
+    };
+
+    Grid   make_grid(const FinalView<double> &view) const;
+    double sign() const { return cavity_ == Cavity::within ? -1. : 1.; }
+
+    TargetSurface target_;
+    Cavity        cavity_;
+    unsigned int  n_samples_;
+    double        layer_; ///< in spacings
   };
 
   /// Returns the type of this objective, as parameter files offer it.

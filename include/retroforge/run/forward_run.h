@@ -85,8 +85,8 @@ namespace retroforge
     /// Returns the values of the objectives, after forge().  @throws Error  for one that is not finite
     std::vector<double> values();
 
-    /// Returns what is reported beside each of them. Collective.
-    std::vector<ObjectiveTrace::Diagnostics> diagnostics() const { return trace_.diagnostics(state_); }
+    /// Returns them with what is reported beside each, after values(). Collective.
+    std::vector<ObjectiveTrace::Evaluation> evaluations() const { return trace_.evaluate(state_); }
 
     /// Returns dPhi/dX_0 and dPhi/d(process) of combinations of objectives, by one backward sweep, after
     /// values(). The increments must be kept or recorded.

@@ -201,8 +201,7 @@ struct PathProblem
       const ContactSet<Number> set = contact(inputs, i);
       const Stage<Number>      stage(scene, inputs.physics, set, inputs.states[i].Y);
       const Field<Number>      W = inputs.states[i].field(scene);
-      rows.push_back({sum_over_ranks(objective.integrals(StageView<Number>{stage, W, active[i]}),
-                                     scene.discretization.comm()),
+      rows.push_back({objective.integrals(StageView<Number>{stage, W, active[i]}).complete(),
                       dt(inputs, i),
                       Number(strokes[i] / inputs.speed),
                       strokes[i],
