@@ -47,7 +47,7 @@ namespace retroforge
                                      const Field<double>        &W)
     {
       DeviatoricRates rates;
-      with_pair(discretization, [&](const auto pair) {
+      dispatch_element(discretization, [&](const auto pair) {
         for (const CellIndex c : discretization.visited_cells())
         {
           const auto geometry = cell_geometry(pair.positions(discretization, X, c));

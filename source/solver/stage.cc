@@ -89,7 +89,7 @@ namespace retroforge
     const Discretization<3> &discretization = scene.discretization;
     const ActiveSet          chosen         = active.empty() ? decide_active(W) : active;
     Field<Number>            r(discretization);
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.visited_cells())
         pair.add(discretization,
                  cell_residual(cell_geometry(pair.positions(discretization, X, c)),
@@ -111,7 +111,7 @@ namespace retroforge
     check_arguments(*this, W, active);
     const Discretization<3>  &discretization = scene.discretization;
     std::pair<Number, Number> power{Number(0.), Number(0.)};
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
         power.first += cell_dissipation(
           cell_geometry(pair.positions(discretization, X, c)), pair.on_cell(discretization, W, c), law(c));
@@ -132,7 +132,7 @@ namespace retroforge
     const auto         &velocities     = *discretization.velocity_nodes();
     const auto         &pressures      = *discretization.pressure_nodes();
     std::vector<double> force(velocities.n_places(), 0.), flow(pressures.n_places(), 0.);
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.visited_cells())
       {
         const auto   geometry = cell_geometry(pair.positions(discretization, stage.X, c));
@@ -232,7 +232,7 @@ namespace retroforge
     check_bar(view.stage, bar);
     const Stage<double>     &stage          = view.stage;
     const Discretization<3> &discretization = stage.scene.discretization;
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
       {
         const auto X        = pair.positions(discretization, stage.X, c);
@@ -265,7 +265,7 @@ namespace retroforge
     check_bar(view.stage, bar);
     const Stage<double>     &stage          = view.stage;
     const Discretization<3> &discretization = stage.scene.discretization;
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
       {
         const auto X     = pair.positions(discretization, stage.X, c);

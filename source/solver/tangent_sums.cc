@@ -259,7 +259,7 @@ namespace retroforge
   {
     std::fill(blocks_.begin(), blocks_.end(), Block{});
     std::fill(schur_.begin(), schur_.end(), 0.);
-    with_pair(scene_.discretization, [&](const auto &pair) {
+    dispatch_element(scene_.discretization, [&](const auto &pair) {
       // By quadrature, too, either pair's tangents are those that its blocks are made for.
       using Pair = std::decay_t<decltype(pair)>;
       if constexpr (!std::is_same_v<Pair, TaylorHoodPair>)

@@ -9,7 +9,7 @@
 
 /// @file
 /// Cells of fields. What is done cell by cell is written once, as a function of a pair,
-///   with_pair(discretization, [&](const auto pair) {
+///   dispatch_element(discretization, [&](const auto pair) {
 ///     const auto geometry = cell_geometry(pair.positions(discretization, X, c));
 ///     ... cell_residual(geometry, pair.on_cell(discretization, W, c), law) ...
 ///   });
@@ -203,9 +203,9 @@ namespace retroforge
     }
   };
 
-  /// f(pair), of the one that the discretisation is made for.
+  /// Returns f(pair) for the velocity-pressure pair of the discretisation.
   template <typename F>
-  decltype(auto) with_pair(const Discretization<3> &discretization, const F &f)
+  decltype(auto) dispatch_element(const Discretization<3> &discretization, const F &f)
   {
     if (discretization.quadrature())
       return f(QuadraturePair{discretization.quadrature()});
