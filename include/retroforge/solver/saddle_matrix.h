@@ -2,8 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/solver/cell_tangent_assembler.h>
 #include <retroforge/solver/node_frames.h>
-#include <retroforge/solver/tangent_sums.h>
 
 namespace retroforge
 {
@@ -81,7 +81,7 @@ namespace retroforge
     void test_contact(std::vector<ContactEntries> &contact);
     void choose_scales(const std::vector<double> &viscous, const std::vector<ContactEntries> &contact);
     /// The sums over cells, in frames and scaled.
-    void write_sums();
+    void write_cell_tangents();
     void add_contact(const std::vector<ContactEntries> &contact) const;
     /// Fixed components have scale zero in their rows and columns, and their diagonals afterwards.
     void put_diagonals_of_fixed(const std::vector<double> &viscous) const;
@@ -96,15 +96,15 @@ namespace retroforge
     /// A right-hand side whose bubbles are eliminated; right on owned nodes.
     Field<double> condensed(const Field<double> &rhs) const;
 
-    const Scene                 &scene_;
-    const NodeNumbering         &velocities_, &pressures_; ///< those of matrices
-    SaddleSystem                 system_;
-    std::vector<NodeFrame>       frames_;        ///< of each velocity node, by place
-    NodeVector<3, double>        scale_;         ///< of each velocity component in its frame
-    NodeVector<3, double>        unknown_scale_; ///< the same, zero where it is fixed
-    double                       pressure_scale_ = 1.;
-    std::unique_ptr<TangentSums> sums_;
-    std::vector<unsigned int>    column_places_; ///< of the nodes of A's columns, as A numbers them
-    std::vector<unsigned int>    diagonal_;      ///< where an owned node stands in its own row
+    const Scene                          &scene_;
+    const NodeNumbering                  &velocities_, &pressures_; ///< those of matrices
+    SaddleSystem                          system_;
+    std::vector<NodeFrame>                frames_;        ///< of each velocity node, by place
+    NodeVector<3, double>                 scale_;         ///< of each velocity component in its frame
+    NodeVector<3, double>                 unknown_scale_; ///< the same, zero where it is fixed
+    double                                pressure_scale_ = 1.;
+    std::unique_ptr<CellTangentAssembler> cell_tangents_;
+    std::vector<unsigned int>             column_places_; ///< of the nodes of A's columns, as A numbers them
+    std::vector<unsigned int>             diagonal_;      ///< where an owned node stands in its own row
   };
 } // namespace retroforge
