@@ -323,11 +323,11 @@ namespace retroforge
     std::vector<char> held;
     // Friction that follows the pressure needs to know it from the start.
     if (decides && (!from_rest || !stage.has_potential()))
-      held = hold_on_dies(stage, W, pressed);
+      held = project_onto_dies(stage, W, pressed);
     const double speed = volume_and_speed(stage).second;
     settle_bubbles_in_reach(stage, speed, W);
     if (!held.empty())
-      lean_on_dies(stage, held, W);
+      apply_contact_pressure(stage, held, W);
     unsigned int  picard    = decides && start == Start::far ? picard_steps : 0;
     const Scale   reference = reference_scale(stage);
     Scale         scale;
@@ -387,7 +387,7 @@ namespace retroforge
         {
           const ActiveSet active = stage.decide_active(W);
           taken                  = search(active);
-          stop_at_dies(stage, active, W);
+          clip_to_dies(stage, active, W);
         }
         else
         {
