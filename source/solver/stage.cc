@@ -162,7 +162,7 @@ namespace retroforge
     return forces;
   }
 
-  void settle_bubbles(const Stage<double> &stage, Field<double> &W)
+  void solve_bubbles(const Stage<double> &stage, Field<double> &W)
   {
     check_arguments(stage, W, {});
     const Discretization<3> &discretization = stage.scene.discretization;
@@ -205,7 +205,7 @@ namespace retroforge
       return;
     for (const CellIndex c : discretization.visited_cells())
       MiniPair::bubble(discretization, W, c) = Vec3();
-    settle_bubbles(stage, W);
+    solve_bubbles(stage, W);
   }
 
   namespace

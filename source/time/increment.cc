@@ -71,7 +71,7 @@ namespace retroforge
       W.V = bubbles;
     W.V.take(solve.V);
     W.P.take(solve.P);
-    settle_bubbles(stage, W);
+    solve_bubbles(stage, W);
   }
 
   Increment::Increment(const Scene            &scene,

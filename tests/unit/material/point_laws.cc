@@ -170,7 +170,7 @@ namespace
     const Stage<double> stage  = hardened.stage();
     Field<double>       at     = corner.W;
     const Field<double> w      = corner.random_field(random);
-    settle_bubbles(stage, at);
+    solve_bubbles(stage, at);
     Physics<Dual>      physics = converted<Dual>(corner.physics);
     std::vector<Dual>  strain(hardened.strain.begin(), hardened.strain.end());
     NodalVectors<Dual> X;
