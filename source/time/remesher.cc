@@ -261,12 +261,11 @@ namespace retroforge
 
   SizeField Remesher::size_field(const DieStates &states, std::shared_ptr<const ErrorSizes> errors) const
   {
-    return [this, states, errors = std::move(errors)](const Vec3 &x, const SizeQuestion &question) {
+    return [this, states, errors = std::move(errors)](const Vec3 &x, const SizeQuery &query) {
       double size = errors ? (*errors)(x) : element_size_;
-      for (unsigned int d = 0; d < dies_.size() && size >= question.enough; ++d)
+      for (unsigned int d = 0; d < dies_.size() && size >= query.lower; ++d)
         if (near_die_[d])
-          size =
-            (*near_die_[d])(x - states[d].displacement, {question.enough, std::min(size, question.most)});
+          size = (*near_die_[d])(x - states[d].displacement, {query.lower, std::min(size, query.upper)});
       return size;
     };
   }

@@ -48,7 +48,7 @@ namespace retroforge
   ///   h(x) = min( largest, min_T ( s h_T + growth * distance of x to the ball ) ),
   ///
   /// which changes by at most the growth per distance; s such that still  int h^-3 = V / uniform^3. Nothing
-  /// is tabulated: a question is a branch-and-bound search, as in GradedSize.
+  /// is tabulated: an evaluation is a branch-and-bound search, as in GradedSize.
   class ErrorSizes
   {
   public:
