@@ -154,7 +154,7 @@ namespace retroforge
       , mu(design.at(parameters.design.at))
       , process(design.process(mu))
       , X_0(design.positions(mu))
-      , model{parameters.discretization.choice(),
+      , model{parameters.discretization.choice,
               make_dies(parameters, process),
               parameters.step_model(),
               parameters.newton,

@@ -14,7 +14,7 @@ namespace retroforge
   BilletSize Parameters::size_of(const TetMesh &mesh) const
   {
     const double side = std::cbrt(volume(mesh.cells, mesh.X));
-    if (billet.shape != "file")
+    if (!billet.is_from_file())
       return {side, billet.whole_height()};
     const Vec3 &velocity = dies[leading_die()].velocity;
     const Vec3  way      = velocity / velocity.norm();
@@ -168,7 +168,7 @@ namespace retroforge
   {
     if (remeshing.element_size > 0.)
       return remeshing.element_size;
-    if (billet.shape != "file")
+    if (!billet.is_from_file())
       return billet.element_size;
     double sum = 0.;
     for (const auto &cell : mesh.cells)

@@ -38,7 +38,7 @@ namespace retroforge
     std::string how_to_scale(const Parameters &parameters, const DieParameters &die)
     {
       const bool of_file = die.shape.name == "stl";
-      return parameters.billet.shape == "file"
+      return parameters.billet.is_from_file()
                ? std::string("; set `scale' of the billet") + (of_file ? " or of the die" : "") +
                    ": a mesh in metres needs 1000 where lengths are in mm"
              : of_file ? "; set the die's `scale', or correct the billet's measures"

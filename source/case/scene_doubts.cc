@@ -144,7 +144,7 @@ namespace retroforge
     bool refines_to(const Parameters &parameters, const double width, const double edge)
     {
       const RemesherParameters &remeshing = parameters.remeshing;
-      return remeshing.when != "never" && remeshing.sizes != "uniform" &&
+      return remeshing.enabled() && remeshing.sizes != RemesherParameters::Sizes::uniform &&
              remeshing.smallest_size * edge <= width;
     }
 
@@ -153,9 +153,9 @@ namespace retroforge
     {
       const RemesherParameters &remeshing = parameters.remeshing;
       std::string               text;
-      if (remeshing.sizes == "uniform")
+      if (remeshing.sizes == RemesherParameters::Sizes::uniform)
         return text;
-      if (remeshing.when == "never")
+      if (!remeshing.enabled())
         text += ", or Remeshing/when = quality";
       if (remeshing.smallest_size * edge > width)
         text += (text.empty() ? ", or " : " and ") + std::string("Remeshing/smallest size = ") +
@@ -193,7 +193,7 @@ namespace retroforge
           warnings.push_back("Die " + scene.dies[d].name + " is " + as_text(unseen->width) +
                              " mm wide where it comes into the billet at " + in_brackets(unseen->place) +
                              ", between nodes: contact does not see it; set " +
-                             (parameters.billet.shape == "file" ? "Remeshing" : "Billet") +
+                             (parameters.billet.is_from_file() ? "Remeshing" : "Billet") +
                              "/element size = " + as_text(rounded_down(unseen->width)) +
                              how_to_refine(parameters, unseen->width, edge));
       }

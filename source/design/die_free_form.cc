@@ -224,7 +224,8 @@ namespace retroforge
     const Sector        sector(std::move(mirrors), on_plane * surface.diagonal());
     const MovingSurface moving = moving_surface(surface, *form, sector);
     check_number(section_, form->modes, moving);
-    const NodalVectors<double> e = directions(surface, die, form->along == "normal", sector);
+    const NodalVectors<double> e =
+      directions(surface, die, form->along == DieFreeFormParameters::Along::normal, sector);
     for (const std::vector<double> &mode : surface_modes(moving, form->modes, form->length))
     {
       moves_.push_back(e);

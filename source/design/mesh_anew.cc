@@ -47,7 +47,7 @@ namespace retroforge
 
   bool has_measures(const BilletParameters &billet)
   {
-    return billet.shape != "file" && billet.free_form.modes == 0;
+    return !billet.is_from_file() && billet.free_form.modes == 0;
   }
 
   std::vector<double>

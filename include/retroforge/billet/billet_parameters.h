@@ -27,12 +27,21 @@ namespace retroforge
   /// mesh is.
   struct BilletParameters
   {
-    std::string shape = "box";
-    Vec3        base_centre;
-    Vec3        size         = Vec3({50, 50, 50});
-    double      radius       = 25;
-    double      height       = 50;
-    double      element_size = 5;
+    enum class Shape
+    {
+      box,
+      cylinder,
+      ring,    ///< a body of revolution whose section has seven portions
+      profile, ///< a body of revolution whose contour is a B-spline
+      file     ///< a mesh from a Gmsh file
+    };
+
+    Shape  shape = Shape::box;
+    Vec3   base_centre;
+    Vec3   size         = Vec3({50, 50, 50});
+    double radius       = 25;
+    double height       = 50;
+    double element_size = 5;
 
     RingProfile   ring;
     SplineProfile profile;
@@ -56,7 +65,12 @@ namespace retroforge
     void          check() const;
     static ReadBy read_by_shape();
 
-    bool   is_revolved() const { return shape == "ring" || shape == "profile"; }
+    /// Returns the word for the shape in a parameter file.
+    std::string shape_word() const;
+
+    bool is_from_file() const { return shape == Shape::file; }
+    /// Returns whether the body has a section that is revolved.
+    bool   is_revolved() const { return shape == Shape::ring || shape == Shape::profile; }
     double whole_height() const; ///< before cuts; 0 for a mesh from a file
     double whole_width() const;  ///< along x, before cuts; 0 for a mesh from a file
     /// Whether only a sector of a body of revolution is kept.

@@ -62,11 +62,17 @@ namespace retroforge
   class SurfaceDie : public DieKind
   {
   public:
+    enum class Surface
+    {
+      smooth, ///< facets stand for a smooth surface, interpolated between their corners
+      facets  ///< the surface is its facets
+    };
+
     double depth = 0.; ///< 0: a tenth of the surface's diagonal [mm]
 
-    std::string surface_law     = "smooth";
-    double      feature_angle   = 25.;  ///< [degrees]
-    double      largest_sagitta = 3e-3; ///< of the surface's diagonal
+    Surface surface_law     = Surface::smooth;
+    double  feature_angle   = 25.;  ///< [degrees]
+    double  largest_sagitta = 3e-3; ///< of the surface's diagonal
 
     Rotations rotations; ///< of a die by measures only the angle, about its own axis
 

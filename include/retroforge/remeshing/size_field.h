@@ -48,8 +48,7 @@ namespace retroforge
   ///   h(x) = min( h_0, min_f ( s_f + g |x - f| ) ),    |x - f| the distance of x to the facet,
   ///
   /// the largest function that is nowhere above h_0, on no facet above its s_f, and changes by at most g per
-  /// distance. It moves with the surface, so that one field serves all positions of a die: h(x -
-  /// displacement).
+  /// distance. It moves with the surface, so that h(x - displacement) serves all positions of a die.
   ///
   /// Nothing is tabulated: an evaluation is a branch-and-bound search among the facets with s_f < h_0. (An
   /// octree that holds the same field is faster to evaluate, but a remeshing needs too few evaluations to pay

@@ -10,7 +10,15 @@ namespace retroforge
 {
   struct LinearSolverParameters
   {
-    std::string  method         = "auto";
+    enum class Method
+    {
+      automatic, ///< multigrid or ILU by the size of the mesh; the direct solver where they fail
+      ilu,
+      multigrid,
+      direct
+    };
+
+    Method       method         = Method::automatic;
     unsigned int multigrid_from = 2500;
     unsigned int max_iterations = 600;
     unsigned int restart        = 120;

@@ -10,7 +10,6 @@
 #include <retroforge/remeshing/uncross.h>
 
 #include <optional>
-#include <string>
 
 #include <mpi.h>
 
@@ -18,11 +17,29 @@ namespace retroforge
 {
   struct RemesherParameters
   {
-    std::string         when           = "quality"; ///< never, quality, increments
-    std::string         method         = "local";
+    enum class When
+    {
+      never,
+      quality,   ///< when cells are bad or the surface no longer fits a die
+      increments ///< as with quality, and after every so many increments
+    };
+    enum class Method
+    {
+      local,  ///< only where the mesh is bad, and from the surface where cells are inverted
+      rebuild ///< from the surface each time
+    };
+    enum class Sizes
+    {
+      uniform,
+      dies, ///< shorter edges near curved dies
+      error ///< as with dies, elsewhere by the indicated error
+    };
+
+    When                when           = When::quality;
+    Method              method         = Method::local;
     unsigned int        every          = 5;
     double              element_size   = 0.;
-    std::string         sizes          = "dies"; ///< uniform, dies, error
+    Sizes               sizes          = Sizes::dies;
     double              chord_error    = 0.;
     double              smallest_size  = 0.2;
     double              largest_size   = 4.;
@@ -34,6 +51,7 @@ namespace retroforge
 
     void add_parameters(dealii::ParameterHandler &prm);
     void check() const;
+    bool enabled() const { return when != When::never; }
   };
 
   /// Decides when the mesh is to be remade, and remakes it: locally, or where that cannot be (inverted
@@ -54,7 +72,7 @@ namespace retroforge
 
     double largest_repair() const { return parameters_.largest_repair; }
 
-    bool enabled() const { return parameters_.when != "never"; }
+    bool enabled() const { return parameters_.enabled(); }
 
     /// @param frozen      cells that the last remeshing could not make better, see frozen_cells()
     /// @param increments  since the last remeshing
@@ -68,7 +86,7 @@ namespace retroforge
              bool                        first) const;
 
     /// Whether sizes follow indicated errors.
-    bool follows_errors() const { return parameters_.sizes == "error"; }
+    bool follows_errors() const { return parameters_.sizes == RemesherParameters::Sizes::error; }
 
     /// What such sizes may be.
     SizeBounds error_size_bounds() const;

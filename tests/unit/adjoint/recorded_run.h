@@ -30,7 +30,7 @@ namespace retroforge
     p.contact.slip_fraction = 0.1;
     p.newton.tolerance      = 1e-13;
     p.adjoint.tolerance     = 1e-13;
-    p.linear_solver.method  = "direct";
+    p.linear_solver.method  = LinearSolverParameters::Method::direct;
     return p;
   }
 
@@ -53,7 +53,7 @@ namespace retroforge
                 const Meshes                 meshes = Meshes::one)
         : parameters(settled(all, meshes))
         , process(parameters.process({all.billet.size[2], all.billet.size[2]}))
-        , model{parameters.discretization.choice(),
+        , model{parameters.discretization.choice,
                 std::move(dies),
                 step_model(parameters, scheme),
                 all.newton,
@@ -87,7 +87,7 @@ namespace retroforge
     static Parameters settled(Parameters all, const Meshes meshes)
     {
       if (meshes == Meshes::one)
-        all.remeshing.when = "never";
+        all.remeshing.when = RemesherParameters::When::never;
       all.resolve_defaults({all.billet.size[2], all.billet.size[2]});
       return all;
     }

@@ -192,7 +192,7 @@ namespace
       image.P.at_place(place) = r.P.at_place(place).dx(0);
     Timings                timings;
     LinearSolverParameters parameters;
-    parameters.method = "direct";
+    parameters.method = LinearSolverParameters::Method::direct;
     LinearSystem system(corner.scene, parameters, timings);
     system.assemble(stage, at, corner.active);
     system.solve_derivative(image, 1e-13, x);
