@@ -77,10 +77,8 @@ namespace retroforge
     const std::shared_ptr<const NodeNumbering> &condensed_nodes() const { return condensed_nodes_; }
     const std::shared_ptr<const NodeNumbering> &pressure_nodes() const { return pressure_nodes_; }
     unsigned int                                n_vertices() const { return n_vertices_; }
-    /// Whether a velocity node is this rank's.
+    /// Returns whether a velocity node is this rank's.
     bool owns(const NodeIndex k) const { return velocity_nodes_->owns(k); }
-    /// Whether one of them is.
-    bool sees(const std::array<NodeIndex, 2> &nodes) const { return owns(nodes[0]) || owns(nodes[1]); }
     /// Null where velocities are linear.
     const MiddleNodes *middles() const { return middles_.size() > 0 ? &middles_ : nullptr; }
     bool               has_bubbles() const { return choice_.pair == ElementPair::mini; }
