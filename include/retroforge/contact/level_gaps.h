@@ -47,18 +47,18 @@ namespace retroforge
     return chords;
   }
 
-  /// How well straight edges follow the dies they touch.
+  /// Statistics of the misfit between straight edges and the curved dies they touch.
   struct EdgeFit
   {
-    unsigned int touching =
-      0; ///< edges whose middle or both ends are at least half in contact, by their ramps
-    unsigned int spanning = 0;             ///< those of them that span a corner of the die: c_m = 0
+    /// Edges whose middle or both ends are at least half in contact, by their ramps.
+    unsigned int touching = 0;
+    unsigned int spanning = 0;             ///< touching edges that span a corner of the die: c_m = 0
     double       largest  = 0.;            ///< |b_m| over the length of the edge that spans most
-    unsigned int die      = invalid_index; ///< under that edge
+    unsigned int die      = invalid_index; ///< the die under that edge
     Vec3         place;                    ///< its middle
   };
 
-  /// Of levelled gaps.  @param X  the positions they were found at
+  /// Returns the statistics of a contact set with levelled gaps.  @param X  the positions it was found at
   EdgeFit
   edge_fit(const NodalVectors<double> &X, const FrictionRamp &ramp, const ContactSet<double> &contact);
 
@@ -68,8 +68,8 @@ namespace retroforge
   void level_gaps(const NodalVectors<Number> &X, const FrictionRamp &ramp, ContactSet<Number> &contact);
 
   /// Pull-back of level_gaps.
-  /// @param gaps_bar   of the levelled gaps; becomes that of the own ones
-  /// @param ramps_bar  of the ramps
+  /// @param gaps_bar   derivatives in the levelled gaps; become those in the own gaps
+  /// @param ramps_bar  derivatives in the ramps
   void reverse_level_gaps(const NodalVectors<double> &X,
                           const FrictionRamp         &ramp,
                           const ContactSet<double>   &contact,

@@ -16,7 +16,7 @@
 /// for the kernels of all pairs have the same names. A rank does so with the cells that it visits.
 namespace retroforge
 {
-  /// Where the geometry nodes of a visited cell are.
+  /// Returns the positions of the geometry nodes of a visited cell.
   template <typename Number>
   Four<Vector3<Number>>
   positions_of_cell(const Discretization<3> &discretization, const NodalVectors<Number> &X, const CellIndex c)
@@ -52,7 +52,7 @@ namespace retroforge
 
     static CellValues<double> no_values() { return {}; }
 
-    /// Of a cell, its bubble left out: zero.
+    /// Returns the values of a cell without its bubble, which is zero.
     template <typename Number>
     static CellValues<Number>
     at_nodes(const Discretization<3> &discretization, const Field<Number> &W, const CellIndex c)

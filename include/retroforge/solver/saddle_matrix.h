@@ -19,7 +19,8 @@ namespace retroforge
     bool                      penalties_couple = false; ///< some of these rows share entries
     /// Rigid translations as vectors of A's local rows, one after the other; zero in penalised rows.
     std::vector<double> translations;
-    /// From linear velocities to those of A; not of penalised rows. P is null where A's are linear.
+    /// Interpolation from linear velocities to those of A, without penalised rows. P is null where A's
+    /// velocities are linear.
     la::SparseMatrix            interpolation;
     std::unique_ptr<NodeMatrix> P;
   };
@@ -63,7 +64,7 @@ namespace retroforge
     std::pair<double, double> residual_norm(const Field<double> &r) const;
 
   private:
-    /// What contact adds to the entries of a pair of velocities, in their frames.
+    /// Contribution of contact to the entries of a pair of velocity nodes, in their frames.
     struct ContactEntries
     {
       unsigned int         row, column; ///< places of nodes
@@ -72,9 +73,9 @@ namespace retroforge
 
     void make_patterns();
     void make_interpolation_pattern(const MiddleNodes &middles);
-    /// Of A's local rows, from cells alone.
+    /// Returns the diagonal of A's local rows, from cells alone.
     std::vector<double> viscous_diagonal() const;
-    /// Of owned rows; says whether penalties couple.
+    /// Computes the entries of owned rows, and sets SaddleSystem::penalties_couple.
     std::vector<ContactEntries>
     contact_entries(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
     /// Chooses the tests of owned nodes, and has contact's rows along them.
@@ -97,14 +98,14 @@ namespace retroforge
     Field<double> condensed(const Field<double> &rhs) const;
 
     const Scene                          &scene_;
-    const NodeNumbering                  &velocities_, &pressures_; ///< those of matrices
+    const NodeNumbering                  &velocities_, &pressures_; ///< nodes of matrices
     SaddleSystem                          system_;
-    std::vector<NodeFrame>                frames_;        ///< of each velocity node, by place
-    NodeVector<3, double>                 scale_;         ///< of each velocity component in its frame
+    std::vector<NodeFrame>                frames_;        ///< frames of the velocity nodes, by place
+    NodeVector<3, double>                 scale_;         ///< scale of each velocity component in its frame
     NodeVector<3, double>                 unknown_scale_; ///< the same, zero where it is fixed
     double                                pressure_scale_ = 1.;
     std::unique_ptr<CellTangentAssembler> cell_tangents_;
-    std::vector<unsigned int>             column_places_; ///< of the nodes of A's columns, as A numbers them
-    std::vector<unsigned int>             diagonal_;      ///< where an owned node stands in its own row
+    std::vector<unsigned int> column_places_; ///< places of the nodes of A's columns, as A numbers them
+    std::vector<unsigned int> diagonal_;      ///< position of an owned node in its own row
   };
 } // namespace retroforge
