@@ -23,8 +23,8 @@ namespace retroforge
     double                   length = 0.; ///< l [mm]; 0: a quarter of the root of the patches' area
   };
 
-  /// The workpiece before forging: its shape, what symmetry leaves of it, where it stands, and how fine its
-  /// mesh is.
+  /// The workpiece before forging: its shape, its symmetry, its position, and the fineness of its mesh. The
+  /// section Billet.
   struct BilletParameters
   {
     enum class Shape
@@ -51,10 +51,10 @@ namespace retroforge
     double            sector_angle   = 0;
 
     std::string              file_name;
-    double                   scale = 1; ///< of the file's lengths to mm
+    double                   scale = 1; ///< factor of the file's lengths to mm
     std::vector<std::string> symmetry_patches;
 
-    Rotations rotations; ///< of the finished mesh
+    Rotations rotations; ///< rotations of the finished mesh
     Vec3      translation;
 
     FreeFormParameters free_form;
@@ -73,7 +73,7 @@ namespace retroforge
     bool   is_revolved() const { return shape == Shape::ring || shape == Shape::profile; }
     double whole_height() const; ///< before cuts; 0 for a mesh from a file
     double whole_width() const;  ///< along x, before cuts; 0 for a mesh from a file
-    /// Whether only a sector of a body of revolution is kept.
+    /// Returns whether only a sector of a body of revolution is kept.
     bool is_sector() const;
     /// Planes of the sector's faces, if any.
     std::vector<Plane> sector_planes() const;

@@ -12,7 +12,7 @@
 
 namespace retroforge
 {
-  /// Whose die it is and where it stands.
+  /// Name and position of a die.
   struct DiePlace
   {
     std::string name;
@@ -38,10 +38,10 @@ namespace retroforge
     /// @throws Error  for a file or measures that make no surface
     virtual Die make(const DiePlace &place) const = 0;
 
-    /// How deep contact reaches, where the user says so [mm]; 0: not said.
+    /// Returns the depth of contact set by the user [mm]; 0: not set.
     virtual double depth_of_contact() const { return 0.; }
 
-    /// Of dies whose vertices can move; else null.
+    /// Returns the free form of dies whose vertices can move, else null.
     virtual const DieFreeFormParameters *free_form() const { return nullptr; }
 
     /// The measures that a design can vary.
@@ -55,7 +55,7 @@ namespace retroforge
                                           const std::map<std::string, Dual> &changed) const;
   };
 
-  /// The kinds there are: to add one, add a line to this table.
+  /// The table of kinds: to add one, add a line to it.
   const Choice<DieKind>::Makers &die_kinds();
 
   /// A die of facets.
@@ -72,9 +72,9 @@ namespace retroforge
 
     Surface surface_law     = Surface::smooth;
     double  feature_angle   = 25.;  ///< [degrees]
-    double  largest_sagitta = 3e-3; ///< of the surface's diagonal
+    double  largest_sagitta = 3e-3; ///< part of the surface's diagonal
 
-    Rotations rotations; ///< of a die by measures only the angle, about its own axis
+    Rotations rotations; ///< for a die by measures only the angle, about its own axis
 
     DieFreeFormParameters free_form_parameters;
 
@@ -88,7 +88,7 @@ namespace retroforge
   protected:
     void add_angle(dealii::ParameterHandler &prm);
 
-    /// Where the die stands.
+    /// Returns the surface at the die's place.
     virtual TriangleSurface surface(const DiePlace &place) const = 0;
   };
 

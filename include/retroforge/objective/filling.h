@@ -9,14 +9,15 @@
 
 namespace retroforge
 {
-  /// Which features the two projections of FillingObjective see, and the workpiece's surface at that moment.
+  /// Decisions of FillingObjective: the features that its two projections see, and the workpiece's surface at
+  /// that moment.
   struct FillingDecisions
   {
     std::vector<SeenFeature> by_workpiece; ///< this rank's nodes of the workpiece, features of the target
     std::vector<SeenFeature>
                      by_target; ///< its share of the target's vertices, features of the workpiece's surface
     WorkpieceSurface workpiece;
-    std::vector<Triangle> target; ///< those of the target that face the model, by their centres
+    std::vector<Triangle> target; ///< triangles of the target whose centres face the model
   };
 
   /// Volume between the workpiece and the desired shape by double projection [mm^3],

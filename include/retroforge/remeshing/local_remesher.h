@@ -17,8 +17,8 @@ namespace retroforge
     /// For each node the old node it is, or invalid_index when it is new or was moved by more than the volume
     /// correction is allowed to. Nodes that remeshing did not touch come first, in their old order.
     std::vector<NodeIndex> old_node;
-    /// How far the volume correction moved each kept node; zero for those that kept their position bit for
-    /// bit.
+    /// Displacement of each kept node by the volume correction; zero for those that kept their position bit
+    /// for bit.
     NodalVectors<double> correction;
     RemeshingReport      report;
   };
