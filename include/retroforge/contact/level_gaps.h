@@ -15,9 +15,10 @@
 /// belongs to the geometry and not to contact. Where its edges touch, a vertex is to stand off the die by the
 /// mean bulge around it, so that as much metal is missing as is in the die, and a middle where its ends want
 /// it:
-///   o_v      = sum_m w_m c_m b_m / (sum_m w_m + 1/4),   w_m = w(delta_m),  sums over the edges at v in the
-///   whole, delta'_v = delta_v - o_v, delta'_m = delta_m + w'_a w'_b c_m ((delta'_a + delta'_b)/2 - delta_m),
-///   w' = w(delta').
+///   o_v      = sum_m w_m c_m b_m / (sum_m w_m + 1/4),   w_m = w(delta_m),
+///   delta'_v = delta_v - o_v,
+///   delta'_m = delta_m + w'_a w'_b c_m ((delta'_a + delta'_b)/2 - delta_m),   w' = w(delta'),
+/// with sums over the edges at v in the whole.
 /// An edge that spans a sharp corner of the die is held out by its own gap: c_m falls from 1 at |b_m| = 0.06
 /// of the edge's length, that is a length of 0.48 radii, to 0 at 0.15. There a ripple remains, and a vertex
 /// that is pressed because the middles around it are would take part in it by pulling: where c_m < 1,

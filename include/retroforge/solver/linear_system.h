@@ -21,8 +21,7 @@ namespace retroforge
     /// Solution of the uncondensed system, or of the transposed one, for the right-hand side rhs (owned
     /// entries), to `tolerance` relative to the scaled right-hand side. Returns the number of Krylov
     /// iterations (0 for a direct solve). A rank gets its own entries and those it reads.
-    /// @param guesses  fields, like the solutions of earlier systems, the best combination of which is the
-    /// start
+    /// @param guesses  fields, as the solutions of earlier systems: their best combination is the start
     unsigned int solve(const Field<double>              &rhs,
                        double                            tolerance,
                        Field<double>                    &solution,
