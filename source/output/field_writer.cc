@@ -210,7 +210,7 @@ namespace retroforge
     if (event.record.remesh)
       displacement_ = event.record.remesh->transfer.apply(displacement_);
     for (std::size_t k = 0; k < displacement_.size(); ++k)
-      displacement_[k] += event.state.X[k] - event.X_before[k];
+      displacement_[k] += event.state.workpiece.X[k] - event.X_before[k];
     n_remeshings_ = event.state.remeshed.size();
   }
 
@@ -225,15 +225,15 @@ namespace retroforge
       write(fields_file(run.increments),
             {scene.mesh,
              scene.discretization.middles(),
-             run.X,
+             run.workpiece.X,
              last.X,
-             run.solution.V,
-             run.solution.P,
-             run.strain,
+             run.solution->V,
+             run.solution->P,
+             run.workpiece.strain,
              &displacement_,
              &contact});
     }
-    add_step(run.stroke, fields_file(run.increments), six_digits(run.increments), run.X);
+    add_step(run.stroke, fields_file(run.increments), six_digits(run.increments), run.workpiece.X);
   }
 
   void FieldWriter::add_failed(const ForgingState &state)
@@ -245,20 +245,20 @@ namespace retroforge
       write_billet();
       add_step(0., fields_file(0), six_digits(0), X_0_);
     }
-    const auto         &discretization = state.leg->scene.discretization;
-    const LastSolution  at_rest        = {NodalVectors<double>(discretization.condensed_nodes()->n()),
-                                          std::vector<double>(discretization.n_vertices(), 0.)};
-    const LastSolution &solution       = state.solution.V.empty() ? at_rest : state.solution;
+    const auto        &discretization = state.leg->scene.discretization;
+    const LastSolution at_rest        = {NodalVectors<double>(discretization.condensed_nodes()->n()),
+                                         std::vector<double>(discretization.n_vertices(), 0.)};
+    const LastSolution solution       = state.solution.value_or(at_rest);
     write("failed.vtu",
           {state.leg->scene.mesh,
            discretization.middles(),
-           state.X,
-           state.X,
+           state.workpiece.X,
+           state.workpiece.X,
            solution.V,
            solution.P,
-           state.strain,
+           state.workpiece.strain,
            displacement,
            nullptr});
-    add_step(state.stroke, "failed.vtu", "failed", state.X);
+    add_step(state.stroke, "failed.vtu", "failed", state.workpiece.X);
   }
 } // namespace retroforge
