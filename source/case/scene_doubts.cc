@@ -62,8 +62,7 @@ namespace retroforge
       for (unsigned int e = 0; e < 3; ++e)
         if (const unsigned int other = surface.neighbour(f, e).facet; other != invalid_index)
         {
-          const Vec3   a = normal(f), b = normal(other);
-          const double angle = std::atan2(cross_product_3d(a, b).norm(), a * b) * 180. / M_PI;
+          const double angle = angle_between(normal(f), normal(other)) * 180. / M_PI;
           if (angle <= feature_angle)
             largest = std::max(largest, angle);
         }

@@ -140,7 +140,7 @@ namespace retroforge
           if (const Corners y = frame(facet_corners(surface, f, displacement)); looks_along(y) > 0)
           {
             facets.push_back(y);
-            boxes.push_back(box_of(y));
+            boxes.emplace_back(y);
           }
         tree = BoxTree(boxes);
       }
@@ -170,7 +170,7 @@ namespace retroforge
         const Corners y = frame(metal.corners(t));
         if (looks_along(y) >= 0)
           continue;
-        const BoundingBox box = box_of(y);
+        const BoundingBox box(y);
         die.tree.minimise(
           [&](const unsigned int branch) {
             const BoundingBox &facets = die.tree.box(branch);
@@ -335,8 +335,8 @@ namespace retroforge
     Vec3                   place;
     for (unsigned int f = 0; f < surface.n_facets(); ++f)
     {
-      const Corners     x   = facet_corners(surface, f, displacement);
-      const BoundingBox box = box_of(x);
+      const Corners     x = facet_corners(surface, f, displacement);
+      const BoundingBox box(x);
       metal.tree().minimise(
         [&](const unsigned int branch) { return square_distance(box, metal.tree().box(branch)); },
         [&](const unsigned int t) {

@@ -92,7 +92,7 @@ namespace retroforge
       for (unsigned int f = first; f < last; ++f)
       {
         const Corners p = facet_corners(surface, f, displacement);
-        if (!box_of(p).intersects(metal.box()))
+        if (!BoundingBox(p).intersects(metal.box()))
           continue;
         for (unsigned int e = 0; e < 3; ++e)
         {

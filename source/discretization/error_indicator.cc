@@ -17,13 +17,6 @@ namespace retroforge
         sum[k] += factor * e[k];
     }
 
-    void remove_trace(Symmetric<double> &e)
-    {
-      const double third = trace(e) / 3.;
-      for (unsigned int i = 0; i < 3; ++i)
-        e[i] -= third;
-    }
-
     /// Of a field linear in the cell at the four points of equal weights that integrate it to degree two.
     PointRates<double> at_points(const PointRates<double> &corners)
     {

@@ -7,13 +7,13 @@
 #include <retroforge/case/scene_estimate.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/interrupt_message.h>
+#include <retroforge/core/text.h>
 #include <retroforge/core/version.h>
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/scan/scan.h>
 #include <retroforge/time/leg.h>
 
-#include <cctype>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -31,15 +31,6 @@ namespace retroforge
       char text[32];
       std::snprintf(text, sizeof text, "%.17g", x);
       return text;
-    }
-
-    /// For names of folders.
-    std::string as_identifier(std::string name)
-    {
-      for (char &c : name)
-        if (std::isalnum(static_cast<unsigned char>(c)) == 0)
-          c = '_';
-      return name;
     }
 
     /// For a shell.

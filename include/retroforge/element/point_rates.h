@@ -41,6 +41,14 @@ namespace retroforge
     return e[0] + e[1] + e[2];
   }
 
+  /// Subtracts the mean of the diagonal.
+  inline void remove_trace(Symmetric<double> &e)
+  {
+    const double mean = trace(e) / 3.;
+    for (unsigned int k = 0; k < 3; ++k)
+      e[k] -= mean;
+  }
+
   template <typename Number>
   Vector3<Number> times(const Symmetric<Number> &e, const Vector3<Number> &v)
   {

@@ -17,6 +17,12 @@ namespace retroforge
     Vec3 lower, upper;
 
     explicit BoundingBox(const Vec3 &x) : lower(x), upper(x) {}
+    template <std::size_t n>
+    explicit BoundingBox(const std::array<Vec3, n> &points) : BoundingBox(points[0])
+    {
+      for (const Vec3 &x : points)
+        include(x);
+    }
     void include(const Vec3 &x);
     bool intersects(const BoundingBox &other) const;
 
