@@ -109,7 +109,10 @@ namespace retroforge
 
   OpenContact Parameters::open_contact(const BilletSize &size) const
   {
-    return {size.height, contact.penetration, contact.penalty, contact.slip_fraction};
+    return {size.height,
+            contact.penetration,
+            contact.penalty > 0. ? std::optional(contact.penalty) : std::nullopt,
+            contact.slip_fraction};
   }
 
   Process<double> Parameters::process(const BilletSize &size) const

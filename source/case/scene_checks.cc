@@ -94,11 +94,11 @@ namespace retroforge
     {
       const double least = 0.1 * parameters.edge_length(scene.mesh);
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
-        if (const double depth = parameters.dies[d].shape->depth_of_contact();
-            scene.dies[d].surface() && depth > 0. && depth < least)
+        if (const auto depth = parameters.dies[d].shape->depth_of_contact();
+            scene.dies[d].surface() && depth && *depth < least)
           throw Error(
             "Die " + parameters.dies[d].name + "/depth of contact",
-            "is " + as_text(depth) + " mm",
+            "is " + as_text(*depth) + " mm",
             "nodes deeper are lost to the die, so it must be a tenth of the element size at least, " +
               as_text(least) + " mm",
             "leave it out, which takes a tenth of the die's extent");

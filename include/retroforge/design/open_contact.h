@@ -4,6 +4,8 @@
 
 #include <retroforge/contact/contact_law.h>
 
+#include <optional>
+
 namespace retroforge
 {
   /// The rule by which the numbers of the contact law follow from the metal and the speed at which the dies
@@ -11,10 +13,10 @@ namespace retroforge
   /// nominal billet, as increments and sizes of elements do.
   struct OpenContact
   {
-    double height        = 1.; ///< height of the whole billet [mm]
-    double penetration   = 1.; ///< speed at which a node sinks in under the mean pressure, over the dies'
-    double penalty       = 0.; ///< where it is set: rho, which then stays [MPa s/mm]; 0: it follows
-    double slip_fraction = 0.; ///< v0 over the speed at which the dies close
+    double height      = 1.; ///< height of the whole billet [mm]
+    double penetration = 1.; ///< speed at which a node sinks in under the mean pressure, over the dies'
+    std::optional<double> penalty       = {}; ///< rho, where it is set and does not follow [MPa s/mm]
+    double                slip_fraction = 0.; ///< v0 over the speed at which the dies close
 
     /// Returns the mean pressure of a frictionless upsetting,  p = factor(3/2 e^2) 3/2 e,  e = speed / height
     /// [MPa].
@@ -30,7 +32,7 @@ namespace retroforge
     ContactLaw<Number> law(const MaterialLaw<Number> &metal, const Number &speed) const
     {
       const Number rho =
-        penalty > 0. ? Number(penalty) : Number(mean_pressure(metal, speed) / (penetration * speed));
+        penalty ? Number(*penalty) : Number(mean_pressure(metal, speed) / (penetration * speed));
       return {rho, Number(slip_fraction * speed)};
     }
   };

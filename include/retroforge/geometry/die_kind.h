@@ -10,6 +10,8 @@
 
 #include <deal.II/base/tensor.h>
 
+#include <optional>
+
 namespace retroforge
 {
   /// Name and position of a die.
@@ -38,8 +40,8 @@ namespace retroforge
     /// @throws Error  for a file or measures that make no surface
     virtual Die make(const DiePlace &place) const = 0;
 
-    /// Returns the depth of contact set by the user [mm]; 0: not set.
-    virtual double depth_of_contact() const { return 0.; }
+    /// Returns the depth of contact, where the user sets it [mm].
+    virtual std::optional<double> depth_of_contact() const { return {}; }
 
     /// Returns the free form of dies whose vertices can move, else null.
     virtual const DieFreeFormParameters *free_form() const { return nullptr; }
@@ -78,10 +80,13 @@ namespace retroforge
 
     DieFreeFormParameters free_form_parameters;
 
-    void   add_parameters(dealii::ParameterHandler &prm) override;
-    void   check(const std::string &section, const std::string &chosen) const override;
-    Die    make(const DiePlace &place) const override;
-    double depth_of_contact() const override { return depth; }
+    void                  add_parameters(dealii::ParameterHandler &prm) override;
+    void                  check(const std::string &section, const std::string &chosen) const override;
+    Die                   make(const DiePlace &place) const override;
+    std::optional<double> depth_of_contact() const override
+    {
+      return depth > 0. ? std::optional(depth) : std::nullopt;
+    }
 
     const DieFreeFormParameters *free_form() const override { return &free_form_parameters; }
 

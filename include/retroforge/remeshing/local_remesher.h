@@ -6,6 +6,7 @@
 #include <retroforge/remeshing/remeshing_parameters.h>
 #include <retroforge/remeshing/remeshing_report.h>
 
+#include <optional>
 #include <vector>
 
 namespace retroforge
@@ -33,7 +34,7 @@ namespace retroforge
   /// @param size  wanted edge length, may vary in space
   /// @param push_out  keeps new surface nodes out of the dies; may be empty
   /// @param touches   nodes the volume correction leaves where they are; may be empty
-  /// @param wanted_volume  what the correction restores; 0: the volume of the mesh
+  /// @param wanted_volume  volume that the correction restores [mm^3]; by default that of the mesh
   /// Throws Error when a cell has no positive volume: then the mesh must be rebuilt from its surface.
   RemeshedMesh remesh_locally(const TetMesh              &mesh,
                               const NodalVectors<double> &X,
@@ -41,5 +42,5 @@ namespace retroforge
                               const RemeshingParameters  &parameters,
                               const PushOut              &push_out      = {},
                               const TouchesDie           &touches       = {},
-                              double                      wanted_volume = 0.);
+                              std::optional<double>       wanted_volume = {});
 } // namespace retroforge
