@@ -8,8 +8,8 @@
 
 namespace retroforge
 {
-  /// What the user asked for:  `retroforge COMMAND CASE.prm [--set Section/name=value]... [--output DIR]
-  /// [--at NAME=VALUE]... [--resume | --overwrite]`.
+  /// The command line:  `retroforge COMMAND CASE.prm [--set Section/name=value]... [--output DIR] [--at
+  /// NAME=VALUE]... [--resume | --overwrite]`.
   struct CommandLine
   {
     std::string command; ///< simulate, gradient, check, scan, optimize or scene; empty only with one of the
@@ -48,6 +48,6 @@ namespace retroforge
   /// The commands, in the order of the help text.
   const std::vector<std::string> &known_commands();
 
-  /// What `--help` prints.
+  /// Returns the text that `--help` prints.
   std::string help_text();
 } // namespace retroforge

@@ -13,7 +13,7 @@ namespace retroforge
   template <typename Number>
   using Symmetric = std::array<Number, 6>;
 
-  /// Of strain rates, of stresses, or of what is dual to them.
+  /// Strain rates, stresses, or derivatives in them, at the four points of a cell.
   template <typename Number>
   using PointRates = Four<Symmetric<Number>>;
 

@@ -21,7 +21,7 @@ namespace retroforge
     /// @throws Error  if the file cannot be written
     explicit ObjectiveHistory(const std::string &file);
 
-    /// The same columns each time; what is not known yet (NaN) is left empty.
+    /// Adds a row, with the same columns each time; values not yet known (NaN) are left empty.
     /// @throws Error  if the row cannot be written
     void add(double stroke, const std::vector<NamedValue> &columns);
 
