@@ -35,7 +35,7 @@ namespace retroforge
       }
     };
 
-    /// What two faces that share an edge do not share.
+    /// Returns the two nodes that faces with a common edge do not share.
     EdgeKey other_diagonal(const FaceKey &a, const FaceKey &b)
     {
       std::vector<NodeIndex> nodes;

@@ -30,7 +30,7 @@ namespace retroforge
       std::array<Vec3, 2> across_;
     };
 
-    /// Of triangles in a frame: what part of their normal is along the way must be more than this.
+    /// Least part of a triangle's normal along the way, for the triangle to count.
     constexpr double least_inclination = 1e-7;
 
     /// +1: it looks along the way, -1: back, 0: along neither.
@@ -189,7 +189,7 @@ namespace retroforge
       return best.travel < infinite ? std::optional<Meeting>(best) : std::nullopt;
     }
 
-    /// Of a plane: its normal into the die, along a way.
+    /// Returns the component of a plane's normal into the die along a way.
     double slope_of_plane(const Die &plane, const Vec3 &way)
     {
       return plane.project(Vec3(), Vec3(), DieFeature()).n * way / way.norm();

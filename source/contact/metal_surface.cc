@@ -108,7 +108,7 @@ namespace retroforge
       return {cut.X, {}, cut.faces, mesh.patches};
     }
 
-    /// Where points go when they are put on the billet's shape.
+    /// Returns the displacements of points when they are put on the billet's shape.
     NodalVectors<double> lifts(const BilletParameters &billet, const TetMesh &cut)
     {
       TetMesh snapped = cut;

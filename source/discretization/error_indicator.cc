@@ -17,7 +17,7 @@ namespace retroforge
         sum[k] += factor * e[k];
     }
 
-    /// Of a field linear in the cell at the four points of equal weights that integrate it to degree two.
+    /// Evaluates a field linear in the cell at the four points of equal weights that integrate to degree two.
     PointRates<double> at_points(const PointRates<double> &corners)
     {
       const double       near = (5. + 3. * std::sqrt(5.)) / 20., far = (5. - std::sqrt(5.)) / 20.;
@@ -28,7 +28,7 @@ namespace retroforge
       return points;
     }
 
-    /// Of the visited cells, in their order.
+    /// Deviatoric strain rates and volumes of the visited cells, in their order.
     struct DeviatoricRates
     {
       std::vector<PointRates<double>> at_corners;

@@ -52,7 +52,8 @@ namespace retroforge
       }
       return area;
     }
-    /// How far a smooth surface that turns by the angle over the narrower one of two facets is from it.
+    /// Returns the distance from a facet of a smooth surface that turns by the angle over the narrower one of
+    /// two facets.
     double sagitta(const TriangleSurface   &surface,
                    const std::vector<Vec3> &vectors,
                    const unsigned int       f,

@@ -11,7 +11,7 @@ namespace retroforge
 
   namespace
   {
-    /// Of edge length h, in h^3: a regular tetrahedron has the volume h^3 / (6 sqrt 2).
+    /// Number of regular tetrahedra of edge length h in h^3: one has the volume h^3 / (6 sqrt 2).
     constexpr double regular_tetrahedra = 8.5;
 
     /// Into one lane of a pack, of the blocks that both pairs have.
