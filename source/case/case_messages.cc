@@ -106,7 +106,7 @@ namespace retroforge
     for (const Die &die : forging_case.model.dies)
       add(notes_on_holes(die));
     if (const double size = forging_case.parameters.remeshing.element_size;
-        size > 0. && forging_case.parameters.remeshing.when != "never")
+        size > 0. && forging_case.parameters.remeshing.enabled())
       add(note_on_fineness(
         "Remeshing/element size", size, expected_cells(std::pow(forging_case.size().side, 3), size)));
     if (forging_case.process.operations.front().path_scale != 1.)

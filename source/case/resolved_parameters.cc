@@ -14,7 +14,7 @@ namespace retroforge
   BilletSize Parameters::size_of(const TetMesh &mesh) const
   {
     const double side = std::cbrt(volume(mesh.cells, mesh.X));
-    if (billet.shape != "file")
+    if (!billet.is_from_file())
       return {side, billet.whole_height()};
     const Vec3 &velocity = dies[leading_die()].velocity;
     const Vec3  way      = velocity / velocity.norm();
@@ -109,7 +109,10 @@ namespace retroforge
 
   OpenContact Parameters::open_contact(const BilletSize &size) const
   {
-    return {size.height, contact.penetration, contact.penalty, contact.slip_fraction};
+    return {size.height,
+            contact.penetration,
+            contact.penalty > 0. ? std::optional(contact.penalty) : std::nullopt,
+            contact.slip_fraction};
   }
 
   Process<double> Parameters::process(const BilletSize &size) const
@@ -173,7 +176,7 @@ namespace retroforge
   {
     if (remeshing.element_size > 0.)
       return remeshing.element_size;
-    if (billet.shape != "file")
+    if (!billet.is_from_file())
       return billet.element_size;
     double sum = 0.;
     for (const auto &cell : mesh.cells)

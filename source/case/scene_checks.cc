@@ -38,7 +38,7 @@ namespace retroforge
     std::string how_to_scale(const Parameters &parameters, const DieParameters &die)
     {
       const bool of_file = die.shape.name == "stl";
-      return parameters.billet.shape == "file"
+      return parameters.billet.is_from_file()
                ? std::string("; set `scale' of the billet") + (of_file ? " or of the die" : "") +
                    ": a mesh in metres needs 1000 where lengths are in mm"
              : of_file ? "; set the die's `scale', or correct the billet's measures"
@@ -94,11 +94,11 @@ namespace retroforge
     {
       const double least = 0.1 * parameters.edge_length(scene.mesh);
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
-        if (const double depth = parameters.dies[d].shape->depth_of_contact();
-            scene.dies[d].surface() && depth > 0. && depth < least)
+        if (const auto depth = parameters.dies[d].shape->depth_of_contact();
+            scene.dies[d].surface() && depth && *depth < least)
           throw Error(
             "Die " + parameters.dies[d].name + "/depth of contact",
-            "is " + as_text(depth) + " mm",
+            "is " + as_text(*depth) + " mm",
             "nodes deeper are lost to the die, so it must be a tenth of the element size at least, " +
               as_text(least) + " mm",
             "leave it out, which takes a tenth of the die's extent");

@@ -62,8 +62,7 @@ namespace retroforge
       for (unsigned int e = 0; e < 3; ++e)
         if (const unsigned int other = surface.neighbour(f, e).facet; other != invalid_index)
         {
-          const Vec3   a = normal(f), b = normal(other);
-          const double angle = std::atan2(cross_product_3d(a, b).norm(), a * b) * 180. / M_PI;
+          const double angle = angle_between(normal(f), normal(other)) * 180. / M_PI;
           if (angle <= feature_angle)
             largest = std::max(largest, angle);
         }
@@ -144,7 +143,7 @@ namespace retroforge
     bool refines_to(const Parameters &parameters, const double width, const double edge)
     {
       const RemesherParameters &remeshing = parameters.remeshing;
-      return remeshing.when != "never" && remeshing.sizes != "uniform" &&
+      return remeshing.enabled() && remeshing.sizes != RemesherParameters::Sizes::uniform &&
              remeshing.smallest_size * edge <= width;
     }
 
@@ -153,9 +152,9 @@ namespace retroforge
     {
       const RemesherParameters &remeshing = parameters.remeshing;
       std::string               text;
-      if (remeshing.sizes == "uniform")
+      if (remeshing.sizes == RemesherParameters::Sizes::uniform)
         return text;
-      if (remeshing.when == "never")
+      if (!remeshing.enabled())
         text += ", or Remeshing/when = quality";
       if (remeshing.smallest_size * edge > width)
         text += (text.empty() ? ", or " : " and ") + std::string("Remeshing/smallest size = ") +
@@ -194,7 +193,7 @@ namespace retroforge
           warnings.push_back("Die " + scene.dies[d].name + " is " + as_text(unseen->width) +
                              " mm wide where it comes into the billet at " + in_brackets(unseen->place) +
                              ", between nodes: contact does not see it; set " +
-                             (parameters.billet.shape == "file" ? "Remeshing" : "Billet") +
+                             (parameters.billet.is_from_file() ? "Remeshing" : "Billet") +
                              "/element size = " + as_text(rounded_down(unseen->width)) +
                              how_to_refine(parameters, unseen->width, edge));
       }

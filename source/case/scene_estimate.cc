@@ -218,7 +218,7 @@ namespace retroforge
     {
       const BilletParameters &billet = view.parameters.billet;
       if (const double extent = view.extent(); !(extent >= least_extent && extent <= largest_extent))
-        warnings.push_back((billet.shape == "file" ? "Billet/scale" : "Billet") +
+        warnings.push_back((billet.is_from_file() ? "Billet/scale" : "Billet") +
                            std::string(": the billet's extent is ") + as_text(extent) +
                            " mm; lengths are in mm: is it in metres?");
       const Vec3   size     = view.high - view.low;
@@ -229,9 +229,9 @@ namespace retroforge
             setting + " = " + as_text(element_size) + ": the billet is " + as_text(smallest) +
             " mm across where it is thinnest, less than an element; several are wanted there");
       };
-      if (billet.shape != "file")
+      if (!billet.is_from_file())
         coarse("Billet/element size", billet.element_size);
-      if (view.parameters.remeshing.when != "never")
+      if (view.parameters.remeshing.enabled())
         coarse("Remeshing/element size", view.parameters.remeshing.element_size);
       for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
         if (const TriangleSurface *surface = view.scene.dies[d].surface())

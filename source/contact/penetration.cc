@@ -44,7 +44,7 @@ namespace retroforge
       return deepest;
     }
 
-    /// Of the ranks' findings, in their order.
+    /// Returns the deepest of the ranks' findings, in their order.
     Penetration deepest_of_ranks(const Penetration &mine, MPI_Comm comm)
     {
       using Numbers = std::array<double, 4>;

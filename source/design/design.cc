@@ -63,7 +63,7 @@ namespace retroforge
       , stroke_(stroke)
       , billet_map_(billet, first)
       , nominal_X_(billet_map_.nominal_positions())
-      , width_(billet.shape == "file" ? extent_in_x(nominal_X_) : billet.whole_width())
+      , width_(billet.is_from_file() ? extent_in_x(nominal_X_) : billet.whole_width())
   {
     for (const DieParameters &die : dies_)
     {

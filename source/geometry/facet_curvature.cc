@@ -29,8 +29,7 @@ namespace retroforge
 
     double turn(const TriangleSurface &surface, const unsigned int facet, const unsigned int other)
     {
-      const Vec3 n = normal(surface, facet), m = normal(surface, other);
-      return std::atan2(cross_product_3d(n, m).norm(), n * m);
+      return angle_between(normal(surface, facet), normal(surface, other));
     }
   } // namespace
 

@@ -6,7 +6,7 @@ namespace retroforge
 {
   namespace
   {
-    /// Of the vertices alone: those of quadratic velocities lie on straight edges between them.
+    /// Vertices alone: the middles of quadratic velocities lie on straight edges between them.
     template <typename Number>
     ContactView<Number> contact_view(const FinalView<Number> &view)
     {

@@ -62,7 +62,7 @@ namespace retroforge
       , billet(std::make_shared<const TetMesh>(std::move(mesh)))
       , nominal_billet(billet)
       , X_0(billet->X)
-      , model{parameters.discretization.choice(), std::move(dies), {}, {}, {}, MPI_COMM_WORLD}
+      , model{parameters.discretization.choice, std::move(dies), {}, {}, {}, MPI_COMM_WORLD}
       , process(std::move(at_process))
       , segments({{{}, parameters}})
       , objectives(given.empty() ? parameters.make_objectives(model.dies, *billet) : std::move(given))

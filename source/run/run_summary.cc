@@ -44,7 +44,7 @@ namespace retroforge
 
   void summarise_run(const Case &forging_case, const ForgingState &forged, Summary &summary)
   {
-    summary.command               = forging_case.command.command;
+    summary.command               = word_of(forging_case.command.command.value());
     summary.version               = version;
     summary.commit                = commit;
     summary.blas                  = blas_in_use();

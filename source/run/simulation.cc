@@ -60,8 +60,8 @@ namespace retroforge
     /// A check reads the increments many times over; a gradient once, from the record.
     bool kept_in_memory(const Case &forging_case)
     {
-      return forging_case.command.command == "check" ||
-             (forging_case.command.command == "gradient" && !forging_case.parameters.output.record);
+      return forging_case.command.command == Command::check ||
+             (forging_case.command.command == Command::gradient && !forging_case.parameters.output.record);
     }
   } // namespace
 
@@ -113,7 +113,7 @@ namespace retroforge
       case_.resumption->check_increments();
     MPI_Barrier(case_.comm); // all have read before anything changes
     if (root_ && command.resume)
-      remove_all_but_record(command.output_directory, command.command == "check");
+      remove_all_but_record(command.output_directory, command.command == Command::check);
     else if (root_)
       make_results_folder(command.output_directory, command.overwrite, case_.echo);
   }
@@ -128,10 +128,10 @@ namespace retroforge
                                                "billet.msh",
                                                "forged.msh",
                                                "forged.stl"};
-    const bool               differentiates = case_.command.command != "simulate";
+    const bool               differentiates = case_.command.command != Command::simulate;
     if (differentiates)
       files.insert(files.end(), {"sensitivity.vtu", "sensitivity_nodes.csv"});
-    if (case_.command.command == "check")
+    if (case_.command.command == Command::check)
       files.push_back("check.json");
     if (case_.parameters.output.record)
       files.push_back("record.h5");
@@ -158,13 +158,12 @@ namespace retroforge
 
   bool Simulation::forge_and_judge()
   {
-    const double       begin   = timings_.seconds("total");
-    const std::string &command = case_.command.command;
-    summary_.whole             = whole_part(case_.billet, case_.nominal.leading_velocity());
+    const double begin = timings_.seconds("total");
+    summary_.whole     = whole_part(case_.billet, case_.nominal.leading_velocity());
     forge();
     if (!case_.command.resume)
       forging_seconds_ = timings_.seconds("total") - begin;
-    if (command != "simulate")
+    if (case_.command.command != Command::simulate)
       differentiate();
     summarise_run(case_, run_.state(), summary_);
     summarise_objectives(case_, run_.trace(), run_.state(), values_, summary_);
@@ -302,7 +301,7 @@ namespace retroforge
                                 {}});
     // A check compares the two methods.
     if (case_.parameters.adjoint.method == AdjointParameters::Method::direct &&
-        case_.command.command == "gradient")
+        case_.command.command == Command::gradient)
       differentiate_directly();
     else
       sweep_back();

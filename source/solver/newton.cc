@@ -113,14 +113,14 @@ namespace retroforge
     /// Balances bubbles with velocities and pressures that are on their way. Where the metal hardly feels its
     /// rate, a load that a cell cannot bear makes them  |beta| ~ (load / K)^(1/m),  beyond all bounds, and
     /// systems solved to a part of such a residual say nothing of the rest: those are left as they are.
-    void settle_bubbles_in_reach(const Stage<double> &stage, const double speed, Field<double> &W)
+    void solve_bubbles_in_reach(const Stage<double> &stage, const double speed, Field<double> &W)
     {
       constexpr double farthest       = 1e3; // of the dies' speed
       const auto      &discretization = stage.scene.discretization;
       if (!discretization.has_bubbles())
         return;
       const NodeVector<3, double> before = W.V;
-      settle_bubbles(stage, W);
+      solve_bubbles(stage, W);
       for (const CellIndex c : discretization.visited_cells())
       {
         const unsigned int place = discretization.velocity_places(c)[4];
@@ -195,7 +195,7 @@ namespace retroforge
     // Friction that hardly grows with the slip leaves the residual blind to a step that goes too far.
     Field<double> there = W, r;
     const double  part  = search_power(stage, there, start.r, step, active);
-    settle_bubbles_in_reach(stage, start.speed, there);
+    solve_bubbles_in_reach(stage, start.speed, there);
     if (relative_residual(stage, there, active, start.scale, r) < start.residual)
     {
       W = std::move(there);
@@ -209,7 +209,7 @@ namespace retroforge
     {
       there = W;
       there.add(a, step);
-      settle_bubbles_in_reach(stage, start.speed, there);
+      solve_bubbles_in_reach(stage, start.speed, there);
       const double residual = relative_residual(stage, there, active, start.scale, r);
       if (i == 0 || residual < least)
       {
@@ -323,11 +323,11 @@ namespace retroforge
     std::vector<char> held;
     // Friction that follows the pressure needs to know it from the start.
     if (decides && (!from_rest || !stage.has_potential()))
-      held = hold_on_dies(stage, W, pressed);
+      held = project_onto_dies(stage, W, pressed);
     const double speed = volume_and_speed(stage).second;
-    settle_bubbles_in_reach(stage, speed, W);
+    solve_bubbles_in_reach(stage, speed, W);
     if (!held.empty())
-      lean_on_dies(stage, held, W);
+      apply_contact_pressure(stage, held, W);
     unsigned int  picard    = decides && start == Start::far ? picard_steps : 0;
     const Scale   reference = reference_scale(stage);
     Scale         scale;
@@ -392,7 +392,7 @@ namespace retroforge
         {
           const ActiveSet active = stage.decide_active(W);
           taken                  = search(active);
-          stop_at_dies(stage, active, W);
+          clip_to_dies(stage, active, W);
         }
         else
         {
@@ -409,7 +409,7 @@ namespace retroforge
       else
         W.add(1., step);
       if (statistics.residual > settled)
-        settle_bubbles_in_reach(stage, speed, W);
+        solve_bubbles_in_reach(stage, speed, W);
       last = statistics.residual;
     }
     std::ostringstream what;

@@ -89,7 +89,7 @@ namespace retroforge
     const Discretization<3> &discretization = scene.discretization;
     const ActiveSet          chosen         = active.is_given() ? *active : decide_active(W);
     Field<Number>            r(discretization);
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.visited_cells())
         pair.add(discretization,
                  cell_residual(cell_geometry(pair.positions(discretization, X, c)),
@@ -111,7 +111,7 @@ namespace retroforge
     check_arguments(*this, W, active);
     const Discretization<3>  &discretization = scene.discretization;
     std::pair<Number, Number> power{Number(0.), Number(0.)};
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
         power.first += cell_dissipation(
           cell_geometry(pair.positions(discretization, X, c)), pair.on_cell(discretization, W, c), law(c));
@@ -132,7 +132,7 @@ namespace retroforge
     const auto         &velocities     = *discretization.velocity_nodes();
     const auto         &pressures      = *discretization.pressure_nodes();
     std::vector<double> force(velocities.n_places(), 0.), flow(pressures.n_places(), 0.);
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.visited_cells())
       {
         const auto   geometry = cell_geometry(pair.positions(discretization, stage.X, c));
@@ -162,7 +162,7 @@ namespace retroforge
     return forces;
   }
 
-  void settle_bubbles(const Stage<double> &stage, Field<double> &W)
+  void solve_bubbles(const Stage<double> &stage, Field<double> &W)
   {
     check_arguments(stage, W, {});
     const Discretization<3> &discretization = stage.scene.discretization;
@@ -205,7 +205,7 @@ namespace retroforge
       return;
     for (const CellIndex c : discretization.visited_cells())
       MiniPair::bubble(discretization, W, c) = Vec3();
-    settle_bubbles(stage, W);
+    solve_bubbles(stage, W);
   }
 
   namespace
@@ -232,7 +232,7 @@ namespace retroforge
     check_bar(view.stage, bar);
     const Stage<double>     &stage          = view.stage;
     const Discretization<3> &discretization = stage.scene.discretization;
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
       {
         const auto X        = pair.positions(discretization, stage.X, c);
@@ -265,7 +265,7 @@ namespace retroforge
     check_bar(view.stage, bar);
     const Stage<double>     &stage          = view.stage;
     const Discretization<3> &discretization = stage.scene.discretization;
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
       {
         const auto X     = pair.positions(discretization, stage.X, c);

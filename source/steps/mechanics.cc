@@ -44,7 +44,7 @@ namespace retroforge
       W.V = bubbles;
     W.V.take(solve.V);
     W.P.take(solve.P);
-    settle_bubbles(stage, W);
+    solve_bubbles(stage, W);
   }
 
   Mechanics::Mechanics(const Scene            &scene,

@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/geometry/vector_algebra.h>
 #include <retroforge/solver/stage_motion.h>
 #include <retroforge/steps/mechanics.h>
 
 namespace retroforge
 {
-  namespace
-  {
-    double dot(const NodalVectors<double> &a, const NodalVectors<double> &b)
-    {
-      double sum = 0.;
-      for (std::size_t k = 0; k < a.size(); ++k)
-        sum += a[k] * b[k];
-      return sum;
-    }
-  } // namespace
-
   void Mechanics::forget()
   {
     system_.reset();

@@ -6,7 +6,7 @@
 
 namespace retroforge
 {
-  /// How far nodes of the workpiece are free of all dies at the end:
+  /// The degree to which nodes of the workpiece are free of all dies at the end, 0 to 1:
   ///   f_k = product over dies d of 1 - w(delta_kd),
   /// w the friction ramp of contact: 0 where a node touches, 1 where it is out of the ramp's width. A node
   /// that an edge holds off a curved die touches, as it does for friction. Frozen: which points are within

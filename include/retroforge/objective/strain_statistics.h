@@ -7,8 +7,9 @@
 #include <retroforge/objective/smooth_maximum.h>
 
 /// @file
-/// How much, how evenly and how locally the workpiece was deformed: statistics of the accumulated equivalent
-/// strain q_N over the final volume, each cell weighted with its volume at X_N. Dimensionless.
+/// Statistics of the deformation of the workpiece, its mean, evenness and maximum: functions of the
+/// accumulated equivalent strain q_N over the final volume, each cell weighted with its volume at X_N.
+/// Dimensionless.
 namespace retroforge
 {
   enum class StrainStatistic
@@ -50,7 +51,7 @@ namespace retroforge
                            FinalBar                  &bar) const;
 
   private:
-    /// What of a cell's strain is integrated: two functions and their slopes.
+    /// Returns the two functions of a cell's strain that are integrated; slopes() returns their derivatives.
     template <typename Number>
     std::array<Number, 2> integrands(const Number &q, double reference) const;
     std::array<double, 2> slopes(double q, double reference) const;

@@ -9,8 +9,8 @@
 
 namespace retroforge
 {
-  /// Where the material should be: within a closed surface (the shape desired, normals outwards), or in front
-  /// of a die's face.
+  /// The region that material should fill: within a closed surface (the desired shape, normals outwards), or
+  /// in front of a die's face.
   enum class Cavity
   {
     within,
@@ -42,7 +42,7 @@ namespace retroforge
     struct Sample
     {
       Vec3       x;
-      double     volume;            ///< that it stands for, in the sector [mm^3]
+      double     volume;            ///< volume that the sample stands for, in the sector [mm^3]
       DieFeature target, workpiece; ///< a target of none: deep in a cavity within
     };
 

@@ -158,7 +158,7 @@ namespace retroforge
 
   /// The equilibrium of bubbles at given velocities of the nodes and P, in the cells this rank visits; they
   /// start where they are.
-  void settle_bubbles(const Stage<double> &stage, Field<double> &W);
+  void solve_bubbles(const Stage<double> &stage, Field<double> &W);
 
   /// The same from the velocities at nodes and P alone: bubbles start from nothing.
   void recover_bubbles(const Stage<double> &stage, Field<double> &W);

@@ -28,7 +28,7 @@ namespace
   Parameters cylinder_scene()
   {
     Parameters p;
-    p.billet.shape           = "cylinder";
+    p.billet.shape           = BilletParameters::Shape::cylinder;
     p.billet.radius          = 20.;
     p.billet.height          = 24.;
     p.billet.symmetry_planes = {Vec3({0., -1., 0.}), Vec3({-std::sqrt(0.75), 0.5, 0.})};
@@ -47,7 +47,7 @@ namespace
     p.contact.slip_fraction  = 0.1;
     p.newton.tolerance       = 1e-12;
     p.adjoint.tolerance      = 1e-13;
-    p.linear_solver.method   = "direct";
+    p.linear_solver.method   = LinearSolverParameters::Method::direct;
     return p;
   }
 
@@ -244,7 +244,7 @@ int main(int argc, char **argv)
   compare_plane();
   const Parameters tripods = tripod_scene(), bell = bell_scene(), under_punch = punch_scene();
   Parameters       facets = bell, nodes = tripods;
-  facets.dies[1].shape.choose<BellDie>().surface_law = "facets";
+  facets.dies[1].shape.choose<BellDie>().surface_law = SurfaceDie::Surface::facets;
   nodes.contact.edges_touch                          = false;
   const std::vector<double> errors                   = {check("tripods", Problem(tripods)),
                                                         check("bell", Problem(bell)),

@@ -50,7 +50,7 @@ namespace
     p.press.motion_numbers = {8., 5.};
     if (quadratic)
     {
-      p.discretization.element = "P2-P1";
+      p.discretization.choice.pair = ElementPair::taylor_hood;
       p.billet.element_size    = 20.;
     }
     return p;

@@ -29,7 +29,7 @@ namespace retroforge
     p.contact.slip_fraction = 0.1;
     p.newton.tolerance      = 1e-13;
     p.adjoint.tolerance     = 1e-13;
-    p.linear_solver.method  = "direct";
+    p.linear_solver.method  = LinearSolverParameters::Method::direct;
     return p;
   }
 
@@ -42,7 +42,7 @@ namespace retroforge
   inline Parameters resolved(Parameters all, const Meshes meshes)
   {
     if (meshes == Meshes::one)
-      all.remeshing.when = "never";
+      all.remeshing.when = RemesherParameters::When::never;
     all.resolve_defaults({all.billet.size[2], all.billet.size[2]});
     return all;
   }

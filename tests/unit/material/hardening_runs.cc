@@ -56,7 +56,7 @@ namespace
     p.press.largest_loss     = 0.1;
     p.contact.penetration    = 1e-9;
     p.newton.tolerance       = 1e-10;
-    p.linear_solver.method   = "direct";
+    p.linear_solver.method   = LinearSolverParameters::Method::direct;
     p.discretization.element = element;
     return p;
   }
@@ -229,20 +229,20 @@ int main(int argc, char **argv)
       check_upsetting(element, scheme);
   Parameters block = tilted_block();
   harden(block);
-  Parameters quadratic             = block;
-  quadratic.discretization.element = "P2-P1";
-  quadratic.billet.element_size    = 20.;
-  Parameters krylov                = block;
-  krylov.linear_solver.method      = "auto";
+  Parameters quadratic                 = block;
+  quadratic.discretization.choice.pair = ElementPair::taylor_hood;
+  quadratic.billet.element_size        = 20.;
+  Parameters krylov                    = block;
+  krylov.linear_solver.method          = LinearSolverParameters::Method::automatic;
   check_gradients("tilted die", block, Meshes::one);
   check_gradients("tilted die, Krylov's method", krylov, Meshes::one);
   check_gradients("tilted die, quadratic velocities", quadratic, Meshes::one);
   for (Parameters *p : {&block, &quadratic})
   {
     p->press.scheme     = "euler";
-    p->remeshing.when   = "increments";
+    p->remeshing.when   = RemesherParameters::When::increments;
     p->remeshing.every  = 2;
-    p->remeshing.method = "rebuild";
+    p->remeshing.method = RemesherParameters::Method::rebuild;
     p->press.increments = 5;
   }
   check_gradients("remeshing", block, Meshes::anew);

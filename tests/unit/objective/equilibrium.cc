@@ -34,7 +34,7 @@ Parameters flat_dies(const double penetration)
   p.press.increments     = 4;
   p.contact.penetration  = penetration;
   p.newton.tolerance     = 1e-12;
-  p.linear_solver.method = "direct";
+  p.linear_solver.method = LinearSolverParameters::Method::direct;
   return p;
 }
 

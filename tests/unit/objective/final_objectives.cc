@@ -282,7 +282,7 @@ void check_unfilled()
 void check_cylinder(Errors &errors)
 {
   BilletParameters parameters;
-  parameters.shape        = "cylinder";
+  parameters.shape        = BilletParameters::Shape::cylinder;
   parameters.radius       = 5.;
   parameters.height       = 8.;
   parameters.element_size = 3.;

@@ -38,7 +38,7 @@ Parameters frictionless_block()
   p.contact.approach       = 1.;
   p.contact.penetration    = 1e-8;
   p.newton.tolerance       = 1e-11;
-  p.linear_solver.method   = "direct";
+  p.linear_solver.method   = LinearSolverParameters::Method::direct;
   return p;
 }
 

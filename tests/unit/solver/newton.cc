@@ -44,7 +44,7 @@ namespace
   void bubbles(const CornerStage &corner)
   {
     Field<double> settled = corner.W, recovered = corner.W;
-    settle_bubbles(corner.stage(), settled);
+    solve_bubbles(corner.stage(), settled);
     recover_bubbles(corner.stage(), recovered);
     double change = 0., size = 0.;
     for (const CellIndex c : corner.scene.discretization.visited_cells())

@@ -45,7 +45,7 @@ namespace
     p.press.largest_loss     = 0.1;
     p.contact.penetration    = 1e-9;
     p.newton.tolerance       = 1e-10;
-    p.linear_solver.method   = "direct";
+    p.linear_solver.method   = LinearSolverParameters::Method::direct;
     return p;
   }
 
