@@ -93,7 +93,8 @@ namespace retroforge
     }
   } // namespace
 
-  std::vector<char> project_onto_dies(const Stage<double> &stage, Field<double> &W, const ActiveChoice &pressed)
+  std::vector<char>
+  project_onto_dies(const Stage<double> &stage, Field<double> &W, const ActiveChoice &pressed)
   {
     const auto       &pairs = stage.contact.pairs;
     std::vector<char> held  = pressed.is_given() ? *pressed : pressed_by_metal(stage, W);

@@ -124,8 +124,10 @@ namespace retroforge
     const Recording            &recording() const { return recording_; }
 
     /// Returns whether the mesh may be made anew.
-    bool remeshes() const { return problem_.segments[segment_].parameters.remeshing.when !=
-             RemesherParameters::When::never; }
+    bool remeshes() const
+    {
+      return problem_.segments[segment_].parameters.remeshing.when != RemesherParameters::When::never;
+    }
 
   private:
     /// What a segment of the stroke is run with.

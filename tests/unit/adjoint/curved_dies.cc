@@ -224,7 +224,7 @@ namespace
     };
     const Problem plane(parameters),
       squares(parameters, {Die("lower", square(0., true), 10.), Die("upper", square(24., false), 10.)});
-    double largest = relative_error(squares.forged.energy.total(), plane.forged.energy.total()), size = 0.;
+    double largest = relative_error(squares.state().energy.total(), plane.state().energy.total()), size = 0.;
     for (const Vec3 &x : plane.bar.X_0)
       size = std::max(size, x.norm());
     for (std::size_t k = 0; k < plane.bar.X_0.size(); ++k)

@@ -51,7 +51,7 @@ namespace
     if (quadratic)
     {
       p.discretization.choice.pair = ElementPair::taylor_hood;
-      p.billet.element_size    = 20.;
+      p.billet.element_size        = 20.;
     }
     return p;
   }
