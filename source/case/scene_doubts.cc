@@ -3,6 +3,7 @@
 #include <retroforge/case/scene_checks.h>
 #include <retroforge/case/scene_doubts.h>
 #include <retroforge/geometry/facet_curvature.h>
+#include <retroforge/geometry/vector_algebra.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/geometry/facet_curvature.h>
+#include <retroforge/geometry/vector_algebra.h>
 
 #include <algorithm>
 #include <cmath>
