@@ -26,6 +26,8 @@ namespace retroforge
         if (!columns.owns(b))
           others.insert(b);
     column_nodes_.insert(column_nodes_.end(), others.begin(), others.end());
+    of_row_.begin.reserve(neighbours.begin.size());
+    of_row_.entries.reserve(neighbours.entries.size());
     for (unsigned int a = rows.begin; a < rows.end; ++a)
     {
       for (const unsigned int b : neighbours[a - rows.begin])

@@ -9,6 +9,7 @@
 #include <retroforge/solver/saddle_solver.h>
 
 #include <deal.II/lac/solver_gmres.h>
+#include <deal.II/lac/vector_memory.h>
 
 namespace retroforge
 {
@@ -188,6 +189,9 @@ namespace retroforge
     const bool large  = system_.P || system_.A->pattern().rows().n >= parameters_.multigrid_from;
     const bool multigrid =
       parameters_.method == Method::multigrid || (parameters_.method == Method::automatic && large);
+    // The vectors of the last solve's Krylov space lie in deal.II's pool. While it is made, a preconditioner
+    // needs more room than afterwards: theirs.
+    GrowingVectorMemory<la::BlockVector>::release_unused_memory();
     preconditioner_ = std::make_unique<Preconditioner>(*A_,
                                                        system_.matrix.block(0, 1),
                                                        system_.matrix.block(1, 0),

@@ -39,8 +39,8 @@ namespace retroforge
 
   /// A mesh and the spaces on it, as deal.II defines them: a triangulation whose cells METIS gives to ranks;
   /// the velocities, FESystem(FE_SimplexHat, dim) or FESystem(FE_SimplexP(2), dim), the pressures,
-  /// FE_SimplexP(1), and the positions, FESystem(FE_SimplexP(1), dim), each with its DoFHandler; and the
-  /// constraints of the symmetry planes. Made anew for each mesh of a run.
+  /// FE_SimplexP(1), each with its DoFHandler, and the positions, of which each component is of the pressures'
+  /// space; and the constraints of the symmetry planes. Made anew for each mesh of a run.
   ///
   /// Kernels work on tables that are taken from these once. Cells have the index of the mesh. This rank
   /// *visits* the cells that touch one of its nodes, and keeps what falls on its own nodes, so that sums are
@@ -58,7 +58,8 @@ namespace retroforge
     const dealii::Triangulation<dim> &triangulation() const { return *triangulation_; }
     const dealii::DoFHandler<dim>    &velocity_dofs() const { return velocity_dofs_; }
     const dealii::DoFHandler<dim>    &pressure_dofs() const { return pressure_dofs_; }
-    const dealii::DoFHandler<dim>    &geometry_dofs() const { return geometry_dofs_; }
+    /// Of each component of the positions: linear, as pressures are, whose degrees of freedom serve here, too.
+    const dealii::DoFHandler<dim> &geometry_dofs() const { return pressure_dofs_; }
     /// v·n = 0 on the planes of symmetry, of the velocities that this rank owns or reads.
     const dealii::AffineConstraints<double> &symmetry() const { return symmetry_; }
     /// @}
@@ -146,7 +147,7 @@ namespace retroforge
     MPI_Comm                                     comm_;
     unsigned int                                 n_vertices_, nodes_per_cell_, places_per_cell_;
     std::unique_ptr<dealii::Triangulation<dim>>  triangulation_;
-    dealii::DoFHandler<dim>                      velocity_dofs_, pressure_dofs_, geometry_dofs_;
+    dealii::DoFHandler<dim>                      velocity_dofs_, pressure_dofs_;
     std::unique_ptr<const ReferenceElement<dim>> quadrature_;
     MiddleNodes                                  middles_;
     ReplicatedEntries                            cells_;
