@@ -268,7 +268,7 @@ public:
   template <typename Number>
   std::vector<Number> compute_integrals(const StageView<Number> &view) const
   {
-    return energy_.integrals(view);
+    return energy_.compute_integrals(view);
   }
 
   void reverse_integrals(const StageView<double>   &view,
