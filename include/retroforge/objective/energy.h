@@ -30,12 +30,12 @@ namespace retroforge
       return {{"deformation", deformation}, {"friction", friction}};
     }
 
-    void reverse_integrals(const StageView<double>   &view,
-                           const std::vector<double> &weights,
-                           StageBar                  &bar) const override;
+    void reverse_integrals(const EquilibriumView<double> &view,
+                           const std::vector<double>     &weights,
+                           EquilibriumBar                &bar) const override;
 
     template <typename Number>
-    std::vector<Number> compute_integrals(const StageView<Number> &view) const;
+    std::vector<Number> compute_integrals(const EquilibriumView<Number> &view) const;
 
     template <typename Number>
     std::vector<Number> terms(const PathRow<Number> &row, double) const

@@ -47,7 +47,7 @@ namespace
         field.P.at_place(i)                 = Dual(W.P.at_place(i));
         field.P.at_place(i).fastAccessDx(0) = x.P.at_place(i);
       }
-      const Field<Dual> r = Stage<Dual>(scene, dual, contact_dual, positions).residual(field, active);
+      const Field<Dual> r = Equilibrium<Dual>(scene, dual, contact_dual, positions).residual(field, active);
       Field<double>     r_dot(scene.discretization);
       for (unsigned int k = 0; k < r.V.size(); ++k)
         for (unsigned int i = 0; i < 3; ++i)
