@@ -80,16 +80,6 @@ namespace retroforge
                   "use the pressure expected, or the consistency K");
   }
 
-  double ContactPressure::largest(const EquilibriumView<double> &view) const
-  {
-    double     largest  = 0.;
-    const auto pressure = nodal_pressures(view, die_);
-    for (unsigned int p = 0; p < view.stage.contact.pairs.size(); ++p)
-      if (is_mine(view, p, die_))
-        largest = std::max(largest, pressure[p]);
-    return largest;
-  }
-
   template <typename Number>
   std::vector<Number> ContactPressure::compute_integrals(const EquilibriumView<Number> &view) const
   {

@@ -28,9 +28,6 @@ namespace retroforge
     std::string name() const override { return "contact pressure"; }
     std::string unit() const override { return "MPa"; }
 
-    /// The largest pressure on this rank's nodes, for the report [MPa].
-    double largest(const EquilibriumView<double> &view) const;
-
     void reverse_integrals(const EquilibriumView<double> &view,
                            const std::vector<double>     &weights,
                            EquilibriumBar                &bar) const override;

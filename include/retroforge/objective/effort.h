@@ -30,7 +30,7 @@ namespace retroforge
     /// @throws Error
     void check(const std::string &where) const;
 
-    /// Length of the increment's part inside [s or mm].
+    /// Returns the length of the increment's part inside [s or mm].
     template <typename Number>
     Number overlap(const PathRow<Number> &row) const;
   };
@@ -48,7 +48,7 @@ namespace retroforge
     /// @param die  the one that moves
     explicit Effort(const unsigned int die, const By by = By::power) : die_(die), by_(by) {}
 
-    /// This rank's part.
+    /// Returns this rank's part.
     template <typename Number>
     Number operator()(const EquilibriumView<Number> &view) const;
 
@@ -101,7 +101,8 @@ namespace retroforge
     std::string name() const override { return "maximum effort"; }
     std::string unit() const override { return "N"; }
 
-    /// The largest effort of an increment in the window, what value() stays below [N]; 0 if there is none.
+    /// Returns the largest effort of an increment in the window, what value() stays below [N]; 0 if there is
+    /// none.
     double true_maximum(const PathRows<double> &rows) const;
 
     std::map<std::string, double> details(const PathRows<double> &rows) const override

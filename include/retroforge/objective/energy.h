@@ -21,7 +21,7 @@ namespace retroforge
     std::string name() const override { return "energy"; }
     std::string unit() const override { return "mJ"; }
 
-    /// Deformation and friction [mJ].
+    /// Returns what went into deformation and into friction [mJ].
     static std::pair<double, double> split(const PathRows<double> &rows);
 
     std::map<std::string, double> parts(const PathRows<double> &rows) const override

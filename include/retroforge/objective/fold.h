@@ -23,8 +23,8 @@ namespace retroforge
     /// @param exponent  alpha >= 1 of e^alpha  @throws Error
     FoldIntegrals(double exponent, const std::optional<SmoothRegion> &region);
 
-    /// This rank's part of  int e^alpha dS [mm^2/s^alpha],  int dS [mm^2],  and the mean over all cells of e
-    /// [1/s] (each cell counts alike, as in the source).
+    /// Returns this rank's part of  int e^alpha dS [mm^2/s^alpha],  int dS [mm^2],  and the mean over all
+    /// cells of e [1/s] (each cell counts alike, as in the source).
     template <typename Number>
     std::vector<Number> operator()(const EquilibriumView<Number> &view) const;
 

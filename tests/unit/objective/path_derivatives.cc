@@ -269,7 +269,7 @@ public:
   template <typename Number>
   std::vector<Number> compute_integrals(const EquilibriumView<Number> &view) const
   {
-    return energy_.integrals(view);
+    return energy_.compute_integrals(view);
   }
 
   void reverse_integrals(const EquilibriumView<double> &view,
