@@ -18,6 +18,7 @@
 #include <retroforge/solver/linear_system.h>
 
 #include "corner_stage.h"
+#include "methods.h"
 
 using namespace retroforge;
 
@@ -65,7 +66,7 @@ namespace
       for (unsigned int p = 0; p < pressed.size(); ++p)
         pressed[p] = pressed[p] && (edges || contact.pairs[p].point.is_node());
       LinearSolverParameters parameters;
-      parameters.method         = method;
+      parameters.method         = method_of(method);
       parameters.max_iterations = 2000;
       LinearSystem  system(scene, parameters, timings);
       Field<double> solution;

@@ -19,6 +19,7 @@
 #include "../contact/wavy_sheet.h"
 #include "../element/element_test_tools.h"
 #include "../mesh/block_mesh.h"
+#include "methods.h"
 
 using namespace retroforge;
 
@@ -106,7 +107,7 @@ namespace
     Solver(const Scene &scene, const std::string &method)
         : system(scene, linear, timings), newton(scene, parameters, system)
     {
-      linear.method         = method;
+      linear.method         = method_of(method);
       linear.max_iterations = 2000;
       parameters.tolerance  = 1e-8;
     }
