@@ -143,7 +143,9 @@ namespace retroforge
 
   bool ForwardRun::is_left() const
   {
-    return segment_ + 1 < problem_.segments.size() || running_->forging.is_left(state_);
+    // By the stroke that is wanted now, which may be longer than that of the record.
+    const Parameters &parameters = problem_.parameters;
+    return state_.stroke < parameters.press.stroke - 1e-9 * parameters.step_model().contact.step;
   }
 
   void ForwardRun::forge(const Forging::Observer &observer)
