@@ -58,8 +58,8 @@ namespace retroforge
 
   namespace
   {
-    /// Of the degrees of freedom of nodes in the order given. Left to itself, Trilinos orders the columns of
-    /// each matrix that another rank owns in its own way.
+    /// Returns the map of the degrees of freedom of nodes in the order given. Left to itself, Trilinos orders
+    /// the columns of each matrix that another rank owns in its own way.
     Epetra_Map map_of(const std::vector<unsigned int> &nodes,
                       const unsigned int               n_nodes,
                       const unsigned int               width,

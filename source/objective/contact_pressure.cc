@@ -10,7 +10,7 @@ namespace retroforge
 {
   namespace
   {
-    /// Is pair p one of the die's, and of a node of this rank?
+    /// Returns whether pair p is one of the die's, at a node of this rank.
     template <typename Number>
     bool is_mine(const StageView<Number> &view, const unsigned int p, const unsigned int die)
     {
@@ -21,7 +21,7 @@ namespace retroforge
 
     constexpr unsigned int none = invalid_index;
 
-    /// The pair of each node that is in reach of the die.
+    /// Returns for each node its pair with the die, invalid_index where it has none.
     template <typename Number>
     std::vector<unsigned int> pairs_of_nodes(const StageView<Number> &view, const unsigned int die)
     {
@@ -32,16 +32,19 @@ namespace retroforge
       return pairs;
     }
 
-    /// Does pair p press one of the die's nodes of this rank?
+    /// Returns whether pair p is one of the die's, and its force counts for the pressure at a node of this
+    /// rank. Shares of a force go to the nodes that the point lies between, whichever rank has its velocity.
     template <typename Number>
-    bool is_seen(const StageView<Number> &view, const unsigned int p, const unsigned int die)
+    bool counts(const StageView<Number> &view, const unsigned int p, const unsigned int die)
     {
-      const ContactPair &pair = view.stage.contact.pairs[p];
-      return pair.die == die && view.stage.scene.discretization.sees(pair.point.nodes);
+      const ContactPair &pair           = view.stage.contact.pairs[p];
+      const auto        &discretization = view.stage.scene.discretization;
+      return pair.die == die && (discretization.owns(pair.point.nodes[0]) ||
+                                 (!pair.point.is_node() && discretization.owns(pair.point.nodes[1])));
     }
 
-    /// Of each pair of a node of this rank: its force and its half of those of the edges at it, over a third
-    /// of the surface there [MPa].
+    /// Returns for each pair of a node of this rank: its force and half of those of the edges at it, over a
+    /// third of the surface there [MPa].
     template <typename Number>
     std::vector<Number> nodal_pressures(const StageView<Number> &view, const unsigned int die)
     {
@@ -50,7 +53,7 @@ namespace retroforge
       const double                    larger = surface_over_S(stage.contact);
       std::vector<Number>             pressure(stage.contact.pairs.size(), Number(0.));
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-        if (const ContactPair &pair = stage.contact.pairs[p]; is_seen(view, p, die))
+        if (const ContactPair &pair = stage.contact.pairs[p]; counts(view, p, die))
         {
           const Number force =
             normal_force(stage.contact_node(p, view.W, view.active), stage.physics.contact);
@@ -127,7 +130,7 @@ namespace retroforge
           force_bar[p] = weights[0] * exponent_ * whole / pressure[p];
       }
     for (unsigned int p = 0; p < pressure.size(); ++p)
-      if (const ContactPair &pair = stage.contact.pairs[p]; is_seen(view, p, die_))
+      if (const ContactPair &pair = stage.contact.pairs[p]; counts(view, p, die_))
       {
         double of_point = 0.;
         for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)

@@ -18,7 +18,7 @@ namespace retroforge
     Number strain_rate(const StageView<Number> &view, const CellIndex c)
     {
       const Scene &scene = view.stage.scene;
-      return with_pair(scene.discretization, [&](const auto pair) -> Number {
+      return dispatch_element(scene.discretization, [&](const auto pair) -> Number {
         return cell_strain_rate(cell_geometry(pair.positions(scene.discretization, view.stage.X, c)),
                                 pair.on_cell(scene.discretization, view.W, c));
       });
@@ -28,7 +28,7 @@ namespace retroforge
     reverse_strain_rate(const StageView<double> &view, const CellIndex c, const double weight, StageBar &bar)
     {
       const Scene &scene = view.stage.scene;
-      with_pair(scene.discretization, [&](const auto pair) {
+      dispatch_element(scene.discretization, [&](const auto pair) {
         auto w_bar = pair.no_values();
         auto X_bar = pair.no_positions();
         reverse_cell_strain_rate(cell_geometry(pair.positions(scene.discretization, view.stage.X, c)),

@@ -16,7 +16,7 @@ namespace retroforge
 {
   namespace
   {
-    constexpr unsigned int format = 8;
+    constexpr unsigned int format = 9;
 
     static_assert(sizeof(Vec3) == 3 * sizeof(double),
                   "nodal vectors are read and written as arrays of numbers");
@@ -414,6 +414,7 @@ namespace retroforge
     const NodeCounts   n     = check_increment(increment, shape);
     const hdf5::Handle group = hdf5::create_group(file, increment_name(i));
     hdf5::write_attribute(group, "run", &shape.run);
+    hdf5::write_attribute(group, "operation", &increment.operation);
     hdf5::write_attribute(group, "stroke", &increment.stroke);
     hdf5::write_attribute(group, "step", &increment.step);
     hdf5::write_attribute(group, "cuts", &increment.cuts);
@@ -447,7 +448,8 @@ namespace retroforge
 
     IncrementHead read_head(const hid_t group)
     {
-      return {read_number(group, "stroke"),
+      return {hdf5::read_attribute<unsigned int>(group, "operation"),
+              read_number(group, "stroke"),
               read_number(group, "step"),
               hdf5::has_link(group, "parameters") ? hdf5::read_string(group, "parameters")
                                                   : std::optional<std::string>()};
@@ -467,6 +469,7 @@ namespace retroforge
     const hdf5::Handle group = open_increment(file, i, shape);
     IncrementHead      head  = read_head(group);
     IncrementRecord    increment;
+    increment.operation          = head.operation;
     increment.stroke             = head.stroke;
     increment.step               = head.step;
     increment.parameters         = std::move(head.parameters);

@@ -11,7 +11,7 @@ namespace retroforge
 
   void LinearSystem::assemble(const Stage<double> &stage,
                               const Field<double> &W,
-                              const ActiveSet     &active,
+                              const ActiveChoice  &active,
                               const Linearisation  linearisation)
   {
     const auto timing = timings_.scope("assembly");

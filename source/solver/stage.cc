@@ -20,12 +20,12 @@ namespace retroforge
     template <typename Number>
     void check_arguments([[maybe_unused]] const Stage<Number> &stage,
                          [[maybe_unused]] const Field<Number> &W,
-                         [[maybe_unused]] const ActiveSet     &active)
+                         [[maybe_unused]] const ActiveChoice  &active)
     {
       Assert(W.belongs_to(stage.scene.discretization),
              dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
-      Assert(active.empty() || active.size() == stage.contact.pairs.size(),
-             dealii::ExcDimensionMismatch(active.size(), stage.contact.pairs.size()));
+      Assert(active.fits(stage.contact.pairs.size()),
+             dealii::ExcMessage("a choice of active contacts has an entry for each pair"));
     }
 
     /// The same of derivatives: an entry for each that the stage depends on.
@@ -41,7 +41,7 @@ namespace retroforge
 
   template <typename Number>
   ContactNode<Number>
-  Stage<Number>::contact_node(const unsigned int p, const Field<Number> &W, const ActiveSet &active) const
+  Stage<Number>::contact_node(const unsigned int p, const Field<Number> &W, const ActiveChoice &active) const
   {
     AssertIndexRange(p, contact.pairs.size());
     check_arguments(*this, W, active);
@@ -57,7 +57,7 @@ namespace retroforge
     node.Sf            = areas.Sf[p];
     node.alpha         = die.friction;
     node.interface_law = die.interface_law;
-    node.active        = active.empty() ? value_of(approach_excess(node)) > 0. : active[p] != 0;
+    node.active        = active.is_given() ? (*active)[p] != 0 : value_of(approach_excess(node)) > 0.;
     return node;
   }
 
@@ -83,13 +83,13 @@ namespace retroforge
   }
 
   template <typename Number>
-  Field<Number> Stage<Number>::residual(const Field<Number> &W, const ActiveSet &active) const
+  Field<Number> Stage<Number>::residual(const Field<Number> &W, const ActiveChoice &active) const
   {
     check_arguments(*this, W, active);
     const Discretization<3> &discretization = scene.discretization;
-    const ActiveSet          chosen         = active.empty() ? decide_active(W) : active;
+    const ActiveSet          chosen         = active.is_given() ? *active : decide_active(W);
     Field<Number>            r(discretization);
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.visited_cells())
         pair.add(discretization,
                  cell_residual(cell_geometry(pair.positions(discretization, X, c)),
@@ -106,12 +106,12 @@ namespace retroforge
   }
 
   template <typename Number>
-  std::pair<Number, Number> Stage<Number>::power(const Field<Number> &W, const ActiveSet &active) const
+  std::pair<Number, Number> Stage<Number>::power(const Field<Number> &W, const ActiveChoice &active) const
   {
     check_arguments(*this, W, active);
     const Discretization<3>  &discretization = scene.discretization;
     std::pair<Number, Number> power{Number(0.), Number(0.)};
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
         power.first += cell_dissipation(
           cell_geometry(pair.positions(discretization, X, c)), pair.on_cell(discretization, W, c), law(c));
@@ -132,7 +132,7 @@ namespace retroforge
     const auto         &velocities     = *discretization.velocity_nodes();
     const auto         &pressures      = *discretization.pressure_nodes();
     std::vector<double> force(velocities.n_places(), 0.), flow(pressures.n_places(), 0.);
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.visited_cells())
       {
         const auto   geometry = cell_geometry(pair.positions(discretization, stage.X, c));
@@ -162,7 +162,7 @@ namespace retroforge
     return forces;
   }
 
-  void settle_bubbles(const Stage<double> &stage, Field<double> &W)
+  void solve_bubbles(const Stage<double> &stage, Field<double> &W)
   {
     check_arguments(stage, W, {});
     const Discretization<3> &discretization = stage.scene.discretization;
@@ -205,7 +205,7 @@ namespace retroforge
       return;
     for (const CellIndex c : discretization.visited_cells())
       MiniPair::bubble(discretization, W, c) = Vec3();
-    settle_bubbles(stage, W);
+    solve_bubbles(stage, W);
   }
 
   namespace
@@ -232,7 +232,7 @@ namespace retroforge
     check_bar(view.stage, bar);
     const Stage<double>     &stage          = view.stage;
     const Discretization<3> &discretization = stage.scene.discretization;
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
       {
         const auto X        = pair.positions(discretization, stage.X, c);
@@ -265,7 +265,7 @@ namespace retroforge
     check_bar(view.stage, bar);
     const Stage<double>     &stage          = view.stage;
     const Discretization<3> &discretization = stage.scene.discretization;
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
       {
         const auto X     = pair.positions(discretization, stage.X, c);

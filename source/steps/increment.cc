@@ -33,7 +33,7 @@ namespace retroforge
                           const AdjointSource             &source,
                           std::vector<Costate>            &costates)
   {
-    const double dt = process.time(record.step);
+    const double dt = process.duration(place(record));
     mechanics.reverse(
       process,
       state,

@@ -20,7 +20,7 @@ namespace retroforge
   {
   }
 
-  ForgingState Forging::start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0) const
+  ForgingState Forging::start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0)
   {
     Assert(leg != nullptr, dealii::ExcMessage("a run starts on a mesh"));
     AssertDimension(X_0.size(), leg->scene.mesh.n_nodes());
@@ -32,11 +32,11 @@ namespace retroforge
     return state;
   }
 
-  Refusal Forging::attempt(const Process<double> &process,
-                           const ForgingState    &state,
-                           Guess                 &guess,
-                           IncrementRecord       &record,
-                           SolvedIncrement       &solved) const
+  std::optional<StepRejection> Forging::attempt(const Process<double> &process,
+                                                const ForgingState    &state,
+                                                Guess                 &guess,
+                                                IncrementRecord       &record,
+                                                SolvedIncrement       &solved) const
   {
     try
     {
@@ -44,7 +44,7 @@ namespace retroforge
     }
     catch (const NoEquilibrium &failure)
     {
-      return {failure.what()};
+      return StepRejection{failure.what()};
     }
     catch (const NoLinearSolution &)
     {
@@ -55,7 +55,7 @@ namespace retroforge
     guess.known       = Start::near;
     guess.ahead       = 0.;
     const auto timing = timings_.scope("checks");
-    return limits_.refusal(process, *state.leg, record, state.workpiece.X, solved.X);
+    return limits_.rejection(process, *state.leg, record, state.workpiece.X, solved.X);
   }
 
   namespace
@@ -82,9 +82,10 @@ namespace retroforge
     };
     auto workpiece = retroforge::change_mesh(before->scene.mesh, remesh, state.workpiece);
     state.left_behind.push_back(without_positions(std::exchange(state.workpiece, std::move(workpiece))));
-    state.leg       = std::make_shared<Leg>(remesh.mesh, model_, timings_);
-    state.next.W    = transferred(state.next.W);
-    state.next.rate = transferred(state.next.rate);
+    state.leg    = std::make_shared<Leg>(remesh.mesh, model_, timings_);
+    state.next.W = transferred(state.next.W);
+    if (state.next.rate)
+      state.next.rate = transferred(*state.next.rate);
     // Fields on the new mesh are shown, and measured, where an increment fails that began with it.
     const auto &discretization = state.leg->scene.discretization;
     state.solution             = LastSolution{state.next.W.V.complete(*discretization.condensed_nodes()),
@@ -117,7 +118,7 @@ namespace retroforge
     const double repairable = remesher_.largest_repair() * state.volume - state.repaired;
     record.remesh           = remesher_.remesh(state.leg->scene.mesh,
                                      state.workpiece.X,
-                                     process.at_stroke(state.stroke).dies,
+                                     process.at_stroke(state.stroke, state.operation).dies,
                                      error_sizes(process, state),
                                      repairable,
                                      timings_);
@@ -129,7 +130,7 @@ namespace retroforge
                                  const IncrementRecord &record,
                                  const SolvedIncrement &solved,
                                  ForgingState          &state,
-                                 const Watch           &watch) const
+                                 const Observer        &observer) const
   {
     const NodalVectors<double> X_before = state.workpiece.X;
     if (process.material.depends_on_state())
@@ -158,8 +159,8 @@ namespace retroforge
     while (state.depth > 0 && limits_.allow(state.slip * whole / (1 << (state.depth - 1))) &&
            std::abs(done * (1 << (state.depth - 1)) - std::round(done * (1 << (state.depth - 1)))) < 1e-9)
       --state.depth;
-    if (watch)
-      watch({record, X_before, solved, state, process.time(state.stroke)});
+    if (observer)
+      observer({record, X_before, solved, state, process.time(state.stroke, state.operation)});
   }
 
   void Forging::change_numerics(std::optional<std::string> parameters, ForgingState &state)
@@ -172,10 +173,10 @@ namespace retroforge
 
   bool Forging::is_left(const ForgingState &state) const
   {
-    return state.stroke < press_.stroke - 1e-9 * whole();
+    return state.stroke < press_.stroke - 1e-9 * nominal_step();
   }
 
-  void Forging::run(const Process<double> &process, ForgingState &state, const Watch &watch) const
+  void Forging::run(const Process<double> &process, ForgingState &state, const Observer &observer) const
   {
     std::vector<bool> frozen;
     if (remesher_.enabled())
@@ -201,64 +202,67 @@ namespace retroforge
       const bool crossed = remesher_.enabled() && crosses(state);
       if (crossed && state.repaired >= remesher_.largest_repair() * state.volume)
         limits_.check_fold(state);
-      if (crossed || (remesher_.enabled() && (remesher_.due(state.leg->scene.mesh,
-                                                            state.workpiece.X,
-                                                            process.at_stroke(state.stroke).dies,
-                                                            frozen,
-                                                            since_remeshing(),
-                                                            state.increments == 0) ||
-                                              ask_for_other_sizes(error_sizes(process, state)))))
+      if (crossed ||
+          (remesher_.enabled() && (remesher_.due(state.leg->scene.mesh,
+                                                 state.workpiece.X,
+                                                 process.at_stroke(state.stroke, state.operation).dies,
+                                                 frozen,
+                                                 since_remeshing(),
+                                                 state.increments == 0) ||
+                                   ask_for_other_sizes(error_sizes(process, state)))))
         renew();
       if (crossed)
         limits_.check_fold(state);
+      record.operation  = state.operation;
       record.stroke     = state.stroke;
-      record.step       = std::min(whole() / (1 << state.depth), press_.stroke - state.stroke);
+      record.step       = std::min(nominal_step() / (1 << state.depth), press_.stroke - state.stroke);
       record.parameters = std::exchange(state.parameters, std::nullopt);
       SolvedIncrement solved;
       Guess           guess   = state.next;
       bool            is_full = false;
       for (;;)
       {
-        Refusal refusal = attempt(process, state, guess, record, solved);
-        if (refusal.reason.empty())
+        auto rejection = attempt(process, state, guess, record, solved);
+        if (!rejection)
           break;
-        is_full = refusal.is_full |= is_full;
-        if (refusal.of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0)
+        is_full = rejection->is_full |= is_full;
+        if (rejection->of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0)
         {
           renew();
           guess = state.next;
           continue;
         }
-        record.step = std::ldexp(record.step, -static_cast<int>(refusal.halvings));
-        record.cuts += refusal.halvings;
+        record.step = std::ldexp(record.step, -static_cast<int>(rejection->halvings));
+        record.cuts += rejection->halvings;
         if (limits_.too_short(record.step))
         {
           // A fold that is closing is the true reason.
           limits_.check_fold(state);
-          limits_.stop(process, state, record, refusal);
+          limits_.stop(process, state, record, *rejection);
         }
       }
-      finish_increment(process, record, solved, state, watch);
+      finish_increment(process, record, solved, state, observer);
       limits_.check_progress(state);
       // With remeshing, the next increment begins with a repair.
       const bool last = !is_left(state);
-      if (remesher_.enabled() ? last && !remesher_.repairs(state.leg->scene.mesh,
-                                                           state.workpiece.X,
-                                                           process.at_stroke(state.stroke).dies)
-                              : last || state.increments % fold_interval == 0)
+      if (remesher_.enabled()
+            ? last && !remesher_.repairs(state.leg->scene.mesh,
+                                         state.workpiece.X,
+                                         process.at_stroke(state.stroke, state.operation).dies)
+            : last || state.increments % fold_interval == 0)
         limits_.check_fold(state);
     }
   }
 
   void Forging::restore(const Process<double> &process,
                         const unsigned int     n,
-                        const Source          &source,
+                        const RecordAccess    &access,
                         ForgingState          &state,
-                        const Watch           &watch) const
+                        const Observer        &observer) const
   {
     for (unsigned int i = 0; i < n; ++i)
     {
-      const IncrementRecord &record = source(i);
+      const IncrementRecord &record = access(i);
       if (record.parameters)
         change_numerics({}, state);
       if (record.remesh)
@@ -270,26 +274,26 @@ namespace retroforge
                        record,
                        state.leg->increment.mechanics.recorded(process, state.workpiece, record),
                        state,
-                       watch);
+                       observer);
     }
   }
 
   void Forging::replay(const Process<double> &process,
                        const unsigned int     n,
-                       const Source          &source,
+                       const RecordAccess    &access,
                        ForgingState          &state,
-                       const Watch           &watch) const
+                       const Observer        &observer) const
   {
     for (unsigned int i = 0; i < n; ++i)
     {
-      IncrementRecord record = source(i);
+      IncrementRecord record = access(i);
       record.newton = record.krylov = record.linear_solves = 0;
       if (record.remesh)
         change_mesh(*record.remesh, state);
       const Guess           guess = state.leg->increment.mechanics.recorded_guess(record);
       const SolvedIncrement solved =
         state.leg->increment.mechanics.forward(process, state.workpiece, true, guess, record);
-      finish_increment(process, record, solved, state, watch);
+      finish_increment(process, record, solved, state, observer);
     }
   }
 } // namespace retroforge

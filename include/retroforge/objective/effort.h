@@ -42,7 +42,7 @@ namespace retroforge
     enum class By
     {
       power, ///< (int s:eps + int tau·dv) / |v_die|
-      force  ///< of the die on the workpiece, along its velocity: contact and friction
+      force  ///< force of the die on the workpiece along its velocity: contact and friction
     };
 
     /// @param die  the one that moves

@@ -7,7 +7,7 @@
 
 namespace retroforge
 {
-  /// What of a scene objectives refer to.
+  /// The parts of a scene that objectives refer to.
   struct ObjectiveContext
   {
     const std::vector<Die>              &dies;
@@ -16,7 +16,7 @@ namespace retroforge
     double                               stroke;      ///< [mm]
     double                               consistency; ///< K, a stress of the size to expect [MPa]
     const TetMesh                       &billet;
-    FrictionRamp                         ramp; ///< where nodes begin to touch
+    FrictionRamp ramp; ///< the friction ramp of contact, by which nodes begin to touch
   };
 
   /// A type of objective: its settings, and how an objective is made of them. doc/objectives.md says what

@@ -7,7 +7,7 @@
 
 namespace retroforge
 {
-  /// What symmetry planes leave of space: of a target that is whole, the part that faces the model.
+  /// The sector of space that symmetry planes leave: the part of a whole target that faces the model.
   class Sector
   {
   public:

@@ -14,9 +14,8 @@ namespace retroforge
     std::string name() const override { return "volume"; }
     std::string unit() const override { return "mm^3"; }
 
-    void reverse_integrals(const FinalView<double>   &view,
-                           const std::vector<double> &weights,
-                           FinalBar                  &bar) const override;
+    void
+    reverse_integrals(const FinalView<double> &view, const std::vector<double> &weights, FinalBar &bar) const;
 
     template <typename Number>
     std::vector<Number> compute_integrals(const FinalView<Number> &view) const;

@@ -6,7 +6,7 @@
 
 namespace retroforge
 {
-  /// What the dies do to the nodes of the surface; zero at nodes that none presses.
+  /// Die, pressure and slip at each node of the surface; zero at nodes that no die presses.
   struct ContactFields
   {
     /// The die that presses, counted from 1 in the order of Dies/names; of several the strongest.

@@ -12,7 +12,7 @@ namespace retroforge
   /// @throws Error naming the file, the reason of the operating system and the remedy
   void write_file(const std::string &file, const std::string &contents);
 
-  /// Whether write_file() would succeed, found by writing an empty file beside it.  @throws Error
+  /// Checks that write_file() would succeed, by writing an empty file beside it.  @throws Error
   void check_writable(const std::string &file);
 
   /// The contents of a file; throws Error if it cannot be read.

@@ -16,7 +16,7 @@ namespace retroforge
     /// Derivatives of a scalar in what contact_node(p) returned.
     void add(unsigned int p, const ContactNodeBar &node_bar);
 
-    /// The same, but none in the unknowns.
+    /// Adds the derivatives at fixed velocities: none in the unknowns.
     void add_at_fixed_velocity(unsigned int p, const ContactNodeBar &node_bar);
 
     /// Passes the areas' derivatives on to the positions. Once, at the end.

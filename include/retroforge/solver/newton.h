@@ -39,16 +39,16 @@ namespace retroforge
   /// Where Newton's method begins in the stages of an increment.
   struct Guess
   {
-    Field<double> W;
-    Start         known = Start::near;
-    Field<double> rate;       ///< of W over the stroke; empty: not known
-    double        ahead = 0.; ///< stroke from W to the first stage [mm]
+    Field<double>                W;
+    Start                        known = Start::near;
+    std::optional<Field<double>> rate;       ///< of W over the stroke, where it is known
+    double                       ahead = 0.; ///< stroke from W to the first stage [mm]
 
     /// Takes a solution ahead by `stroke`, as far as the rate tells.
     void advance(const double stroke, Field<double> &solution) const
     {
-      if (!rate.V.empty())
-        solution.add(stroke, rate);
+      if (rate)
+        solution.add(stroke, *rate);
     }
   };
 
@@ -70,19 +70,18 @@ namespace retroforge
     Newton(const Scene &scene, const NewtonParameters &parameters, LinearSystem &system);
 
     /// @param W       in: initial guess; out: the solution
-    /// @param frozen   empty, or the recorded active set of a replay, which ends with a step below the
-    /// tolerance
-    /// @param pressed  empty, or the active set of a solution nearby, with the same pairs
+    /// @param frozen   the recorded active set of a replay, which ends with a step below the tolerance
+    /// @param pressed  the active set of a solution nearby, with the same pairs, where one is known
     NewtonStatistics solve(const Stage<double> &stage,
                            Field<double>       &W,
-                           const ActiveSet     &frozen,
+                           const ActiveChoice  &frozen,
                            Start                start   = Start::near,
-                           const ActiveSet     &pressed = {});
+                           const ActiveChoice  &pressed = {});
 
     /// The velocity field of a Newtonian metal under the same dies, as a start from nothing.
     void initial_guess(const Stage<double> &stage,
                        Field<double>       &W,
-                       const ActiveSet     &frozen,
+                       const ActiveChoice  &frozen,
                        NewtonStatistics    &statistics);
 
   private:
@@ -90,17 +89,17 @@ namespace retroforge
 
     double relative_residual(const Stage<double> &stage,
                              const Field<double> &W,
-                             const ActiveSet     &frozen,
+                             const ActiveChoice  &frozen,
                              const Scale         &scale,
                              Field<double>       &r);
     /// Advances W and returns the part of the velocity step that was taken.
     /// @param r       residual at W, with the same contacts
-    /// @param active  empty, or the contacts that count throughout
+    /// @param active  the contacts that count throughout, where they are not decided at each step
     double search_power(const Stage<double> &stage,
                         Field<double>       &W,
                         const Field<double> &r,
                         const Field<double> &step,
-                        const ActiveSet     &active);
+                        const ActiveChoice  &active);
 
     /// What search_residual compares with: the residual at W, its relative norm and scale, and the dies'
     /// speed.
@@ -118,7 +117,7 @@ namespace retroforge
                            Field<double>       &W,
                            const SearchStart   &start,
                            const Field<double> &step,
-                           const ActiveSet     &active);
+                           const ActiveChoice  &active);
     double slope(const Field<double> &r, const Field<double> &step) const;
 
     const Scene            &scene_;

@@ -8,6 +8,8 @@
 #include <retroforge/element/semi_analytic.h>
 #include <retroforge/material/material.h>
 
+#include <optional>
+
 namespace retroforge
 {
   /// What does not move: the mesh, the spaces on it, and the shapes of the dies.
@@ -63,18 +65,36 @@ namespace retroforge
   /// Zero derivatives in the states of dies, their vertices included.
   std::vector<DieState<double>> no_derivatives(const std::vector<Die> &dies);
 
-  /// Derivatives of a scalar in what Physics holds, in the increment's times, and in the strain of each cell
-  /// at its start, of the cells this rank owns; empty: none.
+  /// Derivatives of a scalar in what Physics holds, in the increment's times (dt, approach time, and the time
+  /// at its start), and in the strain of each cell at its start, of the cells this rank owns; empty: none.
   struct PhysicsBar : Physics<double>
   {
-    double              dt = 0., tau = 0.;
+    double              dt = 0., tau = 0., time = 0.;
     std::vector<double> strain;
 
     explicit PhysicsBar(const std::vector<Die> &dies) { this->dies = no_derivatives(dies); }
   };
 
-  /// Which pairs are pressed; empty: decide from the velocity. A replay passes what was recorded.
+  /// Which pairs are pressed.
   using ActiveSet = std::vector<char>;
+
+  /// A set that is given, as a replay has it, or none: then the velocity decides. Refers to the set.
+  class ActiveChoice
+  {
+  public:
+    ActiveChoice() = default;
+    ActiveChoice(const ActiveSet &given) : given_(&given) {}
+    ActiveChoice(const std::optional<ActiveSet> &given) : given_(given ? &*given : nullptr) {}
+
+    bool             is_given() const { return given_ != nullptr; }
+    const ActiveSet &operator*() const { return *given_; }
+
+    /// Returns whether it may be a choice between so many pairs.
+    bool fits(const std::size_t n_pairs) const { return !given_ || given_->size() == n_pairs; }
+
+  private:
+    const ActiveSet *given_ = nullptr;
+  };
 
   /// The strain of metal in its initial state.
   template <typename Number>
@@ -105,13 +125,14 @@ namespace retroforge
     /// The state of the metal in a cell.
     PointState<Number> state(CellIndex c) const;
 
-    /// Pair p as its force sees it. @param active  empty: its own h > 0; or the choice
-    ContactNode<Number> contact_node(unsigned int p, const Field<Number> &W, const ActiveSet &active) const;
+    /// Pair p as its force sees it, pressed as chosen or by its own h > 0.
+    ContactNode<Number>
+    contact_node(unsigned int p, const Field<Number> &W, const ActiveChoice &active) const;
 
-    Field<Number> residual(const Field<Number> &W, const ActiveSet &active) const;
+    Field<Number> residual(const Field<Number> &W, const ActiveChoice &active) const;
 
     /// Deformation and friction power [mJ/s], this rank's part of the sums.
-    std::pair<Number, Number> power(const Field<Number> &W, const ActiveSet &active) const;
+    std::pair<Number, Number> power(const Field<Number> &W, const ActiveChoice &active) const;
 
     /// Whether the residual is the gradient of a power functional in V, and the Newton matrix symmetric:
     /// where the friction of all dies is.
@@ -137,7 +158,7 @@ namespace retroforge
 
   /// The equilibrium of bubbles at given velocities of the nodes and P, in the cells this rank visits; they
   /// start where they are.
-  void settle_bubbles(const Stage<double> &stage, Field<double> &W);
+  void solve_bubbles(const Stage<double> &stage, Field<double> &W);
 
   /// The same from the velocities at nodes and P alone: bubbles start from nothing.
   void recover_bubbles(const Stage<double> &stage, Field<double> &W);

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/core/rank_sum.h>
 #include <retroforge/solver/stage.h>
 
 namespace retroforge
@@ -13,10 +14,12 @@ namespace retroforge
   template <typename Number>
   NodalVectors<Number> motion(const Stage<Number> &stage, const Field<Number> &W);
 
-  /// Pull-back: adds to bar.W, and of one rank to bar.X and bar.contact.
+  /// Pull-back: adds to the derivatives in the velocities, the stage's positions, and the ramps of contact.
   /// @param motion_bar  the same on every rank
-  void reverse_motion(const Stage<double>        &stage,
-                      const Field<double>        &W,
-                      const NodalVectors<double> &motion_bar,
-                      StageBar                   &bar);
+  void reverse_motion(const Stage<double>           &stage,
+                      const Field<double>           &W,
+                      const NodalVectors<double>    &motion_bar,
+                      Field<double>                 &W_bar,
+                      RankSum<NodalVectors<double>> &X_bar,
+                      RankSum<ContactSetBar>        &contact_bar);
 } // namespace retroforge

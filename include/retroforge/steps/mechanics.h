@@ -157,8 +157,8 @@ namespace retroforge
                                                            const IncrementRecord           &record) const;
     /// That of the record, which is the model's unless the run was restarted with another.
     const Scheme &scheme_of(const IncrementRecord &record) const;
-    /// Change of (V, P) over the stroke from the first stage to the last; empty where they are at one time.
-    Field<double> rate(const IncrementRecord &record) const;
+    /// Change of (V, P) over the stroke from the first stage to the last; none where they are at one time.
+    std::optional<Field<double>> rate(const IncrementRecord &record) const;
     /// @return nothing where a node ran into a die unwatched
     std::vector<SolveRecord> solve_stages(const IncrementStart<double> &start,
                                           const NodalVectors<double>   &X,

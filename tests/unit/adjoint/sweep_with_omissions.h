@@ -353,8 +353,8 @@ namespace retroforge
                                 Process<double>            &process_bar)
   {
     const Scene                      &scene   = problem.scene;
-    const Physics<double>             physics = problem.process.at_stroke(record.stroke);
-    const double                      dt      = problem.process.time(record.step);
+    const Physics<double>             physics = problem.process().over(place(record));
+    const double                      dt      = problem.process().duration(place(record));
     const ContactSet<double>          contact = make_contact_set<double>(scene.view(physics.dies, X),
                                                                 record.pairs,
                                                                 {record.contact.ramp,
@@ -363,7 +363,7 @@ namespace retroforge
                                                                           record.contact.edge_stiffness});
     ContactSetBar                     contact_bar(record.pairs.size());
     PhysicsBar                        bar(scene.dies);
-    const Scheme                     &scheme = problem.model.step.scheme;
+    const Scheme                     &scheme = problem.model().step.scheme;
     const NodalVectors<double>        next   = G; // dPhi/dX_{i+1}
     std::vector<NodalVectors<double>> Y_bar(scheme.n_stages());
     for (unsigned int s = scheme.n_stages(); s-- > 0;)
@@ -390,8 +390,8 @@ namespace retroforge
       for (unsigned int r = s + 1; r < scheme.n_stages(); ++r)
         lead_to(scheme.a[r][s], Y_bar[r]);
       minus_rhs.add(-1., rhs);
-      problem.leg->system.assemble(stage, W, solve.active);
-      problem.leg->system.solve(minus_rhs, problem.model.step.adjoint_tolerance, lambda);
+      problem.first_leg().system.assemble(stage, W, solve.active);
+      problem.first_leg().system.solve(minus_rhs, problem.model().step.adjoint_tolerance, lambda);
       if (s == 0 && omitted == Term::first_stage)
         lambda = Field<double>(scene.discretization);
       reverse_equilibrium(stage, W, solve.active, lambda, omitted, X_bar, contact_bar, bar);
@@ -408,19 +408,18 @@ namespace retroforge
     if (omitted == Term::tau)
       bar.tau = 0.;
     reverse_set(scene.dies, physics.dies, contact, record.contact.ramp, X, contact_bar, omitted, G, bar.dies);
-    reverse_at_stroke(
-      problem.process, {record.stroke, record.step}, record.contact.approach, bar, process_bar);
+    reverse_over(problem.process(), place(record), record.contact.approach, bar, process_bar);
   }
 
   inline AdjointResult sweep(RecordedRun &problem, const Term omitted)
   {
-    AdjointResult        result{NodalVectors<double>(problem.forged.workpiece.X.size()),
-                         no_process_derivatives(problem.scene.dies)};
-    NodalVectors<double> X = problem.forged.workpiece.X;
+    AdjointResult        result{NodalVectors<double>(problem.state().workpiece.X.size()),
+                         no_process_derivatives(problem.process(), problem.scene.dies)};
+    NodalVectors<double> X = problem.state().workpiece.X;
     for (unsigned int i = problem.records.size(); i-- > 0;)
     {
       const IncrementRecord &record = problem.records[i];
-      X                             = problem.leg->increment.mechanics.retreat(problem.process, X, record);
+      X = problem.first_leg().increment.mechanics.retreat(problem.process(), X, record);
       reverse_increment(problem, X, record, omitted, result.X_0, result.process);
     }
     return result;

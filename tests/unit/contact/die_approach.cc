@@ -153,7 +153,7 @@ int main(int argc, char **argv)
   report("tip in the plane of symmetry", tip, Vec3({0., 1.6, 9.5}), down, down, metal_surface(half, half.X));
 
   BilletParameters bar;
-  bar.shape            = "cylinder";
+  bar.shape            = BilletParameters::Shape::cylinder;
   bar.radius           = 10.;
   bar.height           = 40.;
   bar.element_size     = 9.;

@@ -170,7 +170,7 @@ namespace
     const Stage<double> stage  = hardened.stage();
     Field<double>       at     = corner.W;
     const Field<double> w      = corner.random_field(random);
-    settle_bubbles(stage, at);
+    solve_bubbles(stage, at);
     Physics<Dual>      physics = converted<Dual>(corner.physics);
     std::vector<Dual>  strain(hardened.strain.begin(), hardened.strain.end());
     NodalVectors<Dual> X;
@@ -192,7 +192,7 @@ namespace
       image.P.at_place(place) = r.P.at_place(place).dx(0);
     Timings                timings;
     LinearSolverParameters parameters;
-    parameters.method = "direct";
+    parameters.method = LinearSolverParameters::Method::direct;
     LinearSystem system(corner.scene, parameters, timings);
     system.assemble(stage, at, corner.active);
     system.solve_derivative(image, 1e-13, x);

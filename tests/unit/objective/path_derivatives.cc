@@ -201,8 +201,7 @@ struct PathProblem
       const ContactSet<Number> set = contact(inputs, i);
       const Stage<Number>      stage(scene, inputs.physics, set, inputs.states[i].Y);
       const Field<Number>      W = inputs.states[i].field(scene);
-      rows.push_back({sum_over_ranks(objective.integrals(StageView<Number>{stage, W, active[i]}),
-                                     scene.discretization.comm()),
+      rows.push_back({objective.integrals(StageView<Number>{stage, W, active[i]}).complete(),
                       dt(inputs, i),
                       Number(strokes[i] / inputs.speed),
                       strokes[i],
@@ -241,7 +240,7 @@ struct PathProblem
       add_numbers(physics_bar.contact, bar.physics.contact);
       bar.tau += physics_bar.tau * dt(inputs, i);
       if (dealii::Utilities::MPI::this_mpi_process(scene.discretization.comm()) == 0)
-        physics_bar.dt += dt_bar(forward[i], rows_bar[i]);
+        physics_bar.dt += rows_bar[i].dt + rows_bar[i].time * forward[i].stroke / forward[i].step;
       bar.speed -= (inputs.tau * physics_bar.tau + physics_bar.dt) * steps[i] / (inputs.speed * inputs.speed);
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
       {

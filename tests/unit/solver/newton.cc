@@ -44,7 +44,7 @@ namespace
   void bubbles(const CornerStage &corner)
   {
     Field<double> settled = corner.W, recovered = corner.W;
-    settle_bubbles(corner.stage(), settled);
+    solve_bubbles(corner.stage(), settled);
     recover_bubbles(corner.stage(), recovered);
     double change = 0., size = 0.;
     for (const CellIndex c : corner.scene.discretization.visited_cells())
@@ -103,10 +103,10 @@ namespace
     move(dt);
     solver.newton.solve(corner.stage(), second, {}, Start::near, corner.stage().decide_active(first));
     Guess guess{second, Start::near, second, dt};
-    guess.rate.add(-1., first);
-    for (Vec3 &v : guess.rate.V)
+    guess.rate->add(-1., first);
+    for (Vec3 &v : guess.rate->V)
       v *= 1. / dt;
-    for (double &p : guess.rate.P)
+    for (double &p : guess.rate->P)
       p *= 1. / dt;
     Field<double> start = second;
     guess.advance(dt, start);

@@ -10,10 +10,10 @@
 
 namespace retroforge
 {
-  /// What cells add to the Newton matrix of a stage, bubbles condensed, by pairs of nodes that meet in a
-  /// cell. A pair has all its entries side by side, in the axes of space: a cell adds whole blocks, and
-  /// frames and scales are applied once to a pair, where the sums are written to matrices.
-  class TangentSums
+  /// Assembles the tangents of the cells, bubbles condensed, into one block for each pair of nodes that share
+  /// a cell. A pair has all its entries side by side, in the axes of space: a cell adds whole blocks, and
+  /// frames and scales are applied once to a pair, where the blocks are written to matrices.
+  class CellTangentAssembler
   {
   public:
     /// [A B; D C] of a row and a column node: the first three rows belong to the row node's momentum, the
@@ -24,18 +24,19 @@ namespace retroforge
       Pack rows[4];
     };
 
-    /// @param met  nodes that meet, of all velocities; pairs are counted row by row.
-    TangentSums(const Scene &scene, const NodePattern &met);
+    /// @param met  for each velocity node, the nodes that share a cell with it; pairs are counted row by row
+    CellTangentAssembler(const Scene &scene, const NodePattern &met);
 
+    /// Sums the tangents of the visited cells at W.
     void assemble(const Stage<double> &stage, const Field<double> &W, Linearisation linearisation);
 
-    /// The first pair of a local row; its pairs follow each other.
+    /// Returns the first block of a local row; those of its other pairs follow.
     const Block *row(const unsigned int local) const { return &blocks_[begin_[local]]; }
-    /// The pressure mass over the viscosity less C, of the pairs of a local row.
+    /// Returns pressure mass over viscosity less C, for the pairs of a local row [mm^3 / (MPa s)].
     const double *schur_row(const unsigned int local) const { return &schur_[begin_[local]]; }
-    /// Viscosity over edge length, as a mean over the body [MPa s / mm].
+    /// Returns viscosity over edge length, as a geometric mean over the body [MPa s / mm].
     double viscosity_over_edge() const { return viscosity_over_edge_; }
-    /// Of the visited cells; empty without bubbles.
+    /// Returns the eliminated bubbles of the visited cells; empty without bubbles.
     const std::vector<BubbleElimination<double>> &eliminations() const { return eliminations_; }
 
   private:
@@ -45,13 +46,13 @@ namespace retroforge
                    const Field<double> &W,
                    Linearisation        linearisation);
 
-    const Scene                           &scene_;
-    std::vector<unsigned int>              begin_; ///< first pair of each local row, and the end
-    dealii::AlignedVector<Block>           blocks_;
-    std::vector<double>                    schur_;
+    const Scene                 &scene_;
+    std::vector<unsigned int>    begin_; ///< number of the first pair of each local row, and the end
+    dealii::AlignedVector<Block> blocks_;
+    std::vector<double>          schur_;
     std::vector<BubbleElimination<double>> eliminations_;
-    /// Of n_lanes visited cells after each other: for each row and column node, the pair of each lane. Rows
-    /// of other ranks, and lanes without a cell, go to one pair after the last.
+    /// For each pack of n_lanes visited cells, for each row and column node: the number of the pair of each
+    /// lane. Rows of other ranks, and lanes without a cell, have one number after the last.
     std::vector<unsigned int> pairs_;
     double                    viscosity_over_edge_ = 1.;
   };
