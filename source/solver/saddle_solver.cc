@@ -189,8 +189,8 @@ namespace retroforge
     const bool large  = system_.P || system_.A->pattern().rows().n >= parameters_.multigrid_from;
     const bool multigrid =
       parameters_.method == Method::multigrid || (parameters_.method == Method::automatic && large);
-    // Vectors of the last solve's Krylov space lie in deal.II's pool. A preconditioner needs more room while it
-    // is made than afterwards.
+    // The vectors of the last solve's Krylov space lie in deal.II's pool. While it is made, a preconditioner
+    // needs more room than afterwards: theirs.
     GrowingVectorMemory<la::BlockVector>::release_unused_memory();
     preconditioner_ = std::make_unique<Preconditioner>(*A_,
                                                        system_.matrix.block(0, 1),
