@@ -156,7 +156,7 @@ namespace retroforge
     const CommandLine run = command_of(point);
     std::string       parameters;
     Parameters::read(run, parameters);
-    return make_same_results(read_file(file), parameters) && point.read_summary(run.command);
+    return make_same_results(read_file(file), parameters) && point.read_summary(word_of(run.command.value()));
   }
 
   std::vector<ScanPoint *> Scan::to_do()
