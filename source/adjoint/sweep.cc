@@ -21,7 +21,7 @@ namespace retroforge
       const FinalObjective &objective = *run.objectives[o].at_end;
       const FinalDecisions &decisions = run.traced.decisions[o];
       const auto            dies      = run.process.at_stroke(end.stroke, end.operation).dies;
-      const auto view = final_view(objective, end.leg->scene, end.workpiece.X, end.workpiece.strain, dies);
+      const auto view = final_view(objective, end.epoch->scene, end.workpiece.X, end.workpiece.strain, dies);
       const auto integrals = objective.integrals(view, decisions).complete();
       return objective.derivatives(view, decisions, objective.reverse_value(integrals, decisions)).complete();
     }
@@ -70,7 +70,7 @@ namespace retroforge
                             const unsigned int                   i)
     {
       return [&run, &rows_bar, &combinations, i](
-               const std::size_t j, const StageView<double> &view, StageBar &bar) {
+               const std::size_t j, const EquilibriumView<double> &view, EquilibriumBar &bar) {
         for (std::size_t o = 0; o < run.objectives.size(); ++o)
         {
           const double weight = combinations[j].weights[o] * view.weight;
@@ -124,36 +124,38 @@ namespace retroforge
         AssertDimension(rows[o].size(), end.increments);
         rows_bar[o] = run.objectives[o].path->reverse_value(rows[o]);
       }
-    std::vector<Costate>      costates = start_costates(run, end, combinations);
-    WorkpieceState<3, double> state    = end.workpiece; // at the end, then at the start of each increment
-    std::vector<unsigned int> remeshed = end.remeshed;
-    std::shared_ptr<Leg>      leg      = end.leg;
-    AdjointSweep              sweep;
-    leg->increment.mechanics.forget();
+    std::vector<Costate>       costates = start_costates(run, end, combinations);
+    WorkpieceState<3, double>  state    = end.workpiece; // at the end, then at the start of each increment
+    std::vector<unsigned int>  remeshed = end.remeshed;
+    std::shared_ptr<MeshEpoch> epoch    = end.epoch;
+    AdjointSweep               sweep;
+    epoch->increment.mechanics.forget();
     for (unsigned int i = end.increments; i-- > 0;)
     {
       const IncrementRecord     &record = run.record(i);
-      const unsigned int         before = leg->system.n_solves;
-      const NodalVectors<double> X      = leg->increment.mechanics.retreat(run.process, state.X, record);
+      const unsigned int         before = epoch->system.n_solves;
+      const NodalVectors<double> X      = epoch->increment.mechanics.retreat(run.process, state.X, record);
       if (!end.starts.empty())
         state = end.starts[i];
       state.X = X;
-      leg->increment.reverse(run.process, state, record, source_of(run, rows_bar, combinations, i), costates);
+      epoch->increment.reverse(
+        run.process, state, record, source_of(run, rows_bar, combinations, i), costates);
       for (std::size_t j = 0; j < costates.size(); ++j)
         reverse_times(run, rows_bar, combinations[j], i, record, costates[j]);
-      sweep.linear_solves += leg->system.n_solves - before;
+      sweep.linear_solves += epoch->system.n_solves - before;
       if (record.remesh)
       {
         const auto remesh = record.remesh;
         remeshed.pop_back();
-        leg = remeshed.empty()
-                ? run.first
-                : std::make_shared<Leg>(run.record(remeshed.back()).remesh->mesh, run.model, run.timings);
-        leg->increment.mechanics.forget();
+        epoch =
+          remeshed.empty()
+            ? run.first
+            : std::make_shared<MeshEpoch>(run.record(remeshed.back()).remesh->mesh, run.model, run.timings);
+        epoch->increment.mechanics.forget();
         state   = end.left_behind[remeshed.size()];
         state.X = remesh->X_before;
         for (Costate &costate : costates)
-          costate.workpiece = reverse_change_mesh(leg->scene.mesh, *remesh, state, costate.workpiece);
+          costate.workpiece = reverse_change_mesh(epoch->scene.mesh, *remesh, state, costate.workpiece);
       }
     }
     for (Costate &costate : costates)
@@ -166,25 +168,25 @@ namespace retroforge
   {
     AssertDimension(X.size(), run.first->scene.mesh.n_nodes());
     AssertDimension(process.dies.size(), run.model.dies.size());
-    std::shared_ptr<Leg>        leg = run.first;
+    std::shared_ptr<MeshEpoch>  epoch = run.first;
     std::vector<PathRows<Dual>> rows(run.objectives.size());
-    auto                        state = initial_state<3>(std::move(X), leg->scene.mesh.n_cells());
+    auto                        state = initial_state<3>(std::move(X), epoch->scene.mesh.n_cells());
     StrokeStep                  end{0., 0.};
     for (unsigned int i = 0; i < run.n; ++i)
     {
       const IncrementRecord &record = run.record(i);
       if (record.remesh)
       {
-        state = change_mesh(leg->scene.mesh, *record.remesh, state);
-        leg   = std::make_shared<Leg>(record.remesh->mesh, run.model, run.timings);
+        state = change_mesh(epoch->scene.mesh, *record.remesh, state);
+        epoch = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model, run.timings);
       }
       end = place(record);
       for (auto &of_objective : rows)
         of_objective.push_back(row_of(record, process));
-      leg->increment.tangent(
+      epoch->increment.tangent(
         process,
         record,
-        [&](const StageView<Dual> &view, const Dual &) {
+        [&](const EquilibriumView<Dual> &view, const Dual &) {
           for (std::size_t o = 0; o < run.objectives.size(); ++o)
             if (run.objectives[o].path)
               add_integrals(*run.objectives[o].path, view, rows[o].back());
@@ -199,7 +201,7 @@ namespace retroforge
       else
       {
         const FinalObjective &objective = *run.objectives[o].at_end;
-        const auto            view      = final_view(objective, leg->scene, state.X, state.strain, dies);
+        const auto            view      = final_view(objective, epoch->scene, state.X, state.strain, dies);
         const FinalDecisions &decisions = run.traced.decisions[o];
         values.push_back(objective.value(objective.integrals(view, decisions).complete(), decisions));
       }

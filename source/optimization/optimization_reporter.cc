@@ -278,7 +278,7 @@ namespace retroforge
       run.write_record(base, parameters_at(forging_case, problem_.evaluator.middle_sample(mu, scenario)));
     write_msh(base + "_billet.msh", forging_case.billet, run.X_0());
     write_boundary_stl(base + "_billet.stl", forging_case.billet, run.X_0());
-    write_boundary_stl(base + "_forged.stl", run.state().leg->scene.mesh, run.state().workpiece.X);
+    write_boundary_stl(base + "_forged.stl", run.state().epoch->scene.mesh, run.state().workpiece.X);
     for (const Die &die : run.dies())
       if (die.surface())
         write_stl(base + "_die_" + die.name + ".stl", *die.surface(), StlFormat::binary);

@@ -189,7 +189,7 @@ namespace retroforge
       hdf5::write_array(group, "begin", {J.begin.size()}, J.begin.data());
       hdf5::write_array(group, "node", {J.node.size()}, J.node.data());
       hdf5::write_array(group, "weight", {J.weight.size()}, J.weight.data());
-      hdf5::write_attribute(group, "repaired", &remesh.repaired);
+      hdf5::write_attribute(group, "repaired", &remesh.removed_volume);
     }
 
     std::shared_ptr<const RemeshRecord> read_remesh(const hid_t parent, const std::string &where)
@@ -199,7 +199,7 @@ namespace retroforge
       TransferOperator  &J      = remesh->transfer;
       remesh->mesh              = read_mesh(group);
       remesh->X_before          = read_vectors(group, "X_before", hdf5::any);
-      remesh->repaired          = read_number(group, "repaired");
+      remesh->removed_volume    = read_number(group, "repaired");
       J.n_old                   = remesh->X_before.size();
       J.begin                   = hdf5::read_array<unsigned int>(group, "begin", {remesh->mesh.X.size() + 1});
       J.node                    = hdf5::read_array<unsigned int>(group, "node", {hdf5::any});

@@ -94,11 +94,11 @@ namespace retroforge
                          const std::string &directory)
       : problem_(std::move(problem))
       , timings_(timings)
-      , first_leg_(std::make_shared<Leg>(*problem_.billet, problem_.model, timings_))
+      , first_epoch_(std::make_shared<MeshEpoch>(*problem_.billet, problem_.model, timings_))
       , trace_(problem_.objectives, problem_.process)
       , can_go_back_(keep == Keep::increments || !directory.empty())
       , recording_(directory, keep == Keep::increments)
-      , state_(Forging::start(first_leg_, problem_.X_0))
+      , state_(Forging::start(first_epoch_, problem_.X_0))
   {
     enter(0);
   }
@@ -111,7 +111,7 @@ namespace retroforge
 
   std::vector<std::string> ForwardRun::check() const
   {
-    return check_scene(problem_.parameters, first_leg_->scene, problem_.process, problem_.X_0);
+    return check_scene(problem_.parameters, first_epoch_->scene, problem_.process, problem_.X_0);
   }
 
   void ForwardRun::restore(const unsigned int           n,
@@ -197,7 +197,7 @@ namespace retroforge
   {
     AssertThrow(can_go_back_, dealii::ExcMessage("a run is differentiated whose increments are kept"));
     return {problem_.model,
-            first_leg_,
+            first_epoch_,
             problem_.process,
             recording_.access(),
             state_.increments,
@@ -220,7 +220,7 @@ namespace retroforge
                                   const NodalVectors<double> &X_0,
                                   const Forging::Observer    &observer) const
   {
-    ForgingState state = Forging::start(first_leg_, X_0);
+    ForgingState state = Forging::start(first_epoch_, X_0);
     running_->forging.replay(process, state_.increments, recorded().record, state, observer);
     return state;
   }

@@ -116,7 +116,7 @@ namespace retroforge
   HistoryRow RunOutput::row_of(const IncrementEvent &event)
   {
     const ForgingState      &state  = event.state;
-    const Scene             &scene  = state.leg->scene;
+    const Scene             &scene  = state.epoch->scene;
     const ReplicatedEntries &cells  = scene.discretization.cells();
     const std::vector<Die>  &dies   = case_.model.dies;
     const double             size   = volume(scene.mesh, state.workpiece.X, cells);
@@ -150,7 +150,7 @@ namespace retroforge
 
   void RunOutput::print(const IncrementEvent &event, const HistoryRow &row)
   {
-    const TetMesh &mesh = event.state.leg->scene.mesh;
+    const TetMesh &mesh = event.state.epoch->scene.mesh;
     if (event.record.remesh)
       std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());
     if (!std::isnan(seconds_)) // solved, not restored

@@ -89,7 +89,7 @@ namespace retroforge
       print_begin(case_);
       print_warnings(warnings_);
       print_warnings(
-        estimate_scene(case_.parameters, run_.first_leg().scene, case_.process, case_.X_0).warnings);
+        estimate_scene(case_.parameters, run_.first_epoch().scene, case_.process, case_.X_0).warnings);
       summary_.volume_of_shape = shape_volume(case_);
       print_chords(case_, summary_.volume_of_shape);
     }
@@ -184,7 +184,7 @@ namespace retroforge
 
   void Simulation::write_forged() const
   {
-    const TetMesh              &mesh = run_.state().leg->scene.mesh;
+    const TetMesh              &mesh = run_.state().epoch->scene.mesh;
     const NodalVectors<double> &X    = run_.state().workpiece.X;
     write_msh(path_of("forged.msh"), mesh, X);
     write_boundary_stl(path_of("forged.stl"), mesh, X);
@@ -225,7 +225,7 @@ namespace retroforge
     MPI_Barrier(case_.comm); // the record is complete before any rank reads it
     const ForgingState &end = run_.state();
     require_finite(end.energy.total(), "Workpiece", "its energy");
-    require_finite(volume(end.leg->scene.mesh.cells, end.workpiece.X), "Workpiece", "its volume");
+    require_finite(volume(end.epoch->scene.mesh.cells, end.workpiece.X), "Workpiece", "its volume");
   }
 
   void Simulation::forge_on()

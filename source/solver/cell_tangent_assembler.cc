@@ -219,10 +219,10 @@ namespace retroforge
   }
 
   template <typename Tangents, typename Pair>
-  void CellTangentAssembler::add_cells(const Pair          &pair,
-                                       const Stage<double> &stage,
-                                       const Field<double> &W,
-                                       const Linearisation  linearisation)
+  void CellTangentAssembler::add_cells(const Pair                &pair,
+                                       const Equilibrium<double> &stage,
+                                       const Field<double>       &W,
+                                       const Linearisation        linearisation)
   {
     const auto        &discretization = scene_.discretization;
     const auto        &visited        = discretization.visited_cells();
@@ -260,9 +260,9 @@ namespace retroforge
                            std::cbrt(regular_tetrahedra * volume / scene_.mesh.n_cells());
   }
 
-  void CellTangentAssembler::assemble(const Stage<double> &stage,
-                                      const Field<double> &W,
-                                      const Linearisation  linearisation)
+  void CellTangentAssembler::assemble(const Equilibrium<double> &stage,
+                                      const Field<double>       &W,
+                                      const Linearisation        linearisation)
   {
     std::fill(blocks_.begin(), blocks_.end(), Block{});
     std::fill(schur_.begin(), schur_.end(), 0.);

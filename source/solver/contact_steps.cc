@@ -24,10 +24,10 @@ namespace retroforge
     /// Corrects the node's velocity along the die's normal, as far as the symmetry planes let it move that
     /// way.
     /// @param speed  the approach excess of the node afterwards [mm/s]
-    void set_approach_excess(const Stage<double> &stage,
-                             const unsigned int   p,
-                             const double         speed,
-                             Field<double>       &W)
+    void set_approach_excess(const Equilibrium<double> &stage,
+                             const unsigned int         p,
+                             const double               speed,
+                             Field<double>             &W)
     {
       const NodeIndex           k              = stage.contact.pairs[p].point.velocity_node;
       const ContactNode<double> node           = stage.contact_node(p, W, {});
@@ -40,7 +40,7 @@ namespace retroforge
         W.V[k] -= (approach_excess(node) - speed) / part * free;
     }
 
-    void put_onto_die(const Stage<double> &stage, const unsigned int p, Field<double> &W)
+    void put_onto_die(const Equilibrium<double> &stage, const unsigned int p, Field<double> &W)
     {
       set_approach_excess(stage, p, beyond * fastest(stage.physics.dies), W);
     }
@@ -57,7 +57,7 @@ namespace retroforge
 
     /// Returns, for each pair with a velocity of its own, the force with which the metal presses its node
     /// against the die when no node is held [N].
-    std::vector<double> forces_of_metal(const Stage<double> &stage, const Field<double> &W)
+    std::vector<double> forces_of_metal(const Equilibrium<double> &stage, const Field<double> &W)
     {
       const auto &pairs = stage.contact.pairs;
       // Edges hold nodes, too: these are not the die's to hold.
@@ -74,7 +74,7 @@ namespace retroforge
       return force;
     }
 
-    std::vector<char> pressed_by_metal(const Stage<double> &stage, const Field<double> &W)
+    std::vector<char> pressed_by_metal(const Equilibrium<double> &stage, const Field<double> &W)
     {
       std::vector<double> force = forces_of_metal(stage, W);
       double              sum   = 0.;
@@ -94,7 +94,7 @@ namespace retroforge
   } // namespace
 
   std::vector<char>
-  project_onto_dies(const Stage<double> &stage, Field<double> &W, const ActiveChoice &pressed)
+  project_onto_dies(const Equilibrium<double> &stage, Field<double> &W, const ActiveChoice &pressed)
   {
     const auto       &pairs = stage.contact.pairs;
     std::vector<char> held  = pressed.is_given() ? *pressed : pressed_by_metal(stage, W);
@@ -109,7 +109,8 @@ namespace retroforge
     return held;
   }
 
-  void apply_contact_pressure(const Stage<double> &stage, const std::vector<char> &held, Field<double> &W)
+  void
+  apply_contact_pressure(const Equilibrium<double> &stage, const std::vector<char> &held, Field<double> &W)
   {
     const std::vector<double> force = forces_of_metal(stage, W);
     for (unsigned int p = 0; p < force.size(); ++p)
@@ -118,7 +119,7 @@ namespace retroforge
           stage, p, excess_under(force[p], stage.contact_node(p, W, {}), stage.physics.contact), W);
   }
 
-  void clip_to_dies(const Stage<double> &stage, const ActiveSet &active, Field<double> &W)
+  void clip_to_dies(const Equilibrium<double> &stage, const ActiveSet &active, Field<double> &W)
   {
     const auto &pairs = stage.contact.pairs;
     for (unsigned int sweep = 0; sweep < sweeps; ++sweep)

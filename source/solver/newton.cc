@@ -42,7 +42,7 @@ namespace retroforge
   namespace
   {
     /// Of the billet, and of the fastest die.
-    std::pair<double, double> volume_and_speed(const Stage<double> &stage)
+    std::pair<double, double> volume_and_speed(const Equilibrium<double> &stage)
     {
       const Discretization<3> &discretization = stage.scene.discretization;
       double                   volume = 0., speed = 0.;
@@ -61,8 +61,9 @@ namespace retroforge
 
     /// What residuals are measured against. Where nothing pushes yet, all there is is rounding: what is small
     /// against the flow at the dies' speed, `reference`, is measured against that.
-    std::pair<double, double>
-    scale_of(const Stage<double> &stage, const Field<double> &W, const std::pair<double, double> &reference)
+    std::pair<double, double> scale_of(const Equilibrium<double>       &stage,
+                                       const Field<double>             &W,
+                                       const std::pair<double, double> &reference)
     {
       constexpr double negligible = 1e-3;
       const auto       scale      = residual_scale(stage, W);
@@ -71,7 +72,7 @@ namespace retroforge
     }
 
     /// What residual_scale would be in a flow at the dies' speed.
-    std::pair<double, double> reference_scale(const Stage<double> &stage)
+    std::pair<double, double> reference_scale(const Equilibrium<double> &stage)
     {
       const auto [volume, speed] = volume_and_speed(stage);
       const double rate = typical_rate(volume, speed), n = stage.scene.mesh.n_nodes(), v = volume / n;
@@ -81,11 +82,11 @@ namespace retroforge
     }
   } // namespace
 
-  double Newton::relative_residual(const Stage<double> &stage,
-                                   const Field<double> &W,
-                                   const ActiveChoice  &frozen,
-                                   const Scale         &scale,
-                                   Field<double>       &r)
+  double Newton::relative_residual(const Equilibrium<double> &stage,
+                                   const Field<double>       &W,
+                                   const ActiveChoice        &frozen,
+                                   const Scale               &scale,
+                                   Field<double>             &r)
   {
     r                          = stage.residual(W, frozen);
     const auto  norm           = system_.residual_norm(r);
@@ -113,7 +114,7 @@ namespace retroforge
     /// Balances bubbles with velocities and pressures that are on their way. Where the metal hardly feels its
     /// rate, a load that a cell cannot bear makes them  |beta| ~ (load / K)^(1/m),  beyond all bounds, and
     /// systems solved to a part of such a residual say nothing of the rest: those are left as they are.
-    void solve_bubbles_in_reach(const Stage<double> &stage, const double speed, Field<double> &W)
+    void solve_bubbles_in_reach(const Equilibrium<double> &stage, const double speed, Field<double> &W)
     {
       constexpr double farthest       = 1e3; // of the dies' speed
       const auto      &discretization = stage.scene.discretization;
@@ -130,11 +131,11 @@ namespace retroforge
     }
   } // namespace
 
-  double Newton::search_power(const Stage<double> &stage,
-                              Field<double>       &W,
-                              const Field<double> &r,
-                              const Field<double> &step,
-                              const ActiveChoice  &active)
+  double Newton::search_power(const Equilibrium<double> &stage,
+                              Field<double>             &W,
+                              const Field<double>       &r,
+                              const Field<double>       &step,
+                              const ActiveChoice        &active)
   {
     // The pressure takes its full step: it is the multiplier of the functional's constraint.
     for (unsigned int place = 0; place < W.P.size(); ++place)
@@ -186,11 +187,11 @@ namespace retroforge
     return a;
   }
 
-  double Newton::search_residual(const Stage<double> &stage,
-                                 Field<double>       &W,
-                                 const SearchStart   &start,
-                                 const Field<double> &step,
-                                 const ActiveChoice  &active)
+  double Newton::search_residual(const Equilibrium<double> &stage,
+                                 Field<double>             &W,
+                                 const SearchStart         &start,
+                                 const Field<double>       &step,
+                                 const ActiveChoice        &active)
   {
     // Friction that hardly grows with the slip leaves the residual blind to a step that goes too far.
     Field<double> there = W, r;
@@ -224,10 +225,10 @@ namespace retroforge
     return best;
   }
 
-  void Newton::initial_guess(const Stage<double> &stage,
-                             Field<double>       &W,
-                             const ActiveChoice  &frozen,
-                             NewtonStatistics    &statistics)
+  void Newton::initial_guess(const Equilibrium<double> &stage,
+                             Field<double>             &W,
+                             const ActiveChoice        &frozen,
+                             NewtonStatistics          &statistics)
   {
     const auto [volume, speed] = volume_and_speed(stage);
     Physics<double> newtonian  = stage.physics;
@@ -239,7 +240,7 @@ namespace retroforge
       die.friction = linear_friction(die, slip, pressure, stage.physics.material.law, newtonian.material.law);
       die.interface_law = 0;
     }
-    const Stage<double> linear(scene_, newtonian, stage.contact, stage.X);
+    const Equilibrium<double> linear(scene_, newtonian, stage.contact, stage.X);
     // Nodes at rest against a die at rest must feel it: all that touch count as active in the first matrix.
     ActiveSet active;
     if (frozen.is_given())
@@ -302,11 +303,11 @@ namespace retroforge
   /// begin so close to their solutions that the tolerance says little: each takes one step more.
   constexpr double refined = 1e-5;
 
-  NewtonStatistics Newton::solve(const Stage<double> &stage,
-                                 Field<double>       &W,
-                                 const ActiveChoice  &frozen,
-                                 const Start          start,
-                                 const ActiveChoice  &pressed)
+  NewtonStatistics Newton::solve(const Equilibrium<double> &stage,
+                                 Field<double>             &W,
+                                 const ActiveChoice        &frozen,
+                                 const Origin               origin,
+                                 const ActiveChoice        &pressed)
   {
     Assert(&stage.scene == &scene_, dealii::ExcMessage("the stage is of another scene than the matrix"));
     Assert(W.belongs_to(scene_.discretization),
@@ -328,7 +329,7 @@ namespace retroforge
     solve_bubbles_in_reach(stage, speed, W);
     if (!held.empty())
       apply_contact_pressure(stage, held, W);
-    unsigned int  picard    = decides && start == Start::far ? picard_steps : 0;
+    unsigned int  picard    = decides && origin == Origin::transferred ? picard_steps : 0;
     const Scale   reference = reference_scale(stage);
     Scale         scale;
     Field<double> r, step;

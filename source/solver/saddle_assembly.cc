@@ -232,8 +232,9 @@ namespace retroforge
     }
   }
 
-  std::vector<SaddleMatrix::ContactEntries>
-  SaddleMatrix::contact_entries(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
+  std::vector<SaddleMatrix::ContactEntries> SaddleMatrix::contact_entries(const Equilibrium<double> &stage,
+                                                                          const Field<double>       &W,
+                                                                          const ActiveSet           &active)
   {
     std::vector<ContactEntries> entries;
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)

@@ -22,10 +22,10 @@ namespace retroforge
     cell_tangents_ = std::make_unique<CellTangentAssembler>(scene, system_.A->pattern());
   }
 
-  void SaddleMatrix::assemble(const Stage<double> &stage,
-                              const Field<double> &W,
-                              const ActiveChoice  &active,
-                              const Linearisation  linearisation)
+  void SaddleMatrix::assemble(const Equilibrium<double> &stage,
+                              const Field<double>       &W,
+                              const ActiveChoice        &active,
+                              const Linearisation        linearisation)
   {
     Assert(&stage.scene == &scene_, ExcMessage("the stage is of another scene than the matrix"));
     Assert(active.fits(stage.contact.pairs.size()),

@@ -8,7 +8,7 @@ namespace retroforge
   namespace
   {
     template <typename Number>
-    std::vector<Number> freedom(const Stage<Number> &stage)
+    std::vector<Number> freedom(const Equilibrium<Number> &stage)
     {
       std::vector<Number> c(stage.scene.mesh.n_nodes(), Number(1.));
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
@@ -18,7 +18,8 @@ namespace retroforge
     }
 
     /// Adds to the ramps' derivatives. A node may be held by several dies.
-    void reverse_freedom(const Stage<double> &stage, const std::vector<double> &c_bar, ContactSetBar &bar)
+    void
+    reverse_freedom(const Equilibrium<double> &stage, const std::vector<double> &c_bar, ContactSetBar &bar)
     {
       const ContactSet<double>              &contact = stage.contact;
       std::vector<std::vector<unsigned int>> pairs(c_bar.size());
@@ -37,7 +38,7 @@ namespace retroforge
   } // namespace
 
   template <typename Number>
-  NodalVectors<Number> motion(const Stage<Number> &stage, const Field<Number> &W)
+  NodalVectors<Number> motion(const Equilibrium<Number> &stage, const Field<Number> &W)
   {
     Assert(W.belongs_to(stage.scene.discretization),
            dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
@@ -50,7 +51,7 @@ namespace retroforge
     return vertex_velocities<Number>({scene.mesh, scene.topology, *discretization.middles(), stage.X, V, c});
   }
 
-  void reverse_motion(const Stage<double>           &stage,
+  void reverse_motion(const Equilibrium<double>     &stage,
                       const Field<double>           &W,
                       const NodalVectors<double>    &motion_bar,
                       Field<double>                 &W_bar,
@@ -86,6 +87,6 @@ namespace retroforge
       [&](ContactSetBar &part) { reverse_freedom(stage, motion_input_bar.freedom, part); });
   }
 
-  template NodalVectors<double> motion(const Stage<double> &, const Field<double> &);
-  template NodalVectors<Dual>   motion(const Stage<Dual> &, const Field<Dual> &);
+  template NodalVectors<double> motion(const Equilibrium<double> &, const Field<double> &);
+  template NodalVectors<Dual>   motion(const Equilibrium<Dual> &, const Field<Dual> &);
 } // namespace retroforge

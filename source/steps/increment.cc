@@ -19,10 +19,11 @@ namespace retroforge
                           WorkpieceState<3, Dual> &state)
   {
     WorkpieceState<3, Dual> next = state;
-    next.X = mechanics.tangent(process, state, record, [&](const StageView<Dual> &view, const Dual &dt) {
-      observer(view, dt);
-      add_history(view, dt, next);
-    });
+    next.X =
+      mechanics.tangent(process, state, record, [&](const EquilibriumView<Dual> &view, const Dual &dt) {
+        observer(view, dt);
+        add_history(view, dt, next);
+      });
     complete_history(scene_.discretization, next);
     state = std::move(next);
   }
@@ -38,7 +39,7 @@ namespace retroforge
       process,
       state,
       record,
-      [&](const std::size_t j, const StageView<double> &view, StageBar &bar) {
+      [&](const std::size_t j, const EquilibriumView<double> &view, EquilibriumBar &bar) {
         source(j, view, bar);
         reverse_history(view, dt, costates[j].workpiece, bar);
       },

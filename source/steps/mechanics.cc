@@ -56,7 +56,7 @@ namespace retroforge
   {
   }
 
-  bool Mechanics::contacts_missed(const Stage<double> &stage, const Field<double> &W) const
+  bool Mechanics::contacts_missed(const Equilibrium<double> &stage, const Field<double> &W) const
   {
     const auto                     timing = timings_.scope("checks");
     const auto                    &nodes  = *scene_.discretization.condensed_nodes();
@@ -109,7 +109,7 @@ namespace retroforge
                                                    const NodalVectors<double>   &X,
                                                    const bool                    replay,
                                                    const bool                    all_found,
-                                                   const Guess                  &guess,
+                                                   const InitialGuess           &guess,
                                                    IncrementRecord              &record)
   {
     Field<double>            W      = guess.W;
@@ -120,12 +120,12 @@ namespace retroforge
     for (unsigned int s = 0; s < scheme.n_stages() && !lost; ++s)
     {
       const NodalVectors<double> position = advanced(X, start.dt, scheme.a[s], solves);
-      const Stage<double>        stage(scene_, start.physics, start.contact, position, start.strain);
+      const Equilibrium<double>  stage(scene_, start.physics, start.contact, position, start.strain);
       const ActiveChoice         frozen = replay ? ActiveChoice(record.solves[s].active) : ActiveChoice();
-      const Start                known  = s == 0 ? guess.known : Start::near;
+      const Origin               origin = s == 0 ? guess.origin : Origin::previous;
       guess.advance(s == 0 ? guess.ahead : record.step * (scheme.node(s) - scheme.node(s - 1)), W);
       const NewtonStatistics statistics =
-        newton_.solve(stage, W, frozen, known, s == 0 ? ActiveChoice() : ActiveChoice(solves.back().active));
+        newton_.solve(stage, W, frozen, origin, s == 0 ? ActiveChoice() : ActiveChoice(solves.back().active));
       record.newton += statistics.iterations;
       record.krylov += statistics.krylov;
       solves.push_back({W.V.complete(*scene_.discretization.condensed_nodes()),
@@ -160,7 +160,7 @@ namespace retroforge
   SolvedIncrement Mechanics::forward(const Process<double>           &process,
                                      const WorkpieceState<3, double> &state,
                                      const bool                       replay,
-                                     const Guess                     &guess,
+                                     const InitialGuess              &guess,
                                      IncrementRecord                 &record)
   {
     const NodalVectors<double> &X = state.X;
@@ -257,19 +257,21 @@ namespace retroforge
     return rate;
   }
 
-  Guess Mechanics::guess_after(const SolvedIncrement &solved, const IncrementRecord &record) const
+  InitialGuess Mechanics::guess_after(const SolvedIncrement &solved, const IncrementRecord &record) const
   {
     const Scheme &scheme = scheme_of(record);
-    return {
-      solved.last().W, Start::near, rate(record), record.step * (1. - scheme.node(scheme.n_stages() - 1))};
+    return {solved.last().W,
+            Origin::previous,
+            rate(record),
+            record.step * (1. - scheme.node(scheme.n_stages() - 1))};
   }
 
-  Guess Mechanics::recorded_guess(const IncrementRecord &record) const
+  InitialGuess Mechanics::recorded_guess(const IncrementRecord &record) const
   {
     Field<double> W(scene_.discretization);
     W.V.take(record.solves.front().V);
     W.P.take(record.solves.front().P);
-    return {std::move(W), Start::near, rate(record)};
+    return {std::move(W), Origin::previous, rate(record)};
   }
 
   NodalVectors<double> Mechanics::retreat(const Process<double>      &process,

@@ -87,9 +87,9 @@ namespace retroforge
     std::vector<double> largest(costates.size(), 0.);
     for (unsigned int s = n; s-- > 0;)
     {
-      const auto              at   = recorded_stage(start, X, record, s, earlier_bubbles_[s]);
-      const StageView<double> view = at->view();
-      earlier_bubbles_[s]          = at->W.V;
+      const auto                    at   = recorded_stage(start, X, record, s, earlier_bubbles_[s]);
+      const EquilibriumView<double> view = at->view();
+      earlier_bubbles_[s]                = at->W.V;
       system_.assemble(at->stage, at->W, at->active);
       earlier_lambdas_[s].resize(costates.size());
       for (std::size_t j = 0; j < costates.size(); ++j)
@@ -98,7 +98,8 @@ namespace retroforge
         PhysicsBar                   &physics = bar.physics.part();
         RankSum<NodalVectors<double>> position_bar(NodalVectors<double>(X.size()), comm);
         Field<double>                 rhs(scene_.discretization);
-        StageBar   stage_bar{rhs, position_bar.part(), bar.contact.part(), physics, model_.shape_derivatives};
+        EquilibriumBar                stage_bar{
+          rhs, position_bar.part(), bar.contact.part(), physics, model_.shape_derivatives};
         const auto led_to = led_to_by(scheme, s, costates[j].workpiece.X, bar);
         bar.physics.add_once([&](PhysicsBar &part) {
           for (const auto &[weight, there] : led_to)

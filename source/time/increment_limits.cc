@@ -71,14 +71,14 @@ namespace retroforge
   } // namespace
 
   std::optional<StepRejection> IncrementLimits::rejection(const Process<double>      &process,
-                                                          const Leg                  &leg,
+                                                          const MeshEpoch            &epoch,
                                                           const IncrementRecord      &record,
                                                           const NodalVectors<double> &X,
                                                           const NodalVectors<double> &X_next) const
   {
-    if (is_full(process, leg.scene, record, X_next))
+    if (is_full(process, epoch.scene, record, X_next))
       return StepRejection{"the cavity is full", 1, false, true};
-    if (const auto reason = violated_limit(leg.scene, X, X_next))
+    if (const auto reason = violated_limit(epoch.scene, X, X_next))
       return StepRejection{*reason};
     const Slip slip = largest_slip(process, record, X, X_next);
     if (allow(slip.of_edge))
@@ -130,7 +130,7 @@ namespace retroforge
   StepRejection IncrementLimits::singular(const ForgingState &state)
   {
     return {"the linear systems of an increment have no solution; the flattest element is" +
-            at(flattest_cell(state.leg->scene.mesh, state.workpiece.X))};
+            at(flattest_cell(state.epoch->scene.mesh, state.workpiece.X))};
   }
 
   std::optional<std::string> IncrementLimits::violated_limit(const TetMesh              &mesh,
@@ -218,7 +218,7 @@ namespace retroforge
                                    const double           stroke,
                                    const std::string     &what) const
   {
-    const Scene             &scene   = state.leg->scene;
+    const Scene             &scene   = state.epoch->scene;
     const Physics<double>    physics = process.at_stroke(stroke, state.operation);
     std::vector<std::string> touching;
     for (unsigned int d = 0; d < scene.dies.size(); ++d)
@@ -273,7 +273,7 @@ namespace retroforge
 
   void IncrementLimits::check_progress(const ForgingState &state) const
   {
-    const Scene &scene = state.leg->scene;
+    const Scene &scene = state.epoch->scene;
     const double change =
       volume(scene.mesh, state.workpiece.X, scene.discretization.cells()) / state.volume - 1.;
     std::ostringstream what;
@@ -302,6 +302,6 @@ namespace retroforge
 
   void IncrementLimits::check_fold(const ForgingState &state)
   {
-    check_boundary_does_not_cross(state.leg->scene.mesh, state.workpiece.X, "Workpiece");
+    check_boundary_does_not_cross(state.epoch->scene.mesh, state.workpiece.X, "Workpiece");
   }
 } // namespace retroforge

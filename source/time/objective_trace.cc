@@ -74,7 +74,7 @@ namespace retroforge
                               const ForgingState                  &state,
                               const std::vector<DieState<double>> &dies)
     {
-      return final_view(objective, state.leg->scene, state.workpiece.X, state.workpiece.strain, dies);
+      return final_view(objective, state.epoch->scene, state.workpiece.X, state.workpiece.strain, dies);
     }
 
     Evaluation evaluated(const PathObjective &objective, const PathRows<double> &rows)

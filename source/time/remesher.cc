@@ -318,7 +318,7 @@ namespace retroforge
                               const SizeField            &size,
                               const DieStates            &states,
                               const double                repairable,
-                              double                     &repaired) const
+                              double                     &removed_volume) const
   {
     const PushOut    push_out = this->push_out(states);
     const TouchesDie touches  = this->touches(states);
@@ -330,7 +330,7 @@ namespace retroforge
     const auto use = [&](RepairedMesh &&made) {
       compose(start.old_node, made.mesh.old_node);
       start = std::move(made.mesh);
-      repaired += made.removed;
+      removed_volume += made.removed;
     };
     // What remeshing moves can cross again beside what was taken away.
     constexpr unsigned int n_tries = 3;
@@ -350,7 +350,7 @@ namespace retroforge
       compose(start.old_node, local.old_node);
       if (i == n_tries)
         return local;
-      auto peeled = without_slivers(local.mesh, local.mesh.X, size, repairable - repaired);
+      auto peeled = without_slivers(local.mesh, local.mesh.X, size, repairable - removed_volume);
       if (!peeled && self_crossings(local.mesh, local.mesh.X).empty())
         return local;
       start = {std::move(local.mesh), std::move(local.old_node)};
@@ -372,7 +372,7 @@ namespace retroforge
       const NodalVectors<double> rounded = on_grid(X);
       const SizeField            size =
         size_field(states, errors ? std::make_shared<ErrorSizes>(*errors, error_size_bounds()) : nullptr);
-      RemeshedMesh made = make(mesh, rounded, size, states, repairable, record->repaired);
+      RemeshedMesh made = make(mesh, rounded, size, states, repairable, record->removed_volume);
       for (NodeIndex k = 0; k < made.mesh.n_nodes(); ++k)
         if (const NodeIndex old = made.old_node[k]; old != invalid_index)
           made.mesh.X[k] += X[old] - rounded[old];
@@ -384,7 +384,7 @@ namespace retroforge
       return std::move(made.mesh);
     };
     record->mesh = make_on_root("Remeshing", make_numbered, comm_, &old_node);
-    MPI_Bcast(&record->repaired, 1, MPI_DOUBLE, 0, comm_);
+    MPI_Bcast(&record->removed_volume, 1, MPI_DOUBLE, 0, comm_);
     record->X_before  = X;
     const auto timing = timings.scope("transfer");
     record->transfer  = make_transfer(mesh, X, record->mesh, old_node);

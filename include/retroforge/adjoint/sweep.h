@@ -9,14 +9,14 @@ namespace retroforge
   /// A recorded run, to be differentiated. What is referred to must live as long.
   struct RecordedForging
   {
-    const ForgingModel       &model;
-    std::shared_ptr<Leg>      first; ///< the leg in which the run began
-    const Process<double>    &process;
-    Forging::RecordAccess     record;
-    unsigned int              n; ///< increments
-    const Objectives         &objectives;
-    const RecordedObjectives &traced; ///< of these; they have decided
-    Timings                  &timings;
+    const ForgingModel        &model;
+    std::shared_ptr<MeshEpoch> first; ///< the epoch in which the run began
+    const Process<double>     &process;
+    Forging::RecordAccess      record;
+    unsigned int               n; ///< increments
+    const Objectives          &objectives;
+    const RecordedObjectives  &traced; ///< of these; they have decided
+    Timings                   &timings;
   };
 
   /// dPhi/dX_0 and dPhi/d(process) of one combination of objectives.

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <retroforge/core/rank_sum.h>
-#include <retroforge/solver/stage.h>
+#include <retroforge/solver/equilibrium.h>
 
 #include <any>
 #include <map>

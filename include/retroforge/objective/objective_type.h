@@ -38,6 +38,6 @@ namespace retroforge
     make(const std::string &where, const ObjectiveContext &context, NamedObjective &objective) const = 0;
   };
 
-  /// The types there are: to add one, add a line to this table.
+  /// Returns the types there are; a line of its table adds one.
   const Choice<ObjectiveType>::Makers &objective_types();
 } // namespace retroforge

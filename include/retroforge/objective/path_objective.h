@@ -3,7 +3,7 @@
 #pragma once
 
 #include <retroforge/core/rank_sum.h>
-#include <retroforge/solver/stage.h>
+#include <retroforge/solver/equilibrium.h>
 
 #include <map>
 #include <string>
@@ -44,13 +44,13 @@ namespace retroforge
     virtual std::string unit() const = 0;
 
     /// Returns what one stage of increment i gives to a_i.
-    virtual RankSum<std::vector<double>> integrals(const StageView<double> &view) const = 0;
-    virtual RankSum<std::vector<Dual>>   integrals(const StageView<Dual> &view) const   = 0;
+    virtual RankSum<std::vector<double>> integrals(const EquilibriumView<double> &view) const = 0;
+    virtual RankSum<std::vector<Dual>>   integrals(const EquilibriumView<Dual> &view) const   = 0;
 
     /// Adds the derivatives of weights·integrals, this rank's part.
-    virtual void reverse_integrals(const StageView<double>   &view,
-                                   const std::vector<double> &weights,
-                                   StageBar                  &bar) const = 0;
+    virtual void reverse_integrals(const EquilibriumView<double> &view,
+                                   const std::vector<double>     &weights,
+                                   EquilibriumBar                &bar) const = 0;
 
     /// Returns Phi.
     /// @throws Error  when it is not defined for these increments (an empty window)
@@ -69,7 +69,8 @@ namespace retroforge
 
   /// Adds to a row what one stage of its increment gives to its integrals.
   template <typename Number>
-  void add_integrals(const PathObjective &objective, const StageView<Number> &view, PathRow<Number> &row)
+  void
+  add_integrals(const PathObjective &objective, const EquilibriumView<Number> &view, PathRow<Number> &row)
   {
     const auto whole = objective.integrals(view).complete();
     row.integrals.resize(whole.size(), Number(0.));
@@ -83,7 +84,7 @@ namespace retroforge
 
   /// A PathObjective made from class T, which has the number of its terms and for any Number
   ///   static constexpr unsigned int n_terms;
-  ///   std::vector<Number> compute_integrals(const StageView<Number> &) const;                of this rank
+  ///   std::vector<Number> compute_integrals(const EquilibriumView<Number> &) const;                of this rank
   ///   std::vector<Number> terms(const PathRow<Number> &, double scale) const;                g
   ///   Number              combine(const std::vector<Number> &sums, double scale) const;      F
   /// and, if it needs one,  double scale(const PathRows<double> &) const:  a number that g and F use to avoid
@@ -92,11 +93,11 @@ namespace retroforge
   class PathObjectiveOf : public PathObjective
   {
   public:
-    RankSum<std::vector<double>> integrals(const StageView<double> &view) const override
+    RankSum<std::vector<double>> integrals(const EquilibriumView<double> &view) const override
     {
       return sum_integrals(view);
     }
-    RankSum<std::vector<Dual>> integrals(const StageView<Dual> &view) const override
+    RankSum<std::vector<Dual>> integrals(const EquilibriumView<Dual> &view) const override
     {
       return sum_integrals(view);
     }
@@ -123,7 +124,7 @@ namespace retroforge
     const T &self() const { return static_cast<const T &>(*this); }
 
     template <typename Number>
-    RankSum<std::vector<Number>> sum_integrals(const StageView<Number> &view) const
+    RankSum<std::vector<Number>> sum_integrals(const EquilibriumView<Number> &view) const
     {
       const auto &discretization = view.stage.scene.discretization;
       Assert(view.W.belongs_to(discretization),

@@ -27,7 +27,7 @@ namespace retroforge
     }
   };
 
-  /// Volume of cell c, which this rank visits.
+  /// Returns the volume of cell c, which this rank visits.
   template <typename Number>
   Number cell_volume(const FinalView<Number> &view, CellIndex c);
 

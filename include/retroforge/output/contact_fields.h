@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/solver/stage.h>
+#include <retroforge/solver/equilibrium.h>
 
 namespace retroforge
 {
@@ -20,5 +20,6 @@ namespace retroforge
   };
 
   /// @param W, active  the stage's solution, on every rank, and who presses in it
-  ContactFields contact_fields(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
+  ContactFields
+  contact_fields(const Equilibrium<double> &stage, const Field<double> &W, const ActiveSet &active);
 } // namespace retroforge

@@ -30,7 +30,7 @@ namespace retroforge
     NodalVectors<double> X_before; ///< positions on the old mesh [mm]
     TetMesh              mesh;     ///< the new one; its X are the positions after
     TransferOperator     transfer;
-    double               repaired = 0.; ///< metal thinner than an element taken away [mm^3]
+    double               removed_volume = 0.; ///< metal thinner than an element taken away [mm^3]
   };
 
   /// What the backward pass and a replay need of one increment. Positions follow from X_0 and the velocities.

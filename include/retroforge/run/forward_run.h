@@ -119,7 +119,7 @@ namespace retroforge
     const ForgingModel         &model() const { return problem_.model; }
     const Objectives           &objectives() const { return problem_.objectives; }
     const ObjectiveTrace       &trace() const { return trace_; }
-    Leg                        &first_leg() const { return *first_leg_; }
+    MeshEpoch                  &first_epoch() const { return *first_epoch_; }
     Recording                  &recording() { return recording_; }
     const Recording            &recording() const { return recording_; }
 
@@ -151,7 +151,7 @@ namespace retroforge
 
     ForgingProblem              problem_;
     Timings                    &timings_;
-    std::shared_ptr<Leg>        first_leg_;
+    std::shared_ptr<MeshEpoch>  first_epoch_;
     ObjectiveTrace              trace_;
     const bool                  can_go_back_; ///< the increments are kept or recorded
     Recording                   recording_;

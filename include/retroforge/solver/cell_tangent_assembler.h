@@ -4,7 +4,7 @@
 
 #include <retroforge/element/mini_element.h>
 #include <retroforge/linear_algebra/node_matrix.h>
-#include <retroforge/solver/stage.h>
+#include <retroforge/solver/equilibrium.h>
 
 #include <deal.II/base/aligned_vector.h>
 
@@ -28,7 +28,7 @@ namespace retroforge
     CellTangentAssembler(const Scene &scene, const NodePattern &met);
 
     /// Sums the tangents of the visited cells at W.
-    void assemble(const Stage<double> &stage, const Field<double> &W, Linearisation linearisation);
+    void assemble(const Equilibrium<double> &stage, const Field<double> &W, Linearisation linearisation);
 
     /// Returns the first block of a local row; those of its other pairs follow.
     const Block *row(const unsigned int local) const { return &blocks_[begin_[local]]; }
@@ -41,10 +41,10 @@ namespace retroforge
 
   private:
     template <typename Tangents, typename Pair>
-    void add_cells(const Pair          &pair,
-                   const Stage<double> &stage,
-                   const Field<double> &W,
-                   Linearisation        linearisation);
+    void add_cells(const Pair                &pair,
+                   const Equilibrium<double> &stage,
+                   const Field<double>       &W,
+                   Linearisation              linearisation);
 
     const Scene                 &scene_;
     std::vector<unsigned int>    begin_; ///< number of the first pair of each local row, and the end

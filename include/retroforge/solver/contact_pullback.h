@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/solver/stage.h>
+#include <retroforge/solver/equilibrium.h>
 
 namespace retroforge
 {
@@ -11,7 +11,7 @@ namespace retroforge
   class ContactPullback
   {
   public:
-    ContactPullback(const StageView<double> &view, StageBar &bar);
+    ContactPullback(const EquilibriumView<double> &view, EquilibriumBar &bar);
 
     /// Derivatives of a scalar in what contact_node(p) returned.
     void add(unsigned int p, const ContactNodeBar &node_bar);
@@ -23,8 +23,8 @@ namespace retroforge
     void finish();
 
   private:
-    const StageView<double> &view_;
-    StageBar                &bar_;
-    ContactAreas<double>     areas_bar_;
+    const EquilibriumView<double> &view_;
+    EquilibriumBar                &bar_;
+    ContactAreas<double>           areas_bar_;
   };
 } // namespace retroforge

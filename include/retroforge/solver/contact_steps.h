@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/solver/stage.h>
+#include <retroforge/solver/equilibrium.h>
 
 /// @file
 /// Corrections of velocities at the dies between the steps of Newton's method, for a stage whose active set
@@ -22,15 +22,16 @@ namespace retroforge
   ///                 given, decided by the force with which the metal presses when no node is held
   /// @return for each contact pair, whether its node was projected
   std::vector<char>
-  project_onto_dies(const Stage<double> &stage, Field<double> &W, const ActiveChoice &pressed = {});
+  project_onto_dies(const Equilibrium<double> &stage, Field<double> &W, const ActiveChoice &pressed = {});
 
   /// Gives each projected node the approach excess at which its penalty balances the force of the metal.
   /// Without that, contact forces were missing from the residual, and a step of Newton's method would find
   /// them.
   /// @param held  the result of project_onto_dies()
-  void apply_contact_pressure(const Stage<double> &stage, const std::vector<char> &held, Field<double> &W);
+  void
+  apply_contact_pressure(const Equilibrium<double> &stage, const std::vector<char> &held, Field<double> &W);
 
   /// Projects the nodes that were not active in a step, and that would penetrate a die after it.
   /// @param active  active set of the step
-  void clip_to_dies(const Stage<double> &stage, const ActiveSet &active, Field<double> &W);
+  void clip_to_dies(const Equilibrium<double> &stage, const ActiveSet &active, Field<double> &W);
 } // namespace retroforge

@@ -13,10 +13,10 @@ namespace retroforge
     LinearSystem(const Scene &scene, const LinearSolverParameters &parameters, Timings &timings);
 
     /// Matrix of `stage` at W; velocities fixed by symmetry are eliminated.
-    void assemble(const Stage<double> &stage,
-                  const Field<double> &W,
-                  const ActiveChoice  &active,
-                  Linearisation        linearisation = Linearisation::newton);
+    void assemble(const Equilibrium<double> &stage,
+                  const Field<double>       &W,
+                  const ActiveChoice        &active,
+                  Linearisation              linearisation = Linearisation::newton);
 
     /// Solution of the uncondensed system, or of the transposed one, for the right-hand side rhs (owned
     /// entries), to `tolerance` relative to the scaled right-hand side. Returns the number of Krylov

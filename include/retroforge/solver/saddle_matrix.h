@@ -39,10 +39,10 @@ namespace retroforge
     explicit SaddleMatrix(const Scene &scene);
 
     /// Matrix of `stage` at W; velocities fixed by symmetry are eliminated.
-    void assemble(const Stage<double> &stage,
-                  const Field<double> &W,
-                  const ActiveChoice  &active,
-                  Linearisation        linearisation);
+    void assemble(const Equilibrium<double> &stage,
+                  const Field<double>       &W,
+                  const ActiveChoice        &active,
+                  Linearisation              linearisation);
 
     const SaddleSystem &system() const { return system_; }
 
@@ -77,7 +77,7 @@ namespace retroforge
     std::vector<double> viscous_diagonal() const;
     /// Computes the entries of owned rows, and sets SaddleSystem::penalties_couple.
     std::vector<ContactEntries>
-    contact_entries(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
+    contact_entries(const Equilibrium<double> &stage, const Field<double> &W, const ActiveSet &active);
     /// Chooses the tests of owned nodes, and has contact's rows along them.
     void test_contact(std::vector<ContactEntries> &contact);
     void choose_scales(const std::vector<double> &viscous, const std::vector<ContactEntries> &contact);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <retroforge/record/increment_record.h>
-#include <retroforge/solver/stage.h>
+#include <retroforge/solver/equilibrium.h>
 #include <retroforge/steps/press_motion.h>
 
 namespace retroforge

@@ -31,7 +31,7 @@ namespace retroforge
             Timings               &timings);
 
     /// Before the first increment.
-    static ForgingState start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0);
+    static ForgingState start(std::shared_ptr<MeshEpoch> epoch, const NodalVectors<double> &X_0);
 
     /// From `state` on other numerics hold: it goes on with whole increments of theirs.
     /// @param parameters  the complete input, which the next increment's record is to tell; none where the
@@ -66,7 +66,7 @@ namespace retroforge
     /// @param guess  out: what was found, for a shorter increment
     std::optional<StepRejection> attempt(const Process<double> &process,
                                          const ForgingState    &state,
-                                         Guess                 &guess,
+                                         InitialGuess          &guess,
                                          IncrementRecord       &record,
                                          SolvedIncrement       &solved) const;
     void remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;

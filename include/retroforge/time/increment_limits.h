@@ -39,7 +39,7 @@ namespace retroforge
 
     /// Returns why an increment that was solved, from X to X_next, is rejected, if it is.
     std::optional<StepRejection> rejection(const Process<double>      &process,
-                                           const Leg                  &leg,
+                                           const MeshEpoch            &epoch,
                                            const IncrementRecord      &record,
                                            const NodalVectors<double> &X,
                                            const NodalVectors<double> &X_next) const;

@@ -134,7 +134,7 @@ namespace retroforge
                       const SizeField            &size,
                       const DieStates            &states,
                       double                      repairable,
-                      double                     &repaired) const;
+                      double                     &removed_volume) const;
     PushOut      push_out(const DieStates &states) const;
     TouchesDie   touches(const DieStates &states) const;
 

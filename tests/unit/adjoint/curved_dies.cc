@@ -168,7 +168,7 @@ namespace
             problem.scene.dies[pair.die].project(pair.point.position(X), states[pair.die], pair.feature).n;
           pressed.tilt = std::max(pressed.tilt, std::acos(std::min(1., std::abs(n[2]))) * 180. / M_PI);
         }
-      X = problem.first_leg().increment.mechanics.recorded(problem.process(), {X, {}}, record).X;
+      X = problem.first_epoch().increment.mechanics.recorded(problem.process(), {X, {}}, record).X;
     }
     return pressed;
   }

@@ -85,7 +85,7 @@ namespace retroforge
                      Keep::increments,
                      timings_of_runs())
         , parameters(resolved(all, meshes))
-        , scene(first_leg().scene)
+        , scene(first_epoch().scene)
     {
       forge();
       values(); // objectives of the end choose their features

@@ -246,12 +246,12 @@ namespace retroforge
 
   /// The contact's part of a reverse sweep; `reverse_node` is that of one node.
   template <typename NodeReverse>
-  void reverse_contact(const Stage<double>  &stage,
-                       const Term            omitted,
-                       const NodeReverse    &reverse_node,
-                       NodalVectors<double> &X_bar,
-                       ContactSetBar        &contact_bar,
-                       PhysicsBar           &bar)
+  void reverse_contact(const Equilibrium<double> &stage,
+                       const Term                 omitted,
+                       const NodeReverse         &reverse_node,
+                       NodalVectors<double>      &X_bar,
+                       ContactSetBar             &contact_bar,
+                       PhysicsBar                &bar)
   {
     const std::size_t    n = stage.contact.pairs.size();
     ContactAreas<double> areas_bar{std::vector<double>(n, 0.), std::vector<double>(n, 0.)};
@@ -271,15 +271,15 @@ namespace retroforge
   }
 
   /// Derivatives of weight * dt * power; returns those in W.
-  inline Field<double> reverse_energy(const Stage<double>  &stage,
-                                      const Field<double>  &W,
-                                      const ActiveSet      &active,
-                                      const double          weight,
-                                      const double          dt,
-                                      const Term            omitted,
-                                      NodalVectors<double> &X_bar,
-                                      ContactSetBar        &contact_bar,
-                                      PhysicsBar           &bar)
+  inline Field<double> reverse_energy(const Equilibrium<double> &stage,
+                                      const Field<double>       &W,
+                                      const ActiveSet           &active,
+                                      const double               weight,
+                                      const double               dt,
+                                      const Term                 omitted,
+                                      NodalVectors<double>      &X_bar,
+                                      ContactSetBar             &contact_bar,
+                                      PhysicsBar                &bar)
   {
     const TetMesh &mesh = stage.scene.mesh;
     Field<double>  W_bar(stage.scene.discretization);
@@ -312,14 +312,14 @@ namespace retroforge
   }
 
   /// Derivatives of lambda·R.
-  inline void reverse_equilibrium(const Stage<double>  &stage,
-                                  const Field<double>  &W,
-                                  const ActiveSet      &active,
-                                  Field<double>         lambda,
-                                  const Term            omitted,
-                                  NodalVectors<double> &X_bar,
-                                  ContactSetBar        &contact_bar,
-                                  PhysicsBar           &bar)
+  inline void reverse_equilibrium(const Equilibrium<double> &stage,
+                                  const Field<double>       &W,
+                                  const ActiveSet           &active,
+                                  Field<double>              lambda,
+                                  const Term                 omitted,
+                                  NodalVectors<double>      &X_bar,
+                                  ContactSetBar             &contact_bar,
+                                  PhysicsBar                &bar)
   {
     const TetMesh &mesh = stage.scene.mesh;
     if (omitted == Term::lambda_bubble)
@@ -370,7 +370,7 @@ namespace retroforge
     {
       const SolveRecord         &solve    = record.solves[s];
       const NodalVectors<double> position = advanced(X, dt, scheme.a[s], record.solves);
-      const Stage<double>        stage(scene, physics, contact, position);
+      const Equilibrium<double>  stage(scene, physics, contact, position);
       Field<double> W(scene.discretization), rhs(scene.discretization), minus_rhs(scene.discretization),
         lambda;
       W.V.take(solve.V);
@@ -390,8 +390,8 @@ namespace retroforge
       for (unsigned int r = s + 1; r < scheme.n_stages(); ++r)
         lead_to(scheme.a[r][s], Y_bar[r]);
       minus_rhs.add(-1., rhs);
-      problem.first_leg().system.assemble(stage, W, solve.active);
-      problem.first_leg().system.solve(minus_rhs, problem.model().step.adjoint_tolerance, lambda);
+      problem.first_epoch().system.assemble(stage, W, solve.active);
+      problem.first_epoch().system.solve(minus_rhs, problem.model().step.adjoint_tolerance, lambda);
       if (s == 0 && omitted == Term::first_stage)
         lambda = Field<double>(scene.discretization);
       reverse_equilibrium(stage, W, solve.active, lambda, omitted, X_bar, contact_bar, bar);
@@ -419,7 +419,7 @@ namespace retroforge
     for (unsigned int i = problem.records.size(); i-- > 0;)
     {
       const IncrementRecord &record = problem.records[i];
-      X = problem.first_leg().increment.mechanics.retreat(problem.process(), X, record);
+      X = problem.first_epoch().increment.mechanics.retreat(problem.process(), X, record);
       reverse_increment(problem, X, record, omitted, result.X_0, result.process);
     }
     return result;

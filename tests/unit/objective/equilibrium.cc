@@ -46,7 +46,7 @@ PathRows<double> rows(const RecordedRun &run, const PathObjective &objective)
   for (const IncrementRecord &record : run.records)
   {
     const SolvedIncrement solved =
-      run.first_leg().increment.mechanics.recorded(run.process(), {X, {}}, record);
+      run.first_epoch().increment.mechanics.recorded(run.process(), {X, {}}, record);
     rows.push_back(row_of(record, run.process()));
     add_integrals(objective, solved.last().view(), rows.back());
     X = solved.X;

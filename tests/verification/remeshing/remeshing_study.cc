@@ -180,7 +180,8 @@ int main(int argc, char **argv)
   mesh = Remesher(parameters, h, dies, mesh.patches, MPI_COMM_WORLD)
            .remesh(mesh, mesh.X, {}, {}, 0., timings)
            ->mesh;
-  parameters.method = method;
+  parameters.method =
+    method == "rebuild" ? RemesherParameters::Method::rebuild : RemesherParameters::Method::local;
   const Remesher remesher(parameters, h, dies, mesh.patches, MPI_COMM_WORLD);
 
   Study                study{1. * n};

@@ -108,16 +108,16 @@ namespace retroforge
   /// and their reverse. Entries of results are right on owned nodes and in visited cells;
   /// Field::update_ghosts completes them.
   template <typename Number>
-  class Stage
+  class Equilibrium
   {
   public:
     /// What is passed must live as long.
     /// @param strain  of each cell at the start of the increment; empty: none
-    Stage(const Scene                &scene,
-          const Physics<Number>      &physics,
-          const ContactSet<Number>   &contact,
-          const NodalVectors<Number> &X,
-          const std::vector<Number>  &strain = no_strain<Number>());
+    Equilibrium(const Scene                &scene,
+                const Physics<Number>      &physics,
+                const ContactSet<Number>   &contact,
+                const NodalVectors<Number> &X,
+                const std::vector<Number>  &strain = no_strain<Number>());
 
     /// The law of the metal in a cell.
     MaterialLaw<Number> law(const CellIndex c) const { return physics.material.at(state(c)); }
@@ -151,30 +151,31 @@ namespace retroforge
 
   /// Sum over the nodes of the norms of the cells' forces, the scale a residual is measured against, as a
   /// root of squares over nodes: (momentum [N], continuity [mm^3/s]).
-  std::pair<double, double> residual_scale(const Stage<double> &stage, const Field<double> &W);
+  std::pair<double, double> residual_scale(const Equilibrium<double> &stage, const Field<double> &W);
 
   /// Force of each die on the workpiece [N], contact and friction.
-  std::vector<Vec3> die_forces(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
+  std::vector<Vec3>
+  die_forces(const Equilibrium<double> &stage, const Field<double> &W, const ActiveSet &active);
 
   /// The equilibrium of bubbles at given velocities of the nodes and P, in the cells this rank visits; they
   /// start where they are.
-  void solve_bubbles(const Stage<double> &stage, Field<double> &W);
+  void solve_bubbles(const Equilibrium<double> &stage, Field<double> &W);
 
   /// The same from the velocities at nodes and P alone: bubbles start from nothing.
-  void recover_bubbles(const Stage<double> &stage, Field<double> &W);
+  void recover_bubbles(const Equilibrium<double> &stage, Field<double> &W);
 
   /// A stage and its solution.
   template <typename Number>
-  struct StageView
+  struct EquilibriumView
   {
-    const Stage<Number> &stage;
-    const Field<Number> &W;
-    const ActiveSet     &active;
-    double               weight = 1.; ///< in integrals over the increment
+    const Equilibrium<Number> &stage;
+    const Field<Number>       &W;
+    const ActiveSet           &active;
+    double                     weight = 1.; ///< in integrals over the increment
   };
 
   /// Where derivatives go. Sums are this rank's part, completed by the caller once per increment.
-  struct StageBar
+  struct EquilibriumBar
   {
     Field<double>        &W;
     NodalVectors<double> &X; ///< positions of the stage
@@ -184,17 +185,21 @@ namespace retroforge
   };
 
   /// Adds the derivatives of  lambda·residual  at fixed W to all but bar.W.
-  void reverse_residual(const StageView<double> &view, const Field<double> &lambda, StageBar &bar);
+  void
+  reverse_residual(const EquilibriumView<double> &view, const Field<double> &lambda, EquilibriumBar &bar);
 
   /// Adds the derivatives of  deformation * (deformation power) + friction * (friction power).
-  void reverse_power(const StageView<double> &view, double deformation, double friction, StageBar &bar);
+  void reverse_power(const EquilibriumView<double> &view,
+                     double                         deformation,
+                     double                         friction,
+                     EquilibriumBar                &bar);
 
   template <typename Number>
-  Stage<Number>::Stage(const Scene                &scene,
-                       const Physics<Number>      &physics,
-                       const ContactSet<Number>   &contact,
-                       const NodalVectors<Number> &X,
-                       const std::vector<Number>  &strain)
+  Equilibrium<Number>::Equilibrium(const Scene                &scene,
+                                   const Physics<Number>      &physics,
+                                   const ContactSet<Number>   &contact,
+                                   const NodalVectors<Number> &X,
+                                   const std::vector<Number>  &strain)
       : scene(scene)
       , physics(physics)
       , contact(contact)
@@ -211,7 +216,7 @@ namespace retroforge
   }
 
   template <typename Number>
-  PointState<Number> Stage<Number>::state(const CellIndex c) const
+  PointState<Number> Equilibrium<Number>::state(const CellIndex c) const
   {
     return strain.empty() ? PointState<Number>{} : PointState<Number>{strain[c]};
   }
