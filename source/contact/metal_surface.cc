@@ -105,7 +105,7 @@ namespace retroforge
       CutFaces cut(mesh.X, n);
       for (const BoundaryFace &face : mesh.faces)
         cut.add(face);
-      return {cut.X, {}, cut.faces, mesh.patches};
+      return {cut.X, {}, cut.faces, mesh.patches, {}, {}};
     }
 
     /// Returns the displacements of points when they are put on the billet's shape.

@@ -223,8 +223,11 @@ namespace
     refuse(parameters);
     parameters.type = "hardening";
     refuse(parameters);
-    parameters.numbers = {1., 0.};
-    refuse(parameters);
+    for (const double n : {0., 1.5})
+    {
+      parameters.numbers = {1., n};
+      refuse(parameters);
+    }
     parameters.numbers = {0., 0.2};
     std::cout << "known: " << parameters.metal(1.).info().back().name << "\n";
     parameters.type = "Norton-Hoff";
