@@ -33,6 +33,12 @@ namespace retroforge
   double
   travel_to_be_free(const Die &die, const Vec3 &displacement, const Vec3 &way, const MetalSurface &metal);
 
+  /// How much of the metal that looks against a way has the die in front of it: seen along the way, the part
+  /// of its area. Facets of the die count wherever along the way they are; where several lie over one another
+  /// in front of a face, it is at most as much as they have together. That of a plane which looks along the
+  /// way is 1.
+  double covered_part(const Die &die, const Vec3 &displacement, const Vec3 &way, const MetalSurface &metal);
+
   /// The shortest distance between a die's facets and the metal's [mm], and the end of it on the metal. Of
   /// those that are in one another it means nothing.
   std::pair<double, Vec3>
