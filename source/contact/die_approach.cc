@@ -30,7 +30,7 @@ namespace retroforge
       std::array<Vec3, 2> across_;
     };
 
-    /// Of triangles in a frame: what part of their normal is along the way must be more than this.
+    /// Least part of a triangle's normal along the way, for the triangle to count.
     constexpr double least_inclination = 1e-7;
 
     /// +1: it looks along the way, -1: back, 0: along neither.
@@ -150,7 +150,7 @@ namespace retroforge
           if (const Corners y = frame(facet_corners(surface, f, displacement)); looks_along(y) > 0)
           {
             facets.push_back(y);
-            boxes.push_back(box_of(y));
+            boxes.emplace_back(y);
           }
         tree = BoxTree(boxes);
       }
@@ -180,7 +180,7 @@ namespace retroforge
         const Corners y = frame(metal.corners(t));
         if (looks_along(y) >= 0)
           continue;
-        const BoundingBox box = box_of(y);
+        const BoundingBox box(y);
         die.tree.minimise(
           [&](const unsigned int branch) {
             const BoundingBox &facets = die.tree.box(branch);
@@ -199,7 +199,7 @@ namespace retroforge
       return best.travel < infinite ? std::optional<Meeting>(best) : std::nullopt;
     }
 
-    /// Of a plane: its normal into the die, along a way.
+    /// Returns the component of a plane's normal into the die along a way.
     double slope_of_plane(const Die &plane, const Vec3 &way)
     {
       return plane.project(Vec3(), Vec3(), DieFeature()).n * way / way.norm();
@@ -371,8 +371,8 @@ namespace retroforge
     Vec3                   place;
     for (unsigned int f = 0; f < surface.n_facets(); ++f)
     {
-      const Corners     x   = facet_corners(surface, f, displacement);
-      const BoundingBox box = box_of(x);
+      const Corners     x = facet_corners(surface, f, displacement);
+      const BoundingBox box(x);
       metal.tree().minimise(
         [&](const unsigned int branch) { return square_distance(box, metal.tree().box(branch)); },
         [&](const unsigned int t) {

@@ -66,7 +66,6 @@ namespace retroforge
       , triangulation_(distributed_triangulation(mesh, choice.triangulation, comm))
       , velocity_dofs_(*triangulation_)
       , pressure_dofs_(*triangulation_)
-      , geometry_dofs_(*triangulation_)
   {
     const auto element = velocity_element<dim>(choice.pair);
     if (choice.pair == ElementPair::taylor_hood)
@@ -83,10 +82,8 @@ namespace retroforge
     std::sort(own_cells.begin(), own_cells.end());
     cells_ = ReplicatedEntries(own_cells, mesh.n_cells(), comm);
 
-    const FE_SimplexP<dim>       linear(1);
     const std::vector<NodeIndex> velocities = distribute(mesh, *element, velocity_dofs_),
-                                 pressures  = distribute(mesh, linear, pressure_dofs_);
-    distribute(mesh, FESystem<dim>(linear, dim), geometry_dofs_);
+                                 pressures  = distribute(mesh, FE_SimplexP<dim>(1), pressure_dofs_);
     visit_cells(mesh, velocities);
 
     const unsigned int     n_nodes         = n_vertices_ + middles_.size();
@@ -199,6 +196,7 @@ namespace retroforge
           visited.emplace_back(index_of(cell), std::move(nodes));
       }
     std::sort(visited.begin(), visited.end());
+    visited_.reserve(visited.size());
     for (const auto &[c, nodes] : visited)
     {
       visited_.push_back(c);
@@ -230,9 +228,12 @@ namespace retroforge
   template <int dim>
   void Discretization<dim>::make_tables(const SimplexMesh<dim> &mesh)
   {
+    velocity_places_.reserve(nodes_of_visited_.size());
     for (const NodeIndex k : nodes_of_visited_)
       velocity_places_.push_back(velocity_nodes_->place(k));
-    nodes_of_visited_ = {};
+    nodes_of_visited_ = std::vector<NodeIndex>(); // gives its memory back
+    pressure_places_.reserve((dim + 1) * visited_.size());
+    geometry_nodes_.reserve((dim + 1) * visited_.size());
     for (const CellIndex c : visited_)
       for (const NodeIndex k : mesh.cells[c])
       {

@@ -209,7 +209,7 @@ namespace retroforge
   void FieldWriter::add(const IncrementEvent &event)
   {
     const ForgingState &run   = event.state;
-    const Scene        &scene = run.leg->scene;
+    const Scene        &scene = run.epoch->scene;
     const SolvedStage  &last  = event.solved.last();
     if (is_first_)
     {
@@ -237,12 +237,12 @@ namespace retroforge
       write_billet();
       add_step(0., fields_file(0), six_digits(0), X_0_);
     }
-    const auto        &discretization = state.leg->scene.discretization;
+    const auto        &discretization = state.epoch->scene.discretization;
     const LastSolution at_rest        = {NodalVectors<double>(discretization.condensed_nodes()->n()),
                                          std::vector<double>(discretization.n_vertices(), 0.)};
     const LastSolution solution       = state.solution.value_or(at_rest);
     write("failed.vtu",
-          {state.leg->scene.mesh,
+          {state.epoch->scene.mesh,
            discretization.middles(),
            state.workpiece.X,
            state.workpiece.X,

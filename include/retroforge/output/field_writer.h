@@ -14,7 +14,7 @@ namespace retroforge
   class FieldWriter
   {
   public:
-    /// What is passed must live as long.
+    /// All arguments must live as long.
     /// @param comm  of the ranks that follow the run, of which the first writes
     FieldWriter(MPI_Comm                    comm,
                 const std::string          &directory,
@@ -62,7 +62,7 @@ namespace retroforge
     const TetMesh              &billet_;
     const NodalVectors<double> &X_0_;
     NodalVectors<double>        displacement_;     ///< since the billet [mm]
-    std::size_t                 n_remeshings_ = 0; ///< that it has been carried through
+    std::size_t                 n_remeshings_ = 0; ///< number of remeshings it has been carried through
     PictureSeries               series_;           ///< at each time the workpiece, then the dies
   };
 } // namespace retroforge

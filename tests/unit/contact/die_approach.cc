@@ -167,7 +167,7 @@ int main(int argc, char **argv)
     covered_part(plane, Vec3(), up, metal));
 
   BilletParameters bar;
-  bar.shape            = "cylinder";
+  bar.shape            = BilletParameters::Shape::cylinder;
   bar.radius           = 10.;
   bar.height           = 40.;
   bar.element_size     = 9.;
