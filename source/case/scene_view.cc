@@ -218,6 +218,9 @@ namespace retroforge
       });
     }
 
+    /// A die that covers less of the billet is a thin tool, or stands where it is not meant.
+    constexpr double least_covered = 0.05;
+
     /// Planes on whose inner side all vertices of a die stand.
     std::vector<std::string>
     planes_beside(const TetMesh &mesh, const TriangleSurface &surface, const Vec3 &displacement)
@@ -302,9 +305,10 @@ namespace retroforge
 
   void SceneView::describe_approaches(const Scene &scene)
   {
-    const double touching   = touching_distance(scene, parts_->X);
-    const double seconds    = parts_->seconds;
-    const auto   approaches = find_approaches(parts_->parameters, scene, parts_->process, parts_->X);
+    const double       touching   = touching_distance(scene, parts_->X);
+    const double       seconds    = parts_->seconds;
+    const auto         approaches = find_approaches(parts_->parameters, scene, parts_->process, parts_->X);
+    const MetalSurface metal      = metal_surface(scene.mesh, parts_->X);
     for (unsigned int d = 0; d < approaches.size(); ++d)
     {
       const DieApproach &approach  = approaches[d];
@@ -322,6 +326,13 @@ namespace retroforge
         described.contact_area =
           contact_area(scene, parts_->dies[d], parts_->process.dies[d].displacement, parts_->X);
       const double speed = described.velocity.norm();
+      const Vec3   way   = speed > 0. ? described.velocity : -parts_->path; // metal is pressed against it
+      if (scene.dies[d].surface() && way.norm() > 0.)
+        described.covered = covered_part(scene.dies[d], parts_->process.dies[d].displacement, way, metal);
+      if (described.covered > 0. && described.covered < least_covered)
+        warn({"Die " + described.name + "/point: the die covers " +
+              as_text(std::round(1000. * described.covered) / 10.) +
+              " % of the billet's side that faces it: is it where it should be, and of the right size?"});
       if (!described.overlap && approach.meeting && approach.meeting->travel <= speed * seconds + touching)
       {
         described.first_touch     = {approach.meeting->travel, approach.meeting->place};

@@ -98,18 +98,28 @@ namespace retroforge
       std::array<Vec3, 9> x_;
     };
 
+    /// Areas far from the origin have no digits.
+    Corners seen_from(const Vec3 &origin, Corners y)
+    {
+      for (Vec3 &corner : y)
+        corner -= origin;
+      return y;
+    }
+
+    /// What of a face of the metal lies over a facet of a die, both near the origin.
+    Shadow shadow_on(const Corners &metal, const Corners &die)
+    {
+      Shadow shadow(metal);
+      for (unsigned int c = 0; c < 3 && shadow.size() > 2; ++c)
+        shadow.cut(die[c], die[(c + 1) % 3]); // the die looks along the way: its corners turn left
+      return shadow;
+    }
+
     Clearance clearance(const Corners &of_metal, const Corners &of_die)
     {
-      const Vec3 origin = of_metal[0]; // areas far from it have no digits
-      Corners    m = of_metal, d = of_die;
-      for (unsigned int c = 0; c < 3; ++c)
-      {
-        m[c] -= origin;
-        d[c] -= origin;
-      }
-      Shadow shadow(m);
-      for (unsigned int c = 0; c < 3 && shadow.size() > 2; ++c)
-        shadow.cut(d[c], d[(c + 1) % 3]); // the die looks along the way: its corners turn left
+      const Vec3       origin = of_metal[0];
+      const Corners    m = seen_from(origin, of_metal), d = seen_from(origin, of_die);
+      const Shadow     shadow = shadow_on(m, d);
       Clearance        found;
       constexpr double least_area = 1e-10; // of squared lengths: less than that only lie side by side
       if (shadow.size() < 3 || !(shadow.area() > least_area * (m[1] - m[0]).norm_square()))
@@ -266,6 +276,32 @@ namespace retroforge
       [](const double least, const double) { return least; },
       [](const Clearance &found) { return found.least; });
     return last ? std::max(0., -last->travel) : 0.;
+  }
+
+  double covered_part(const Die &die, const Vec3 &displacement, const Vec3 &way, const MetalSurface &metal)
+  {
+    if (!die.surface())
+      return slope_of_plane(die, way) < -least_inclination ? 1. : 0.;
+    const Frame         frame(way);
+    const LookingFacets facets(*die.surface(), displacement, frame);
+    double              covered = 0., all = 0.;
+    for (unsigned int t = 0; t < metal.triangles().size(); ++t)
+    {
+      const Corners y = frame(metal.corners(t));
+      if (looks_along(y) >= 0)
+        continue;
+      const Corners m      = seen_from(y[0], y);
+      const double  area   = Shadow(m).area();
+      BoundingBox   column = box_of(y);
+      column.lower[2]      = -infinite;
+      column.upper[2]      = infinite;
+      double over          = 0.;
+      for (const unsigned int f : facets.tree.intersecting(column))
+        over += shadow_on(m, seen_from(y[0], facets.facets[f])).area();
+      covered += std::min(over, area);
+      all += area;
+    }
+    return all > 0. ? covered / all : 0.;
   }
 
   namespace

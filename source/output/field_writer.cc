@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/base/data_out_base.h>
-
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/mesh/whole_part.h>
 #include <retroforge/output/contact_fields.h>
 #include <retroforge/output/die_pictures.h>
 #include <retroforge/output/field_file.h>
 #include <retroforge/output/field_writer.h>
-#include <retroforge/output/safe_file.h>
 
 #include <cstdio>
-#include <sstream>
 
 namespace retroforge
 {
@@ -122,6 +118,7 @@ namespace retroforge
       , billet_(billet)
       , X_0_(X_0)
       , displacement_(X_0.size())
+      , series_(directory + "/fields.pvd")
   {
   }
 
@@ -175,17 +172,12 @@ namespace retroforge
                              const std::string          &suffix,
                              const NodalVectors<double> &X)
   {
-    const double time = process_.time(stroke);
-    while (!series_.empty() && series_.back().first == time)
-      series_.pop_back();
-    series_.emplace_back(time, file);
     if (!is_first_)
       return;
+    std::vector<std::string> pictures = {file};
     for (unsigned int d = 0; d < model_.dies.size(); ++d)
-      series_.emplace_back(time, write_die(d, stroke, suffix, X));
-    std::ostringstream out;
-    dealii::DataOutBase::write_pvd_record(out, series_);
-    write_file(directory_ + "/fields.pvd", out.str());
+      pictures.push_back(write_die(d, stroke, suffix, X));
+    series_.add(process_.time(stroke), pictures);
   }
 
   void FieldWriter::write_billet() const

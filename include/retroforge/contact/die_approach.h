@@ -34,6 +34,11 @@ namespace retroforge
   double
   travel_to_be_free(const Die &die, const Vec3 &displacement, const Vec3 &way, const MetalSurface &metal);
 
+  /// Returns how much of the metal that looks against a way has the die in front of it: seen along the way, the part
+  /// of its area. Facets of the die count wherever along the way they are; where several lie over one another
+  /// in front of a face, it is at most as much as they have together. A plane that looks along the way covers all.
+  double covered_part(const Die &die, const Vec3 &displacement, const Vec3 &way, const MetalSurface &metal);
+
   /// Returns the shortest distance between a die's facets and the metal's [mm], and its end on the metal;
   /// meaningless where they overlap.
   std::pair<double, Vec3>

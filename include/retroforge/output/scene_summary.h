@@ -71,6 +71,8 @@ namespace retroforge
       Place  gap;
       bool   touches      = false;
       double contact_area = unknown; ///< area of the faces of the billet that it touches [mm^2]
+      /// Part of the billet's side that faces a surface which it covers, as seen along the way of the press.
+      double covered = unknown;
       /// The deepest point of the billet in it, or of it in the billet.
       std::optional<Place> overlap;
       bool                 is_of_die = false; ///< whether it is the latter
