@@ -12,7 +12,7 @@
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/scan/scan.h>
-#include <retroforge/time/leg.h>
+#include <retroforge/time/mesh_epoch.h>
 
 #include <chrono>
 #include <cstdio>
@@ -75,7 +75,7 @@ namespace retroforge
     one_run.resume      = false;
     Timings    timings;
     const Case scene(one_run, timings, comm);
-    check_scene(scene.parameters, Leg(scene.billet, scene.model, timings).scene, scene.process, scene.X_0);
+    check_scene(scene.parameters, MeshEpoch(scene.billet, scene.model, timings).scene, scene.process, scene.X_0);
     warnings_   = estimate_scene(scene).warnings;
     echo_       = scene.echo;
     parameters_ = scene.parameters;
