@@ -290,12 +290,12 @@ namespace retroforge
       const Corners y = frame(metal.corners(t));
       if (looks_along(y) >= 0)
         continue;
-      const Corners m      = seen_from(y[0], y);
-      const double  area   = Shadow(m).area();
-      BoundingBox   column = box_of(y);
-      column.lower[2]      = -infinite;
-      column.upper[2]      = infinite;
-      double over          = 0.;
+      const Corners m    = seen_from(y[0], y);
+      const double  area = Shadow(m).area();
+      BoundingBox   column(y);
+      column.lower[2] = -infinite;
+      column.upper[2] = infinite;
+      double over     = 0.;
       for (const unsigned int f : facets.tree.intersecting(column))
         over += shadow_on(m, seen_from(y[0], facets.facets[f])).area();
       covered += std::min(over, area);

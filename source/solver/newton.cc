@@ -299,6 +299,11 @@ namespace retroforge
   /// Linear systems are not solved better than this only because steps are poor.
   constexpr double least_forcing = 1e-6;
 
+  /// Residual below which rounding may be all that is left of it, and the steps in a row that show it: where a
+  /// billet rests on few nodes, it is more than the smallest tolerances.
+  constexpr double       rounding   = 1e-11;
+  constexpr unsigned int idle_steps = 10;
+
   /// How well the last step of a replay is solved for. Replays are made to be subtracted from each other, and
   /// begin so close to their solutions that the tolerance says little: each takes one step more.
   constexpr double refined = 1e-5;
@@ -335,6 +340,7 @@ namespace retroforge
     Field<double> r, step;
     double        last = 1., largest_forcing = parameters_.forcing;
     bool          whole = false; // the step before
+    unsigned int  idle  = 0;
     for (unsigned int iteration = 0; iteration < parameters_.max_iterations; ++iteration)
     {
       // At rest nothing is pressed: the first matrix has the contacts that touch.
@@ -356,7 +362,8 @@ namespace retroforge
       if (last >= close)
         scale = scale_of(stage, W, reference);
       statistics.residual = relative_residual(stage, W, first_active, scale, r);
-      const bool found    = !touching && statistics.residual <= parameters_.tolerance;
+      idle             = statistics.residual <= rounding && statistics.residual > 0.5 * last ? idle + 1 : 0;
+      const bool found = !touching && (statistics.residual <= parameters_.tolerance || idle >= idle_steps);
       if (found && !frozen.is_given())
         return statistics;
       if (iteration > 0)
