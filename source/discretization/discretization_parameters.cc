@@ -30,6 +30,13 @@ namespace retroforge
       "numbers at the points, some ten times slower. Results are the same to rounding: one is "
       "the check of the other. Units: none.",
       dealii::Patterns::Selection("closed form|quadrature"));
+    prm.add_parameter(
+      "geometry degree",
+      geometry_degree,
+      "Degree of positions as functions on a tetrahedron: 1, or with `assembly = quadrature` 2, "
+      "which gives them nodes in the middles of edges, too. These stay halfway between the ends, "
+      "so that results are the same to rounding: a trial of what curved cells need. Units: none.",
+      dealii::Patterns::Integer(1, 2));
     prm.leave_subsection();
     tag(prm, "Discretization", SettingRole::scene);
   }
@@ -38,6 +45,8 @@ namespace retroforge
   {
     return {element == "mini" ? ElementPair::mini : ElementPair::taylor_hood,
             triangulation == "shared" ? TriangulationKind::shared : TriangulationKind::fully_distributed,
-            assembly == "closed form" ? Assembly::closed_form : Assembly::quadrature};
+            assembly == "closed form" ? Assembly::closed_form : Assembly::quadrature,
+            Kinematics::three_dimensions,
+            static_cast<unsigned int>(geometry_degree)};
   }
 } // namespace retroforge

@@ -10,11 +10,14 @@ namespace retroforge
 {
   struct DiscretizationParameters
   {
-    std::string element       = "mini";
-    std::string triangulation = "shared";
-    std::string assembly      = "closed form";
+    std::string element         = "mini";
+    std::string triangulation   = "shared";
+    std::string assembly        = "closed form";
+    int         geometry_degree = 1;
 
-    void                 add_parameters(dealii::ParameterHandler &prm);
+    void add_parameters(dealii::ParameterHandler &prm);
+    /// @throws Error  if what is chosen does not go together
+    void                 check() const { check_choice<3>(choice()); }
     DiscretizationChoice choice() const;
   };
 } // namespace retroforge
