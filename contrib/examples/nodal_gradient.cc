@@ -31,8 +31,8 @@ int main(int argc, char *argv[])
     for (std::size_t j = 0; j < values.size(); ++j)
     {
       std::cout << made.combinations[j].name << ' ' << values[j] << '\n';
-      const NodalVectors<double> &by_nodes = sweep.of[j].X_0; // d objective / d initial position of each node
-      const std::vector<double> by_parameters = made.design.pull_back(made.mu, by_nodes, sweep.of[j].process);
+      const NodalVectors<double> &by_nodes = sweep.gradients[j].X_0; // d objective / d initial position of each node
+      const std::vector<double> by_parameters = made.design.pull_back(made.mu, by_nodes, sweep.gradients[j].process);
       for (std::size_t i = 0; i < by_parameters.size(); ++i)
         std::cout << "  by " << made.design.parameters()[i].name << ' ' << by_parameters[i] << '\n';
       double wider = 0.;

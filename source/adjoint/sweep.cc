@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/adjoint/sweep.h>
-#include <retroforge/discretization/strain_history.h>
-#include <retroforge/transfer/cell_transfer.h>
+#include <retroforge/steps/change_of_mesh.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -25,21 +24,16 @@ namespace retroforge
     FinalBar
     reverse_at_end(const RecordedForging &run, const ForgingState &end, const FinalObjective &objective)
     {
-      const MPI_Comm comm      = run.model.comm;
-      const auto     dies      = run.process.at_stroke(end.stroke).dies;
-      const auto     view      = final_view(objective, end.leg->scene, end.X, end.strain, dies);
-      const auto     integrals = sum_over_ranks(objective.integrals(view), comm);
-      const auto     d         = objective.target_die();
-      FinalBar bar(end.leg->scene, d == invalid_index ? 0 : run.model.dies[d].surface()->vertices().size());
+      const MPI_Comm comm = run.model.comm;
+      const auto     dies = run.process.at_stroke(end.stroke).dies;
+      const auto view = final_view(objective, end.leg->scene, end.workpiece.X, end.workpiece.strain, dies);
+      const auto integrals = sum_over_ranks(objective.integrals(view), comm);
+      const auto d         = objective.target_die();
+      FinalBar   bar(end.leg->scene, d == invalid_index ? 0 : run.model.dies[d].surface()->vertices().size());
       objective.reverse_integrals(view, objective.reverse_value(integrals), bar);
       MPI_Allreduce(MPI_IN_PLACE, bar.X.data()->begin_raw(), 3 * bar.X.size(), MPI_DOUBLE, MPI_SUM, comm);
       bar.q = sum_over_ranks(std::move(bar.q), comm);
       return bar;
-    }
-
-    bool is_zero(const std::vector<double> &x)
-    {
-      return std::all_of(x.begin(), x.end(), [](const double entry) { return entry == 0.; });
     }
 
     /// The costates of the workpiece at the end of the run.
@@ -47,25 +41,22 @@ namespace retroforge
                                         const ForgingState             &end,
                                         const std::vector<Combination> &combinations)
     {
-      std::vector<Costate> costates(
-        combinations.size(),
-        {NodalVectors<double>(end.X.size()), {}, no_process_derivatives(run.model.dies)});
+      std::vector<Costate> costates(combinations.size(),
+                                    {zero_costate<3>(end.workpiece.X.size(), end.workpiece.strain.size()),
+                                     {no_process_derivatives(run.model.dies), run.model.comm}});
       for (std::size_t o = 0; o < run.objectives.size(); ++o)
       {
         if (!run.objectives[o].at_end)
           continue;
-        const FinalBar bar        = reverse_at_end(run, end, *run.objectives[o].at_end);
-        const bool     has_strain = !is_zero(bar.q);
+        const FinalBar bar = reverse_at_end(run, end, *run.objectives[o].at_end);
         for (std::size_t j = 0; j < costates.size(); ++j)
         {
           const double weight = combinations[j].weights[o];
           if (weight == 0.)
             continue;
-          add(weight, bar.X, costates[j].X);
-          if (has_strain)
-            costates[j].strain.resize(bar.q.size(), 0.);
-          for (std::size_t c = 0; c < costates[j].strain.size(); ++c)
-            costates[j].strain[c] += weight * bar.q[c];
+          add(weight, bar.X, costates[j].workpiece.X);
+          for (std::size_t c = 0; c < bar.q.size(); ++c)
+            costates[j].workpiece.strain[c] += weight * bar.q[c];
           PhysicsBar physics_bar(run.model.dies);
           if (const auto d = run.objectives[o].at_end->target_die(); d != invalid_index)
             add(weight, bar.target, physics_bar.dies[d].vertices);
@@ -74,18 +65,18 @@ namespace retroforge
             physics_bar.dies[d].displacement = weight * bar.dies[d].displacement;
             add(weight, bar.dies[d].vertices, physics_bar.dies[d].vertices);
           }
-          reverse_at_stroke(run.process, {end.stroke, 0.}, 0., physics_bar, costates[j].process);
+          reverse_at_stroke(run.process, {end.stroke, 0.}, 0., physics_bar, costates[j].process.part());
         }
       }
       return costates;
     }
 
     /// What objectives of the path give to increment i.
-    StageSource source_of(const RecordedForging               &run,
-                          const std::vector<PathRows<double>> &rows,
-                          const std::vector<PathRows<double>> &rows_bar,
-                          const std::vector<Combination>      &combinations,
-                          const unsigned int                   i)
+    AdjointSource source_of(const RecordedForging               &run,
+                            const std::vector<PathRows<double>> &rows,
+                            const std::vector<PathRows<double>> &rows_bar,
+                            const std::vector<Combination>      &combinations,
+                            const unsigned int                   i)
     {
       return [&run, &rows, &rows_bar, &combinations, i](
                const std::size_t j, const StageView<double> &view, StageBar &bar) {
@@ -102,33 +93,6 @@ namespace retroforge
             bar.physics.dt += weight * dt_bar(rows[o][i], rows_bar[o][i]);
         }
       };
-    }
-
-    /// The strain at the start of increment i, where laws depend on it; else empty.
-    std::vector<double> strain_at_start(const ForgingState &end, const unsigned int i)
-    {
-      return end.strains.empty() ? std::vector<double>() : end.strains[i];
-    }
-
-    /// From the new mesh back to the old: X' = J X + c, and the strain.
-    void reverse_change_mesh(const RemeshRecord        &remesh,
-                             const TetMesh             &old_mesh,
-                             const std::vector<double> &strain_before,
-                             Costate                   &costate)
-    {
-      costate.X = remesh.transfer.apply_transpose(costate.X);
-      if (costate.strain.empty())
-        return;
-      std::vector<double> strain(old_mesh.n_cells(), 0.);
-      reverse_transfer_cells(old_mesh,
-                             remesh.X_before,
-                             remesh.transfer,
-                             remesh.mesh,
-                             strain_before,
-                             std::move(costate.strain),
-                             strain,
-                             costate.X);
-      costate.strain = std::move(strain);
     }
   } // namespace
 
@@ -151,22 +115,21 @@ namespace retroforge
         rows_bar[o] = run.objectives[o].path->reverse_value(rows[o]);
       }
     std::vector<Costate>      costates = start_costates(run, end, combinations);
-    NodalVectors<double>      X        = end.X;
+    WorkpieceState<3, double> state    = end.workpiece; // at the end, then at the start of each increment
     std::vector<unsigned int> remeshed = end.remeshed;
     std::shared_ptr<Leg>      leg      = end.leg;
     AdjointSweep              sweep;
-    leg->increment.forget();
+    leg->increment.mechanics.forget();
     for (unsigned int i = end.increments; i-- > 0;)
     {
-      const IncrementRecord &record = run.source(i);
-      const unsigned int     before = leg->system.n_solves;
-      X                             = leg->increment.retreat(run.process, X, record);
-      leg->increment.reverse(run.process,
-                             X,
-                             strain_at_start(end, i),
-                             record,
-                             source_of(run, rows, rows_bar, combinations, i),
-                             costates);
+      const IncrementRecord     &record = run.source(i);
+      const unsigned int         before = leg->system.n_solves;
+      const NodalVectors<double> X      = leg->increment.mechanics.retreat(run.process, state.X, record);
+      if (!end.starts.empty())
+        state = end.starts[i];
+      state.X = X;
+      leg->increment.reverse(
+        run.process, state, record, source_of(run, rows, rows_bar, combinations, i), costates);
       sweep.linear_solves += leg->system.n_solves - before;
       if (record.remesh)
       {
@@ -175,17 +138,15 @@ namespace retroforge
         leg = remeshed.empty()
                 ? run.first
                 : std::make_shared<Leg>(run.source(remeshed.back()).remesh->mesh, run.model, run.timings);
-        leg->increment.forget();
-        X = remesh->X_before;
+        leg->increment.mechanics.forget();
+        state   = end.left_behind[remeshed.size()];
+        state.X = remesh->X_before;
         for (Costate &costate : costates)
-          reverse_change_mesh(*remesh, leg->scene.mesh, end.strains_before[remeshed.size()], costate);
+          costate.workpiece = reverse_change_mesh(leg->scene.mesh, *remesh, state, costate.workpiece);
       }
     }
     for (Costate &costate : costates)
-    {
-      sum_over_ranks(costate.process, run.model.comm);
-      sweep.of.push_back({std::move(costate.X), std::move(costate.process)});
-    }
+      sweep.gradients.push_back({std::move(costate.workpiece.X), costate.process.complete()});
     return sweep;
   }
 
@@ -196,30 +157,28 @@ namespace retroforge
     AssertDimension(process.dies.size(), run.model.dies.size());
     std::shared_ptr<Leg>        leg = run.first;
     std::vector<PathRows<Dual>> rows(run.objectives.size());
-    std::vector<Dual>           strain(leg->scene.mesh.n_cells(), Dual(0.));
-    double                      end = 0.;
+    auto                        state = initial_state<3>(std::move(X), leg->scene.mesh.n_cells());
+    double                      end   = 0.;
     for (unsigned int i = 0; i < run.n; ++i)
     {
       const IncrementRecord &record = run.source(i);
       if (record.remesh)
       {
-        const RemeshRecord &remesh = *record.remesh;
-        strain                     = transfer_cells(leg->scene.mesh, X, remesh.transfer, remesh.mesh, strain);
-        X                          = remesh.transfer.positions(X);
-        leg                        = std::make_shared<Leg>(record.remesh->mesh, run.model, run.timings);
+        state = change_mesh(leg->scene.mesh, *record.remesh, state);
+        leg   = std::make_shared<Leg>(record.remesh->mesh, run.model, run.timings);
       }
       end = record.stroke + record.step;
       for (auto &of_objective : rows)
         of_objective.push_back(row_of(record, process));
-      X =
-        leg->increment.tangent(process, X, strain, record, [&](const StageView<Dual> &view, const Dual &dt) {
+      leg->increment.tangent(
+        process,
+        record,
+        [&](const StageView<Dual> &view, const Dual &) {
           for (std::size_t o = 0; o < run.objectives.size(); ++o)
             if (run.objectives[o].path)
               add_integrals(*run.objectives[o].path, view, rows[o].back());
-          strain = accumulate_strain(
-            leg->scene.discretization, view.stage.X, view.W, Dual(view.weight * dt), strain);
-        });
-      complete_entries(leg->scene.discretization.cells(), strain.data(), 1);
+        },
+        state);
     }
     const auto        dies = process.at_stroke(end).dies;
     std::vector<Dual> values;
@@ -229,7 +188,7 @@ namespace retroforge
       else
       {
         const FinalObjective &objective = *run.objectives[o].at_end;
-        const auto            view      = final_view(objective, leg->scene, X, strain, dies);
+        const auto            view      = final_view(objective, leg->scene, state.X, state.strain, dies);
         values.push_back(objective.value(sum_over_ranks(objective.integrals(view), run.model.comm)));
       }
     return values;

@@ -6,7 +6,7 @@
 
 namespace retroforge
 {
-  template <int dim, typename Number>
+  template <typename Number, int dim>
   std::vector<Number> accumulate_strain(const Discretization<dim>      &discretization,
                                         const CellVectors<dim, Number> &X,
                                         const FlowField<dim, Number>   &W,

@@ -85,7 +85,7 @@ namespace retroforge
   {
     const AdjointSweep               sweep = in_memory(known).sweep(each_);
     std::vector<std::vector<double>> gradients;
-    for (const AdjointResult &of : sweep.of)
+    for (const AdjointResult &of : sweep.gradients)
     {
       gradients.push_back(of_first_rank(case_.design.pull_back(known.mu, of.X_0, of.process), case_.comm));
       for (const double derivative : gradients.back())

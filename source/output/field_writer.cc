@@ -163,7 +163,7 @@ namespace retroforge
     if (event.record.remesh)
       displacement_ = event.record.remesh->transfer.apply(displacement_);
     for (std::size_t k = 0; k < displacement_.size(); ++k)
-      displacement_[k] += event.state.X[k] - event.X_before[k];
+      displacement_[k] += event.state.workpiece.X[k] - event.X_before[k];
     n_remeshings_ = event.state.remeshed.size();
   }
 
@@ -180,15 +180,15 @@ namespace retroforge
       write(fields_file(run.increments),
             {scene.mesh,
              scene.discretization.middles(),
-             run.X,
-             run.solution.V,
-             run.solution.P,
+             run.workpiece.X,
+             run.solution->V,
+             run.solution->P,
              cells,
-             run.strain,
+             run.workpiece.strain,
              &displacement_,
              &contact});
     }
-    add_step(run.stroke, fields_file(run.increments), six_digits(run.increments), run.X);
+    add_step(run.stroke, fields_file(run.increments), six_digits(run.increments), run.workpiece.X);
   }
 
   void FieldWriter::add_failed(const ForgingState &state)
@@ -200,24 +200,25 @@ namespace retroforge
       write_billet();
       add_step(0., fields_file(0), six_digits(0), X_0_);
     }
-    const TetMesh          &mesh = state.leg->scene.mesh;
-    const Discretization<3> discretization(mesh, model_.discretization, MPI_COMM_SELF);
-    const LastSolution      at_rest  = {NodalVectors<double>(discretization.condensed_nodes()->n()),
-                                        std::vector<double>(discretization.n_vertices(), 0.)};
-    const LastSolution     &solution = state.solution.V.empty() ? at_rest : state.solution;
-    const auto              law = [&](const CellIndex c) { return process_.material.at({state.strain[c]}); };
-    const CellFields        cells =
-      cell_fields(discretization, state.X, with_bubbles(discretization, state.X, solution, law), law);
+    const TetMesh              &mesh = state.leg->scene.mesh;
+    const NodalVectors<double> &X    = state.workpiece.X;
+    const Discretization<3>     discretization(mesh, model_.discretization, MPI_COMM_SELF);
+    const LastSolution          at_rest  = {NodalVectors<double>(discretization.condensed_nodes()->n()),
+                                            std::vector<double>(discretization.n_vertices(), 0.)};
+    const LastSolution          solution = state.solution.value_or(at_rest);
+    const auto law = [&](const CellIndex c) { return process_.material.at({state.workpiece.strain[c]}); };
+    const CellFields cells =
+      cell_fields(discretization, X, with_bubbles(discretization, X, solution, law), law);
     write("failed.vtu",
           {mesh,
            discretization.middles(),
-           state.X,
+           X,
            solution.V,
            solution.P,
            cells,
-           state.strain,
+           state.workpiece.strain,
            displacement,
            nullptr});
-    add_step(state.stroke, "failed.vtu", "failed", state.X);
+    add_step(state.stroke, "failed.vtu", "failed", state.workpiece.X);
   }
 } // namespace retroforge

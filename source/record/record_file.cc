@@ -297,8 +297,8 @@ namespace retroforge
   {
     std::vector<RecordedInput> inputs = {{0, 0., header_.parameters}};
     for (unsigned int i = 0; i < n_increments_; ++i)
-      if (IncrementHead increment = head(i); !increment.parameters.empty())
-        inputs.push_back({i, increment.stroke, std::move(increment.parameters)});
+      if (IncrementHead increment = head(i); increment.parameters)
+        inputs.push_back({i, increment.stroke, std::move(*increment.parameters)});
     return inputs;
   }
 

@@ -247,7 +247,7 @@ namespace retroforge
           V.insert(V.end(), solve.V[0].begin_raw(), solve.V[0].begin_raw() + 3 * n.velocity);
         if (n.quadratic())
           vertices.insert(
-            vertices.end(), solve.vertices[0].begin_raw(), solve.vertices[0].begin_raw() + 3 * n.mesh);
+            vertices.end(), (*solve.vertices)[0].begin_raw(), (*solve.vertices)[0].begin_raw() + 3 * n.mesh);
         P.insert(P.end(), solve.P.begin(), solve.P.end());
         active.insert(active.end(), solve.active.begin(), solve.active.end());
       }
@@ -426,8 +426,8 @@ namespace retroforge
     hdf5::write_attribute(group, "linear_solves", &increment.linear_solves);
     hdf5::write_string(group, "scheme", increment.scheme);
     write_contact(group, increment.contact);
-    if (!increment.parameters.empty())
-      hdf5::write_string(group, "parameters", increment.parameters);
+    if (increment.parameters)
+      hdf5::write_string(group, "parameters", *increment.parameters);
     write_vectors(group, "forces", increment.forces);
     write_pairs(group, increment.pairs);
     write_solves(group, increment.solves, n, increment.pairs.size());
@@ -449,7 +449,8 @@ namespace retroforge
     {
       return {read_number(group, "stroke"),
               read_number(group, "step"),
-              hdf5::has_link(group, "parameters") ? hdf5::read_string(group, "parameters") : ""};
+              hdf5::has_link(group, "parameters") ? hdf5::read_string(group, "parameters")
+                                                  : std::optional<std::string>()};
     }
   } // namespace
 

@@ -74,7 +74,7 @@ namespace retroforge
       if (s == 0)
         state_ = forging.start(first_leg_, X_0_);
       else
-        Forging::change_numerics("", state_);
+        Forging::change_numerics({}, state_);
       forging.run(process_, state_, [&](const IncrementEvent &event) {
         recording_.keep(event.record);
         trace_.add(event);

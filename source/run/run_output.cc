@@ -120,9 +120,10 @@ namespace retroforge
     const Scene             &scene  = state.leg->scene;
     const ReplicatedEntries &cells  = scene.discretization.cells();
     const std::vector<Die>  &dies   = case_.model.dies;
-    const double             size   = volume(scene.mesh, state.X, cells);
+    const double             size   = volume(scene.mesh, state.workpiece.X, cells);
     const auto               states = case_.process.at_stroke(state.stroke).dies;
-    const Penetration deepest = deepest_point(scene.mesh, scene.topology, dies, states, state.X, case_.comm);
+    const Penetration        deepest =
+      deepest_point(scene.mesh, scene.topology, dies, states, state.workpiece.X, case_.comm);
     if (!(deepest.depth <= deepest_.depth))
       deepest_ = {deepest.depth,
                   deepest.depth / case_.edge_length(),
@@ -139,7 +140,7 @@ namespace retroforge
             force,
             energy,
             size,
-            minimum_quality(scene.mesh, state.X, cells),
+            minimum_quality(scene.mesh, state.workpiece.X, cells),
             deepest.depth,
             event.record.newton,
             event.record.krylov,

@@ -58,7 +58,7 @@ namespace retroforge
     summary.increments            = forged.increments;
     summary.cuts                  = forged.cuts;
     summary.volume_initial        = volume(forging_case.billet.cells, forging_case.X_0);
-    summary.volume_final          = volume(forged.leg->scene.mesh.cells, forged.X);
+    summary.volume_final          = volume(forged.leg->scene.mesh.cells, forged.workpiece.X);
     summary.volume_repaired       = forged.repaired;
     summarise_restarts(forging_case.segments, summary);
   }

@@ -190,8 +190,8 @@ namespace retroforge
   void Simulation::write_forged() const
   {
     const TetMesh &mesh = forged_.leg->scene.mesh;
-    write_msh(path_of("forged.msh"), mesh, forged_.X);
-    write_boundary_stl(path_of("forged.stl"), mesh, forged_.X);
+    write_msh(path_of("forged.msh"), mesh, forged_.workpiece.X);
+    write_boundary_stl(path_of("forged.stl"), mesh, forged_.workpiece.X);
   }
 
   void Simulation::keep_failure()
@@ -237,7 +237,7 @@ namespace retroforge
     MPI_Barrier(case_.comm); // the record is complete before any rank reads it
     check_finite(case_.objectives, values_);
     require_finite(forged_.energy.total(), "Workpiece", "its energy");
-    require_finite(volume(forged_.leg->scene.mesh.cells, forged_.X), "Workpiece", "its volume");
+    require_finite(volume(forged_.leg->scene.mesh.cells, forged_.workpiece.X), "Workpiece", "its volume");
   }
 
   void Simulation::forge_on()
@@ -353,10 +353,11 @@ namespace retroforge
     summary_.linear_solves_adjoint = sweep.linear_solves;
     for (std::size_t j = 0; j < sensitivities_.size(); ++j)
     {
-      const auto timing          = timings_.scope("design");
-      sensitivities_[j].gradient = case_.design.pull_back(case_.mu, sweep.of[j].X_0, sweep.of[j].process);
-      sensitivities_[j].shape    = {sweep.of[j].X_0, {}};
-      for (const auto &die : sweep.of[j].process.dies)
+      const auto timing = timings_.scope("design");
+      sensitivities_[j].gradient =
+        case_.design.pull_back(case_.mu, sweep.gradients[j].X_0, sweep.gradients[j].process);
+      sensitivities_[j].shape = {sweep.gradients[j].X_0, {}};
+      for (const auto &die : sweep.gradients[j].process.dies)
         sensitivities_[j].shape.dies.push_back(die.vertices);
     }
     const auto timing = timings_.scope("sensitivity");

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/discretization/error_indicator.h>
-#include <retroforge/discretization/strain_history.h>
 #include <retroforge/linear_algebra/direct_solver.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/self_crossing.h>
+#include <retroforge/steps/change_of_mesh.h>
 #include <retroforge/time/forging.h>
-#include <retroforge/transfer/cell_transfer.h>
 
 namespace retroforge
 {
@@ -26,11 +25,10 @@ namespace retroforge
     Assert(leg != nullptr, dealii::ExcMessage("a run starts on a mesh"));
     AssertDimension(X_0.size(), leg->scene.mesh.n_nodes());
     ForgingState state;
-    state.X      = X_0;
-    state.volume = volume(leg->scene.mesh.cells, X_0);
-    state.next.W = Field<double>(leg->scene.discretization);
-    state.strain = std::vector<double>(leg->scene.mesh.n_cells(), 0.);
-    state.leg    = std::move(leg);
+    state.workpiece = initial_state<3>(X_0, leg->scene.mesh.n_cells());
+    state.volume    = volume(leg->scene.mesh.cells, X_0);
+    state.next.W    = Field<double>(leg->scene.discretization);
+    state.leg       = std::move(leg);
     return state;
   }
 
@@ -42,7 +40,7 @@ namespace retroforge
   {
     try
     {
-      solved = state.leg->increment.forward(process, state.X, state.strain, false, guess, record);
+      solved = state.leg->increment.mechanics.forward(process, state.workpiece, false, guess, record);
     }
     catch (const NoEquilibrium &failure)
     {
@@ -57,21 +55,19 @@ namespace retroforge
     guess.known       = Start::near;
     guess.ahead       = 0.;
     const auto timing = timings_.scope("checks");
-    return limits_.refusal(process, *state.leg, record, state.X, solved.X);
+    return limits_.refusal(process, *state.leg, record, state.workpiece.X, solved.X);
   }
 
   namespace
   {
     bool crosses(const ForgingState &state)
     {
-      return !self_crossings(state.leg->scene.mesh, state.X).empty();
+      return !self_crossings(state.leg->scene.mesh, state.workpiece.X).empty();
     }
   } // namespace
 
   void Forging::change_mesh(const RemeshRecord &remesh, ForgingState &state) const
   {
-    AssertDimension(remesh.transfer.n_old, state.leg->scene.mesh.n_nodes());
-    AssertDimension(remesh.transfer.n_new(), remesh.mesh.n_nodes());
     state.repaired += remesh.repaired;
     const TransferOperator    &J           = remesh.transfer;
     const std::shared_ptr<Leg> before      = state.leg; // fields know its nodes
@@ -84,15 +80,14 @@ namespace retroforge
       return interpolated(
         state.leg->scene.discretization, J.apply(V), J.apply(W.P.complete(*old.pressure_nodes())));
     };
-    auto strain = transfer_cells(state.leg->scene.mesh, state.X, J, remesh.mesh, state.strain);
-    state.strains_before.push_back(std::exchange(state.strain, std::move(strain)));
-    state.X         = J.positions(state.X);
+    auto workpiece = retroforge::change_mesh(before->scene.mesh, remesh, state.workpiece);
+    state.left_behind.push_back(without_positions(std::exchange(state.workpiece, std::move(workpiece))));
     state.leg       = std::make_shared<Leg>(remesh.mesh, model_, timings_);
     state.next.W    = transferred(state.next.W);
     state.next.rate = transferred(state.next.rate);
     // Fields on the new mesh are shown, and measured, where an increment fails that began with it.
     const auto &discretization = state.leg->scene.discretization;
-    state.solution             = {state.next.W.V.complete(*discretization.condensed_nodes()),
+    state.solution             = LastSolution{state.next.W.V.complete(*discretization.condensed_nodes()),
                                   state.next.W.P.complete(*discretization.pressure_nodes())};
     state.next.known           = Start::far;
     state.remeshed.push_back(state.increments);
@@ -101,18 +96,19 @@ namespace retroforge
   std::optional<OptimalSizes> Forging::error_sizes(const Process<double> &process,
                                                    const ForgingState    &state) const
   {
-    if (!remesher_.follows_errors() || state.increments == 0)
+    if (!remesher_.follows_errors() || !state.solution || state.increments == 0)
       return {};
     const auto    timing = timings_.scope("error sizes");
     const Scene  &scene  = state.leg->scene;
     Field<double> W(scene.discretization);
-    W.V.take(state.solution.V);
-    W.P.take(state.solution.P);
-    return optimal_sizes(scene.mesh,
-                         state.X,
-                         indicated_errors(scene.discretization, state.X, W, process.material, state.strain),
-                         velocity_degree(scene.discretization),
-                         remesher_.error_size_bounds());
+    W.V.take(state.solution->V);
+    W.P.take(state.solution->P);
+    return optimal_sizes(
+      scene.mesh,
+      state.workpiece.X,
+      indicated_errors(scene.discretization, state.workpiece.X, W, process.material, state.workpiece.strain),
+      velocity_degree(scene.discretization),
+      remesher_.error_size_bounds());
   }
 
   void Forging::remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const
@@ -120,23 +116,13 @@ namespace retroforge
     const auto   timing     = timings_.scope("remeshing");
     const double repairable = remesher_.largest_repair() * state.volume - state.repaired;
     record.remesh           = remesher_.remesh(state.leg->scene.mesh,
-                                     state.X,
+                                     state.workpiece.X,
                                      process.at_stroke(state.stroke).dies,
                                      error_sizes(process, state),
                                      repairable,
                                      timings_);
     change_mesh(*record.remesh, state);
-    state.X = record.remesh->mesh.X; // J X + c to the last bit
-  }
-
-  void Forging::add_strain(const SolvedIncrement &solved, ForgingState &state) const
-  {
-    const auto   timing = timings_.scope("checks");
-    const Scene &scene  = state.leg->scene;
-    for (const auto &stage : solved.stages)
-      state.strain = accumulate_strain(
-        scene.discretization, stage->X, stage->W, stage->weight * solved.start->dt, state.strain);
-    scene.discretization.cells().complete(state.strain.data(), 1);
+    state.workpiece.X = record.remesh->mesh.X; // J X + c to the last bit
   }
 
   void Forging::finish_increment(const Process<double> &process,
@@ -145,15 +131,18 @@ namespace retroforge
                                  ForgingState          &state,
                                  const Watch           &watch) const
   {
-    const NodalVectors<double> X_before = std::exchange(state.X, solved.X);
+    const NodalVectors<double> X_before = state.workpiece.X;
     if (process.material.depends_on_state())
-      state.strains.push_back(state.strain);
-    add_strain(solved, state);
-    state.next                 = state.leg->increment.guess_after(solved, record);
+      state.starts.push_back(without_positions(state.workpiece));
+    {
+      const auto timing = timings_.scope("checks");
+      state.leg->increment.advance(solved, state.workpiece);
+    }
+    state.next                 = state.leg->increment.mechanics.guess_after(solved, record);
     const auto &discretization = state.leg->scene.discretization;
-    state.solution             = {solved.last().W.V.complete(*discretization.condensed_nodes()),
+    state.solution             = LastSolution{solved.last().W.V.complete(*discretization.condensed_nodes()),
                                   solved.last().W.P.complete(*discretization.pressure_nodes())};
-    state.slip                 = limits_.slip(process, record, X_before, state.X) / record.step;
+    state.slip                 = limits_.slip(process, record, X_before, state.workpiece.X) / record.step;
     state.stroke += record.step;
     state.energy.deformation += record.deformation_energy;
     state.energy.friction += record.friction_energy;
@@ -173,12 +162,12 @@ namespace retroforge
       watch({record, X_before, solved, state, process.time(state.stroke)});
   }
 
-  void Forging::change_numerics(const std::string &parameters, ForgingState &state)
+  void Forging::change_numerics(std::optional<std::string> parameters, ForgingState &state)
   {
     state.depth               = 0;
     state.numerics_stroke     = state.stroke;
     state.numerics_increments = state.increments;
-    state.parameters          = parameters;
+    state.parameters          = std::move(parameters);
   }
 
   bool Forging::is_left(const ForgingState &state) const
@@ -213,7 +202,7 @@ namespace retroforge
       if (crossed && state.repaired >= remesher_.largest_repair() * state.volume)
         limits_.check_fold(state);
       if (crossed || (remesher_.enabled() && (remesher_.due(state.leg->scene.mesh,
-                                                            state.X,
+                                                            state.workpiece.X,
                                                             process.at_stroke(state.stroke).dies,
                                                             frozen,
                                                             since_remeshing(),
@@ -224,7 +213,7 @@ namespace retroforge
         limits_.check_fold(state);
       record.stroke     = state.stroke;
       record.step       = std::min(whole() / (1 << state.depth), press_.stroke - state.stroke);
-      record.parameters = std::exchange(state.parameters, "");
+      record.parameters = std::exchange(state.parameters, std::nullopt);
       SolvedIncrement solved;
       Guess           guess   = state.next;
       bool            is_full = false;
@@ -253,9 +242,10 @@ namespace retroforge
       limits_.check_progress(state);
       // With remeshing, the next increment begins with a repair.
       const bool last = !is_left(state);
-      if (remesher_.enabled()
-            ? last && !remesher_.repairs(state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies)
-            : last || state.increments % fold_interval == 0)
+      if (remesher_.enabled() ? last && !remesher_.repairs(state.leg->scene.mesh,
+                                                           state.workpiece.X,
+                                                           process.at_stroke(state.stroke).dies)
+                              : last || state.increments % fold_interval == 0)
         limits_.check_fold(state);
     }
   }
@@ -269,15 +259,18 @@ namespace retroforge
     for (unsigned int i = 0; i < n; ++i)
     {
       const IncrementRecord &record = source(i);
-      if (!record.parameters.empty())
-        change_numerics("", state);
+      if (record.parameters)
+        change_numerics({}, state);
       if (record.remesh)
       {
         change_mesh(*record.remesh, state);
-        state.X = record.remesh->mesh.X;
+        state.workpiece.X = record.remesh->mesh.X;
       }
-      finish_increment(
-        process, record, state.leg->increment.recorded(process, state.X, state.strain, record), state, watch);
+      finish_increment(process,
+                       record,
+                       state.leg->increment.mechanics.recorded(process, state.workpiece, record),
+                       state,
+                       watch);
     }
   }
 
@@ -293,9 +286,9 @@ namespace retroforge
       record.newton = record.krylov = record.linear_solves = 0;
       if (record.remesh)
         change_mesh(*record.remesh, state);
-      const Guess           guess = state.leg->increment.recorded_guess(record);
+      const Guess           guess = state.leg->increment.mechanics.recorded_guess(record);
       const SolvedIncrement solved =
-        state.leg->increment.forward(process, state.X, state.strain, true, guess, record);
+        state.leg->increment.mechanics.forward(process, state.workpiece, true, guess, record);
       finish_increment(process, record, solved, state, watch);
     }
   }

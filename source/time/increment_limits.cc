@@ -128,7 +128,7 @@ namespace retroforge
   Refusal IncrementLimits::singular(const ForgingState &state)
   {
     return {"the linear systems of an increment have no solution; the flattest element is" +
-            at(flattest_cell(state.leg->scene.mesh, state.X))};
+            at(flattest_cell(state.leg->scene.mesh, state.workpiece.X))};
   }
 
   std::string IncrementLimits::too_much(const TetMesh              &mesh,
@@ -216,7 +216,7 @@ namespace retroforge
     const Physics<double>    physics = process.at_stroke(stroke);
     std::vector<std::string> touching;
     for (unsigned int d = 0; d < scene.dies.size(); ++d)
-      if (touches(scene, state.X, scene.dies[d], physics.dies[d].displacement))
+      if (touches(scene, state.workpiece.X, scene.dies[d], physics.dies[d].displacement))
         touching.push_back(scene.dies[d].name);
     const Vec3 &way    = process.dies[process.leading_die].velocity;
     const auto  planes = symmetry_planes(scene.mesh);
@@ -224,7 +224,8 @@ namespace retroforge
       touching.size() > 1 || std::any_of(planes.begin(), planes.end(), [&](const Plane &plane) {
         return std::abs(plane.normal * way) > 1e-6 * way.norm();
       });
-    const auto motions = free_rigid_motions(scene, physics, state.X, model_.step.contact.ramp.width);
+    const auto motions =
+      free_rigid_motions(scene, physics, state.workpiece.X, model_.step.contact.ramp.width);
     if (is_held && motions.empty())
       return;
     throw Error(
@@ -266,8 +267,9 @@ namespace retroforge
 
   void IncrementLimits::check_progress(const ForgingState &state) const
   {
-    const Scene       &scene  = state.leg->scene;
-    const double       change = volume(scene.mesh, state.X, scene.discretization.cells()) / state.volume - 1.;
+    const Scene &scene = state.leg->scene;
+    const double change =
+      volume(scene.mesh, state.workpiece.X, scene.discretization.cells()) / state.volume - 1.;
     std::ostringstream what;
     what.precision(4);
     if (!(std::abs(change) <= press_.largest_loss))
@@ -294,6 +296,6 @@ namespace retroforge
 
   void IncrementLimits::check_fold(const ForgingState &state)
   {
-    check_boundary_does_not_cross(state.leg->scene.mesh, state.X, "Workpiece");
+    check_boundary_does_not_cross(state.leg->scene.mesh, state.workpiece.X, "Workpiece");
   }
 } // namespace retroforge

@@ -70,7 +70,8 @@ namespace retroforge
           values.push_back(objectives_[j].path->value(rows_[j]));
         else
         {
-          const auto view = final_view(*objectives_[j].at_end, state.leg->scene, state.X, state.strain, dies);
+          const auto view = final_view(
+            *objectives_[j].at_end, state.leg->scene, state.workpiece.X, state.workpiece.strain, dies);
           if (decide)
             objectives_[j].at_end->decide(view);
           values.push_back(objectives_[j].at_end->value(
@@ -98,8 +99,9 @@ namespace retroforge
       }
       else
       {
-        const auto view = final_view(*objective.at_end, state.leg->scene, state.X, state.strain, dies);
-        const auto b    = sum_over_ranks(objective.at_end->integrals(view), model_.comm);
+        const auto view =
+          final_view(*objective.at_end, state.leg->scene, state.workpiece.X, state.workpiece.strain, dies);
+        const auto b = sum_over_ranks(objective.at_end->integrals(view), model_.comm);
         diagnostics.push_back({objective.at_end->parts(b), objective.at_end->details(b)});
       }
     return diagnostics;

@@ -27,7 +27,7 @@ namespace retroforge
 
   struct AdjointSweep
   {
-    std::vector<AdjointResult> of; ///< each combination
+    std::vector<AdjointResult> gradients; ///< of each combination
     unsigned int               linear_solves = 0;
   };
 

@@ -35,13 +35,13 @@ namespace retroforge
     struct IsVector : std::false_type
     {
     };
-    template <typename Number>
-    struct IsVector<Vector3<Number>> : std::true_type
+    template <int dim, typename Number>
+    struct IsVector<dealii::Tensor<1, dim, Number>> : std::true_type
     {
     };
 
     template <typename T>
-    std::true_type is_list(const std::vector<T> *);
+    std::true_type  is_list(const std::vector<T> *);
     std::false_type is_list(const void *);
 
     /// A list is a std::vector or made from one.
@@ -81,7 +81,7 @@ namespace retroforge
     if constexpr (IsNumber<T>::value)
       f(a, others...);
     else if constexpr (internal::IsVector<T>::value)
-      for (unsigned int i = 0; i < 3; ++i)
+      for (unsigned int i = 0; i < T::dimension; ++i)
         for_each_number(f, a[i], others[i]...);
     else if constexpr (internal::IsList<T>::value)
     {
@@ -107,7 +107,7 @@ namespace retroforge
     else if constexpr (IsNumber<To>::value)
       to = To(from);
     else if constexpr (internal::IsVector<To>::value)
-      for (unsigned int i = 0; i < 3; ++i)
+      for (unsigned int i = 0; i < To::dimension; ++i)
         convert(from[i], to[i]);
     else if constexpr (internal::IsList<To>::value)
     {

@@ -12,12 +12,18 @@ namespace retroforge
 {
   namespace internal
   {
-    inline void append(const double x, std::vector<double> &numbers) { numbers.push_back(x); }
+    inline void append(const double x, std::vector<double> &numbers)
+    {
+      numbers.push_back(x);
+    }
     inline void append(const Dual &x, std::vector<double> &numbers)
     {
       numbers.insert(numbers.end(), {x.val(), x.dx(0)});
     }
-    inline void extract(std::vector<double>::const_iterator &next, double &x) { x = *next++; }
+    inline void extract(std::vector<double>::const_iterator &next, double &x)
+    {
+      x = *next++;
+    }
     inline void extract(std::vector<double>::const_iterator &next, Dual &x)
     {
       x                 = Dual(*next++);

@@ -5,7 +5,7 @@
 #include <retroforge/design/billet_map.h>
 #include <retroforge/design/die_free_form.h>
 #include <retroforge/design/open_contact.h>
-#include <retroforge/time/process.h>
+#include <retroforge/steps/process.h>
 
 namespace retroforge
 {

@@ -21,7 +21,7 @@ namespace retroforge
   /// q_np1 = q_n + dt ebar(X, W)  of the cells this rank owns, one value per cell, dimensionless; the others'
   /// stays.
   /// @param X, W   positions [mm] and velocities [mm/s] of the increment's last stage
-  template <int dim, typename Number>
+  template <typename Number, int dim>
   std::vector<Number> accumulate_strain(const Discretization<dim>      &discretization,
                                         const CellVectors<dim, Number> &X,
                                         const FlowField<dim, Number>   &W,

@@ -59,8 +59,8 @@ namespace retroforge
   /// What of an increment can be read without its arrays.
   struct IncrementHead
   {
-    double      stroke = 0., step = 0.; ///< [mm]
-    std::string parameters;
+    double                     stroke = 0., step = 0.; ///< [mm]
+    std::optional<std::string> parameters;
   };
 
   /// What the increments of a run have in common.

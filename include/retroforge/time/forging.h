@@ -34,8 +34,9 @@ namespace retroforge
     ForgingState start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0) const;
 
     /// From `state` on other numerics hold: it goes on with whole increments of theirs.
-    /// @param parameters  the complete input, which the next increment's record is to tell
-    static void change_numerics(const std::string &parameters, ForgingState &state);
+    /// @param parameters  the complete input, which the next increment's record is to tell; none where the
+    /// record need not
+    static void change_numerics(std::optional<std::string> parameters, ForgingState &state);
 
     /// Whether the stroke is not done yet.
     bool is_left(const ForgingState &state) const;
@@ -68,7 +69,6 @@ namespace retroforge
                     IncrementRecord       &record,
                     SolvedIncrement       &solved) const;
     void    remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
-    void    add_strain(const SolvedIncrement &solved, ForgingState &state) const;
     /// What the last solution's errors ask for; empty where sizes do not follow them, or nothing is solved.
     std::optional<OptimalSizes> error_sizes(const Process<double> &process, const ForgingState &state) const;
     /// Takes the state to the increment's end, and tells `watch`.

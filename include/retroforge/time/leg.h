@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/time/increment.h>
+#include <retroforge/steps/increment.h>
 
 namespace retroforge
 {

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/time/scheme.h>
+#include <retroforge/steps/scheme.h>
 
 #include <deal.II/base/parameter_handler.h>
 

@@ -132,7 +132,7 @@ namespace
 
   std::vector<Direction> directions(const Problem &problem)
   {
-    const NodalVectors<double> still(problem.forged.X.size());
+    const NodalVectors<double> still(problem.forged.workpiece.X.size());
     return {{"random X_0", random_vectors(still.size()), 0., 0., {}},
             {"speed", still, 1., 0., {}},
             {"offset", still, 0., 1., {}}};
@@ -168,7 +168,7 @@ namespace
             problem.scene.dies[pair.die].project(pair.point.position(X), states[pair.die], pair.feature).n;
           pressed.tilt = std::max(pressed.tilt, std::acos(std::min(1., std::abs(n[2]))) * 180. / M_PI);
         }
-      X = problem.leg->increment.recorded(problem.process, X, {}, record).X;
+      X = problem.leg->increment.mechanics.recorded(problem.process, {X, {}}, record).X;
     }
     return pressed;
   }

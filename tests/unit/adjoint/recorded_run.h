@@ -107,7 +107,7 @@ namespace retroforge
     /// Of the first objective.
     AdjointResult adjoint()
     {
-      return adjoint_sweep(recorded(), trace.rows(), forged, each(objectives)).of[0];
+      return adjoint_sweep(recorded(), trace.rows(), forged, each(objectives)).gradients[0];
     }
 
     double tangent(const Process<Dual> &along, const NodalVectors<Dual> &X)

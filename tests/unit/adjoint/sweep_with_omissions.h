@@ -414,13 +414,13 @@ namespace retroforge
 
   inline AdjointResult sweep(RecordedRun &problem, const Term omitted)
   {
-    AdjointResult        result{NodalVectors<double>(problem.forged.X.size()),
+    AdjointResult        result{NodalVectors<double>(problem.forged.workpiece.X.size()),
                          no_process_derivatives(problem.scene.dies)};
-    NodalVectors<double> X = problem.forged.X;
+    NodalVectors<double> X = problem.forged.workpiece.X;
     for (unsigned int i = problem.records.size(); i-- > 0;)
     {
       const IncrementRecord &record = problem.records[i];
-      X                             = problem.leg->increment.retreat(problem.process, X, record);
+      X                             = problem.leg->increment.mechanics.retreat(problem.process, X, record);
       reverse_increment(problem, X, record, omitted, result.X_0, result.process);
     }
     return result;

@@ -97,7 +97,7 @@ namespace
   {
     RecordedRun                run(parameters);
     const AdjointResult        bar = run.adjoint();
-    const NodalVectors<double> still(run.forged.X.size());
+    const NodalVectors<double> still(run.forged.workpiece.X.size());
     std::cout << name
               << "\n  friction works: " << yes(run.forged.energy.friction > 1e-3 * run.forged.energy.total())
               << "\n";

@@ -216,7 +216,7 @@ namespace
                            metal("m", 1),
                            metal("a", 3),
                            metal("n", 4)})
-      check_way(run, way, sweep.of, largest);
+      check_way(run, way, sweep.gradients, largest);
     std::cout << name << ": meshes made anew: " << (run.forged.remeshed.empty() ? "none" : "some")
               << ", direct method within 1e-10: " << yes(largest.tangent < 1e-10)
               << ", differences within 1e-6: " << yes(largest.difference < 1e-6)

@@ -45,7 +45,7 @@ PathRows<double> rows(const RecordedRun &run, const PathObjective &objective)
   NodalVectors<double> X = run.scene.mesh.X;
   for (const IncrementRecord &record : run.records)
   {
-    const SolvedIncrement solved = run.leg->increment.recorded(run.process, X, {}, record);
+    const SolvedIncrement solved = run.leg->increment.mechanics.recorded(run.process, {X, {}}, record);
     rows.push_back(row_of(record, run.process));
     add_integrals(objective, solved.last().view(), rows.back());
     X = solved.X;

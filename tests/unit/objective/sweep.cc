@@ -112,7 +112,7 @@ int main(int argc, char **argv)
   const auto tangent = tangent_in_speed(run);
 
   Random               random;
-  NodalVectors<double> X_dot(run.forged.X.size());
+  NodalVectors<double> X_dot(run.forged.workpiece.X.size());
   for (Vec3 &x : X_dot)
     x = random.vector();
   const auto by_nodes = differences(
@@ -137,8 +137,9 @@ int main(int argc, char **argv)
     const std::string &name     = run.objectives[j].name;
     double             in_nodes = 0.;
     for (std::size_t k = 0; k < X_dot.size(); ++k)
-      in_nodes += X_dot[k] * sweep.of[j].X_0[k];
-    const double in_speed = sweep.of[j].process.dies[upper].velocity * run.process.dies[upper].velocity;
+      in_nodes += X_dot[k] * sweep.gradients[j].X_0[k];
+    const double in_speed =
+      sweep.gradients[j].process.dies[upper].velocity * run.process.dies[upper].velocity;
     tangents.compare(name + ", tangent", in_speed, tangent[j].dx(0));
     errors.compare(name + ", nodes", in_nodes, by_nodes[j]);
     errors.compare(name + ", speed", in_speed, by_speed[j]);

@@ -49,7 +49,7 @@ struct LastFields
       : run(p)
       , record(run.records.back())
       , X(positions_before(run))
-      , solved(run.leg->increment.recorded(run.process, X, {}, record))
+      , solved(run.leg->increment.mechanics.recorded(run.process, {X, {}}, record))
       , last(solved.last())
       , W(last.W)
       , fields(contact_fields(last.stage, W, last.active))
@@ -60,7 +60,7 @@ struct LastFields
   {
     NodalVectors<double> X = run.scene.mesh.X;
     for (std::size_t i = 0; i + 1 < run.records.size(); ++i)
-      X = run.leg->increment.recorded(run.process, X, {}, run.records[i]).X;
+      X = run.leg->increment.mechanics.recorded(run.process, {X, {}}, run.records[i]).X;
     return X;
   }
 

@@ -91,9 +91,10 @@ namespace retroforge
     increment.newton             = i + 1;
     increment.krylov             = 10 * i;
     increment.linear_solves      = i + 2;
-    increment.parameters         = i % 4 == 1 ? "set K = 1\nset n = " + std::to_string(i) + "\n" : "";
-    increment.scheme             = i % 2 == 0 ? "midpoint" : "euler";
-    increment.contact            = {number(), number(), number(), {number(), i % 2 == 0}, number()};
+    if (i % 4 == 1)
+      increment.parameters = "set K = 1\nset n = " + std::to_string(i) + "\n";
+    increment.scheme  = i % 2 == 0 ? "midpoint" : "euler";
+    increment.contact = {number(), number(), number(), {number(), i % 2 == 0}, number()};
     for (unsigned int d = 0; d < header.die_facets.size(); ++d)
       increment.forces.push_back(Vec3({number(), number(), number()}));
     for (NodeIndex k = 0; k < header.mesh.n_nodes(); k += 3)

@@ -57,7 +57,7 @@ namespace
     if (run.records.size() != increments)
       std::printf("an increment was cut\n");
     double width = 0.;
-    for (const Vec3 &x : run.forged.X)
+    for (const Vec3 &x : run.forged.workpiece.X)
       width = std::max(width, 2. * x[0]);
     const double h1 = h0 - stroke, K = p.material.law.K;
     // a quarter of the cube
@@ -122,11 +122,12 @@ namespace
     RecordedRun run(parameters, {parameters.dies[0].die(), parameters.dies[1].die()}, objectives(), kutta);
     run.trace.values(run.forged, true);
     const auto sweep = adjoint_sweep(run.recorded(), run.trace.rows(), run.forged, each(run.objectives));
-    const NodalVectors<double> still(run.forged.X.size());
+    const NodalVectors<double> still(run.forged.workpiece.X.size());
     const double               h = 1e-5;
-    for (const Direction &direction : {Direction{"nodes", random_vectors(run.forged.X.size()), 0., 0., {}},
-                                       Direction{"speed", still, 1., 0., {}},
-                                       Direction{"offset", still, 0., 1., {}}})
+    for (const Direction &direction :
+         {Direction{"nodes", random_vectors(run.forged.workpiece.X.size()), 0., 0., {}},
+          Direction{"speed", still, 1., 0., {}},
+          Direction{"offset", still, 0., 1., {}}})
     {
       const auto [process, X] = along<Dual>(run, direction, 0.);
       const auto tangents     = tangent_sweep(run.recorded(), process, X);
@@ -134,7 +135,7 @@ namespace
       for (std::size_t o = 0; o < run.objectives.size(); ++o)
       {
         const std::string what    = run.objectives[o].name + ", " + direction.name + ": ";
-        const double      adjoint = slope(run, sweep.of[o], direction);
+        const double      adjoint = slope(run, sweep.gradients[o], direction);
         judge(what + "tangent", relative_error(adjoint, tangents[o].dx(0)), 1e-10);
         judge(what + "differences", relative_error(adjoint, (plus[o] - minus[o]) / (2. * h)), 1e-6);
       }

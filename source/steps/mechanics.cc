@@ -2,46 +2,19 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/discretization/strain_history.h>
 #include <retroforge/solver/stage_motion.h>
-#include <retroforge/time/increment.h>
+#include <retroforge/steps/mechanics.h>
 
 namespace retroforge
 {
-  namespace
-  {
-    double dot(const NodalVectors<double> &a, const NodalVectors<double> &b)
-    {
-      double sum = 0.;
-      for (std::size_t k = 0; k < a.size(); ++k)
-        sum += a[k] * b[k];
-      return sum;
-    }
-
-    void sum_over_ranks(NodalVectors<double> &x, MPI_Comm comm)
-    {
-      MPI_Allreduce(MPI_IN_PLACE, x.data()->begin_raw(), 3 * x.size(), MPI_DOUBLE, MPI_SUM, comm);
-    }
-
-    /// @param part  this rank's; empty: none
-    void add_over_ranks(std::vector<double> part, MPI_Comm comm, std::vector<double> &sum)
-    {
-      part.resize(sum.size(), 0.);
-      dealii::Utilities::MPI::sum(part, comm, part);
-      for (std::size_t c = 0; c < sum.size(); ++c)
-        sum[c] += part[c];
-    }
-  } // namespace
-
   template <typename Number>
-  IncrementStart<Number>::IncrementStart(const Scene                &scene,
-                                         const Process<Number>      &process,
-                                         const NodalVectors<Number> &X,
-                                         const std::vector<Number>  &strain_before,
-                                         const IncrementRecord      &record)
+  IncrementStart<Number>::IncrementStart(const Scene                     &scene,
+                                         const Process<Number>           &process,
+                                         const WorkpieceState<3, Number> &state,
+                                         const IncrementRecord           &record)
       : physics(process.at_stroke(record.stroke))
       , dt(process.time(record.step))
-      , contact(make_contact_set<Number>(scene.view(physics.dies, X),
+      , contact(make_contact_set<Number>(scene.view(physics.dies, state.X),
                                          record.pairs,
                                          {record.contact.ramp,
                                           Number(record.contact.approach * dt),
@@ -49,7 +22,7 @@ namespace retroforge
                                           record.contact.edge_stiffness}))
   {
     if (process.material.depends_on_state())
-      strain = strain_before;
+      strain = state.strain;
   }
 
   template struct IncrementStart<double>;
@@ -74,7 +47,7 @@ namespace retroforge
     settle_bubbles(stage, W);
   }
 
-  Increment::Increment(const Scene            &scene,
+  Mechanics::Mechanics(const Scene            &scene,
                        const StepModel        &model,
                        const NewtonParameters &newton,
                        LinearSystem           &system,
@@ -83,7 +56,7 @@ namespace retroforge
   {
   }
 
-  bool Increment::escaped(const Stage<double> &stage, const Field<double> &W) const
+  bool Mechanics::contacts_missed(const Stage<double> &stage, const Field<double> &W) const
   {
     const auto                     timing = timings_.scope("checks");
     const auto                    &nodes  = *scene_.discretization.condensed_nodes();
@@ -118,21 +91,20 @@ namespace retroforge
     return dealii::Utilities::MPI::max(found ? 1 : 0, scene_.discretization.comm()) > 0;
   }
 
-  std::shared_ptr<const IncrementStart<double>> Increment::start_of(const Process<double>      &process,
-                                                                    const NodalVectors<double> &X,
-                                                                    const std::vector<double>  &strain,
-                                                                    const IncrementRecord      &record) const
+  std::shared_ptr<const IncrementStart<double>> Mechanics::start_of(const Process<double>           &process,
+                                                                    const WorkpieceState<3, double> &state,
+                                                                    const IncrementRecord &record) const
   {
     const auto timing = timings_.scope("contact");
-    return std::make_shared<const IncrementStart<double>>(scene_, process, X, strain, record);
+    return std::make_shared<const IncrementStart<double>>(scene_, process, state, record);
   }
 
-  const Scheme &Increment::scheme_of(const IncrementRecord &record) const
+  const Scheme &Mechanics::scheme_of(const IncrementRecord &record) const
   {
     return record.scheme == model_.scheme.name ? model_.scheme : Scheme::by_name(record.scheme);
   }
 
-  std::vector<SolveRecord> Increment::solve_stages(const IncrementStart<double> &start,
+  std::vector<SolveRecord> Mechanics::solve_stages(const IncrementStart<double> &start,
                                                    const NodalVectors<double>   &X,
                                                    const bool                    replay,
                                                    const bool                    all_found,
@@ -160,7 +132,7 @@ namespace retroforge
                         replay ? frozen : stage.decide_active(W)});
       if (scene_.discretization.middles())
         solves.back().vertices = motion(stage, W);
-      lost = !replay && !all_found && escaped(stage, W);
+      lost = !replay && !all_found && contacts_missed(stage, W);
     }
     record.linear_solves += system_.n_solves - solves_before;
     if (lost)
@@ -168,7 +140,7 @@ namespace retroforge
     return solves;
   }
 
-  void Increment::account(const SolvedIncrement &solved, IncrementRecord &record) const
+  void Mechanics::account(const SolvedIncrement &solved, IncrementRecord &record) const
   {
     record.deformation_energy = record.friction_energy = 0.;
     record.forces.assign(scene_.dies.size(), Vec3());
@@ -184,13 +156,13 @@ namespace retroforge
     }
   }
 
-  SolvedIncrement Increment::forward(const Process<double>      &process,
-                                     const NodalVectors<double> &X,
-                                     const std::vector<double>  &strain,
-                                     const bool                  replay,
-                                     const Guess                &guess,
-                                     IncrementRecord            &record)
+  SolvedIncrement Mechanics::forward(const Process<double>           &process,
+                                     const WorkpieceState<3, double> &state,
+                                     const bool                       replay,
+                                     const Guess                     &guess,
+                                     IncrementRecord                 &record)
   {
+    const NodalVectors<double> &X = state.X;
     AssertDimension(X.size(), scene_.mesh.n_nodes());
     AssertDimension(process.dies.size(), scene_.dies.size());
     Assert(guess.W.belongs_to(scene_.discretization),
@@ -219,7 +191,7 @@ namespace retroforge
         all_found = reach > model_.reach && record.pairs.size() == n_watched;
         n_watched = record.pairs.size();
       }
-      const auto start  = start_of(process, X, strain, record);
+      const auto start  = start_of(process, state, record);
       auto       solves = solve_stages(*start, X, replay, all_found, guess, record);
       if (solves.empty())
         continue;
@@ -230,7 +202,7 @@ namespace retroforge
     }
   }
 
-  std::shared_ptr<const SolvedStage> Increment::recorded_stage(const IncrementStart<double> &start,
+  std::shared_ptr<const SolvedStage> Mechanics::recorded_stage(const IncrementStart<double> &start,
                                                                const NodalVectors<double>   &X,
                                                                const IncrementRecord        &record,
                                                                const unsigned int            s,
@@ -244,7 +216,7 @@ namespace retroforge
                                                bubbles);
   }
 
-  SolvedIncrement Increment::recorded(std::shared_ptr<const IncrementStart<double>> start,
+  SolvedIncrement Mechanics::recorded(std::shared_ptr<const IncrementStart<double>> start,
                                       const NodalVectors<double>                   &X,
                                       const IncrementRecord                        &record) const
   {
@@ -256,15 +228,14 @@ namespace retroforge
     return solved;
   }
 
-  SolvedIncrement Increment::recorded(const Process<double>      &process,
-                                      const NodalVectors<double> &X,
-                                      const std::vector<double>  &strain,
-                                      const IncrementRecord      &record) const
+  SolvedIncrement Mechanics::recorded(const Process<double>           &process,
+                                      const WorkpieceState<3, double> &state,
+                                      const IncrementRecord           &record) const
   {
-    return recorded(start_of(process, X, strain, record), X, record);
+    return recorded(start_of(process, state, record), state.X, record);
   }
 
-  Field<double> Increment::rate(const IncrementRecord &record) const
+  Field<double> Mechanics::rate(const IncrementRecord &record) const
   {
     const Scheme &scheme = scheme_of(record);
     const double  stroke = record.step * (scheme.node(scheme.n_stages() - 1) - scheme.node(0));
@@ -285,14 +256,14 @@ namespace retroforge
     return rate;
   }
 
-  Guess Increment::guess_after(const SolvedIncrement &solved, const IncrementRecord &record) const
+  Guess Mechanics::guess_after(const SolvedIncrement &solved, const IncrementRecord &record) const
   {
     const Scheme &scheme = scheme_of(record);
     return {
       solved.last().W, Start::near, rate(record), record.step * (1. - scheme.node(scheme.n_stages() - 1))};
   }
 
-  Guess Increment::recorded_guess(const IncrementRecord &record) const
+  Guess Mechanics::recorded_guess(const IncrementRecord &record) const
   {
     Field<double> W(scene_.discretization);
     W.V.take(record.solves.front().V);
@@ -300,149 +271,10 @@ namespace retroforge
     return {std::move(W), Start::near, rate(record)};
   }
 
-  NodalVectors<double> Increment::retreat(const Process<double>      &process,
+  NodalVectors<double> Mechanics::retreat(const Process<double>      &process,
                                           const NodalVectors<double> &X_next,
                                           const IncrementRecord      &record) const
   {
     return advanced(X_next, -process.time(record.step), scheme_of(record).b, record.solves);
-  }
-
-  void Increment::forget()
-  {
-    system_.reset();
-    earlier_lambdas_.clear();
-    earlier_bubbles_.clear();
-  }
-
-  namespace
-  {
-    /// Of the increments after, from which an adjoint system starts: each spares more iterations than it
-    /// costs.
-    constexpr std::size_t n_starts = 5;
-
-    /// Derivatives of one scalar that an increment collects from its stages.
-    struct IncrementBar
-    {
-      ContactSetBar contact;
-      PhysicsBar    physics;
-      /// In the positions of each stage: of those that follow the one that is reversed.
-      std::vector<NodalVectors<double>> Y;
-    };
-  } // namespace
-
-  double Increment::tolerance_of(const double norm, const double largest) const
-  {
-    constexpr double loosest = 1e-2;
-    return norm == 0. ? model_.adjoint_tolerance
-                      : std::max(model_.adjoint_tolerance,
-                                 std::min(loosest, model_.adjoint_tolerance * largest / norm));
-  }
-
-  void Increment::reverse(const Process<double>      &process,
-                          const NodalVectors<double> &X,
-                          const std::vector<double>  &strain,
-                          const IncrementRecord      &record,
-                          const StageSource          &source,
-                          std::vector<Costate>       &costates)
-  {
-    AssertDimension(X.size(), scene_.mesh.n_nodes());
-    AssertDimension(record.solves.size(), scheme_of(record).n_stages());
-    Assert(std::all_of(costates.begin(),
-                       costates.end(),
-                       [&](const Costate &costate) {
-                         return costate.X.size() == X.size() &&
-                                (costate.strain.empty() || costate.strain.size() == scene_.mesh.n_cells());
-                       }),
-           dealii::ExcMessage("a costate has an entry for each node, and for each cell or none"));
-    const MPI_Comm                comm   = scene_.discretization.comm();
-    const bool                    first  = dealii::Utilities::MPI::this_mpi_process(comm) == 0;
-    const Scheme                 &scheme = scheme_of(record);
-    const unsigned int            n      = scheme.n_stages();
-    const auto                    shared = start_of(process, X, strain, record);
-    const IncrementStart<double> &start  = *shared;
-    std::vector<IncrementBar>     bars(
-      costates.size(),
-      {ContactSetBar(record.pairs.size()), PhysicsBar(scene_.dies), std::vector<NodalVectors<double>>(n)});
-    if (process.material.depends_on_state())
-      for (Costate &costate : costates)
-        costate.strain.resize(scene_.mesh.n_cells(), 0.);
-    earlier_lambdas_.resize(n);
-    earlier_bubbles_.resize(n);
-    // The first stage of a midpoint step, which leads to half a step, has a right-hand side, and a share in
-    // the gradient, smaller than the second by far: what is asked of both is alike in absolute terms.
-    std::vector<double> largest(costates.size(), 0.);
-    for (unsigned int s = n; s-- > 0;)
-    {
-      const auto              at   = recorded_stage(start, X, record, s, earlier_bubbles_[s]);
-      const StageView<double> view = at->view();
-      earlier_bubbles_[s]          = at->W.V;
-      system_.assemble(at->stage, at->W, at->active);
-      earlier_lambdas_[s].resize(costates.size());
-      for (std::size_t j = 0; j < costates.size(); ++j)
-      {
-        IncrementBar        &bar     = bars[j];
-        Costate             &costate = costates[j];
-        NodalVectors<double> position_bar(X.size());
-        Field<double>        rhs(scene_.discretization);
-        StageBar             stage_bar{rhs, position_bar, bar.contact, bar.physics, model_.shape_derivatives};
-        // The velocity leads to X' = X + dt sum b_s V_s and to the Y_r = X + dt sum a_rs V_s that follow.
-        std::vector<std::pair<double, const NodalVectors<double> *>> led_to;
-        if (scheme.b[s] != 0.)
-          led_to.emplace_back(scheme.b[s], &costate.X);
-        for (unsigned int r = s + 1; r < n; ++r)
-          if (scheme.a[r][s] != 0.)
-            led_to.emplace_back(scheme.a[r][s], &bar.Y[r]);
-        if (first)
-          for (const auto &[weight, there] : led_to)
-            bar.physics.dt += weight * dot(*there, record.solves[s].motion());
-        if (scheme.b[s] != 0.)
-        {
-          source(j, view, stage_bar);
-          if (!costate.strain.empty())
-            bar.physics.dt += scheme.b[s] * reverse_accumulate_strain(scene_.discretization,
-                                                                      at->X,
-                                                                      at->W,
-                                                                      scheme.b[s] * start.dt,
-                                                                      costate.strain,
-                                                                      rhs,
-                                                                      position_bar);
-          rhs.sum_ghosts();
-        }
-        NodalVectors<double> motion_bar(X.size());
-        for (const auto &[weight, there] : led_to)
-          for (std::size_t k = 0; k < X.size(); ++k)
-            motion_bar[k] += weight * start.dt * (*there)[k];
-        reverse_motion(at->stage, at->W, motion_bar, stage_bar);
-        Field<double> minus_rhs(scene_.discretization), lambda;
-        minus_rhs.add(-1., rhs);
-        auto        &guesses = earlier_lambdas_[s][j];
-        const double norm    = system_.norm_of_derivative(minus_rhs, Transposition::transposed);
-        largest[j]           = std::max(largest[j], norm);
-        system_.solve_derivative(
-          minus_rhs, tolerance_of(norm, largest[j]), lambda, guesses, Transposition::transposed);
-        reverse_residual(view, lambda, stage_bar);
-        guesses.insert(guesses.begin(), std::move(lambda));
-        guesses.resize(std::min(guesses.size(), n_starts));
-        if (s == 0)
-          reverse_contact_set(scene_.view(start.physics.dies, X),
-                              start.contact,
-                              record.contact.ramp,
-                              bar.contact,
-                              position_bar,
-                              bar.physics.dies);
-        sum_over_ranks(position_bar, comm);
-        bar.Y[s] = std::move(position_bar);
-      }
-    }
-    for (std::size_t j = 0; j < costates.size(); ++j)
-    {
-      for (unsigned int s = n; s-- > 0;)
-        for (std::size_t k = 0; k < X.size(); ++k)
-          costates[j].X[k] += bars[j].Y[s][k];
-      if (process.material.depends_on_state())
-        add_over_ranks(std::move(bars[j].physics.strain), comm, costates[j].strain);
-      reverse_at_stroke(
-        process, {record.stroke, record.step}, record.contact.approach, bars[j].physics, costates[j].process);
-    }
   }
 } // namespace retroforge

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
-#include <retroforge/time/scheme.h>
+#include <retroforge/steps/scheme.h>
 
 namespace retroforge
 {

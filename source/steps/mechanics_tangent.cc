@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/solver/stage_motion.h>
-#include <retroforge/time/increment.h>
+#include <retroforge/steps/mechanics.h>
 
 namespace retroforge
 {
@@ -24,13 +24,6 @@ namespace retroforge
       for (unsigned int i = 0; i < 3; ++i)
         d[i] = x[i].dx(0);
       return d;
-    }
-
-    NodalVectors<double> values_of(const NodalVectors<Dual> &x)
-    {
-      NodalVectors<double> v;
-      convert(x, v);
-      return v;
     }
 
     /// A tangent is taken where the dies have the vertices they were made with.
@@ -58,7 +51,7 @@ namespace retroforge
     }
   } // namespace
 
-  Field<Dual> Increment::tangent_field(const Stage<Dual> &stage, const SolvedStage &at)
+  Field<Dual> Mechanics::tangent_field(const Stage<Dual> &stage, const SolvedStage &at)
   {
     const Field<Dual> still = make_dual(at.W, Field<double>(scene_.discretization));
     const Field<Dual> R     = stage.residual(still, at.active);
@@ -83,30 +76,28 @@ namespace retroforge
     };
   } // namespace
 
-  NodalVectors<Dual> Increment::tangent(const Process<Dual>      &process,
-                                        const NodalVectors<Dual> &X,
-                                        const std::vector<Dual>  &strain,
-                                        const IncrementRecord    &record,
-                                        const TangentWatch       &watch)
+  NodalVectors<Dual> Mechanics::tangent(const Process<Dual>           &process,
+                                        const WorkpieceState<3, Dual> &state,
+                                        const IncrementRecord         &record,
+                                        const TangentObserver         &observer)
   {
-    AssertDimension(X.size(), scene_.mesh.n_nodes());
+    AssertDimension(state.X.size(), scene_.mesh.n_nodes());
     AssertDimension(record.solves.size(), scheme_of(record).n_stages());
-    const NodalVectors<double> X_value = values_of(X);
-    std::vector<double>        strain_value;
-    convert(strain, strain_value);
-    const auto                 start_value = start_of(values_of(process), X_value, strain_value, record);
-    const IncrementStart<Dual> start(scene_, process, X, strain, record);
+    WorkpieceState<3, double> value;
+    convert(state, value);
+    const auto                 start_value = start_of(values_of(process), value, record);
+    const IncrementStart<Dual> start(scene_, process, state, record);
     const Scheme              &scheme = scheme_of(record);
     std::vector<Moved>         stages;
     for (unsigned int s = 0; s < scheme.n_stages(); ++s)
     {
-      const NodalVectors<Dual> position = advanced(X, start.dt, scheme.a[s], stages);
+      const NodalVectors<Dual> position = advanced(state.X, start.dt, scheme.a[s], stages);
       const Stage<Dual>        stage(scene_, start.physics, start.contact, position, start.strain);
-      const Field<Dual>        W = tangent_field(stage, *recorded_stage(*start_value, X_value, record, s));
+      const Field<Dual>        W = tangent_field(stage, *recorded_stage(*start_value, value.X, record, s));
       stages.push_back({retroforge::motion(stage, W)});
       if (scheme.b[s] != 0.)
-        watch({stage, W, record.solves[s].active, scheme.b[s]}, start.dt);
+        observer({stage, W, record.solves[s].active, scheme.b[s]}, start.dt);
     }
-    return advanced(X, start.dt, scheme.b, stages);
+    return advanced(state.X, start.dt, scheme.b, stages);
   }
 } // namespace retroforge

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/time/process.h>
+#include <retroforge/steps/process.h>
 
 namespace retroforge
 {

@@ -2,11 +2,12 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/objective/path_objective.h>
+#include <retroforge/core/rank_sum.h>
 #include <retroforge/record/increment_record.h>
 #include <retroforge/solver/newton.h>
-#include <retroforge/time/process.h>
-#include <retroforge/time/scheme.h>
+#include <retroforge/steps/process.h>
+#include <retroforge/steps/scheme.h>
+#include <retroforge/steps/workpiece_state.h>
 
 namespace retroforge
 {
@@ -34,16 +35,15 @@ namespace retroforge
   /// What flows backwards through a run for one scalar Phi.
   struct Costate
   {
-    NodalVectors<double> X;       ///< dPhi/dX, complete on every rank
-    std::vector<double>  strain;  ///< dPhi/dq of each cell, complete on every rank; empty: Phi has none
-    Process<double>      process; ///< this rank's part
+    WorkpieceState<3, double> workpiece; ///< derivatives in it, complete on every rank
+    RankSum<Process<double>>  process;
   };
 
   /// Adds what costate j's Phi takes from a stage of the increment, this rank's part.
-  using StageSource = std::function<void(std::size_t j, const StageView<double> &, StageBar &)>;
+  using AdjointSource = std::function<void(std::size_t j, const StageView<double> &, StageBar &)>;
 
-  /// What looks on while a tangent passes: each stage that integrals weigh, and the increment's time dt.
-  using TangentWatch = std::function<void(const StageView<Dual> &, const Dual &)>;
+  /// Observer of a tangent: called after each stage that integrals weigh, with the increment's time dt.
+  using TangentObserver = std::function<void(const StageView<Dual> &, const Dual &)>;
 
   /// What the stages of an increment share, as found at its start.
   template <typename Number>
@@ -55,11 +55,10 @@ namespace retroforge
     /// Of each cell, where laws depend on it; else empty.
     std::vector<Number> strain;
 
-    IncrementStart(const Scene                &scene,
-                   const Process<Number>      &process,
-                   const NodalVectors<Number> &X,
-                   const std::vector<Number>  &strain,
-                   const IncrementRecord      &record);
+    IncrementStart(const Scene                     &scene,
+                   const Process<Number>           &process,
+                   const WorkpieceState<3, Number> &state,
+                   const IncrementRecord           &record);
   };
 
   /// A stage in equilibrium, with what its view refers to. Bubbles are recovered from nothing, so that a
@@ -94,49 +93,48 @@ namespace retroforge
     const SolvedStage &last() const { return *stages.back(); }
   };
 
-  /// One increment of time: forward, its tangent, and its reverse.
-  class Increment
+  /// The step of an increment that is solved: the equilibrium of each stage of the scheme, and the motion of
+  /// the nodes that follows; forward, its tangent, and its reverse.
+  class Mechanics
   {
   public:
-    Increment(const Scene            &scene,
+    Mechanics(const Scene            &scene,
               const StepModel        &model,
               const NewtonParameters &newton,
               LinearSystem           &system,
               Timings                &timings);
 
-    /// From X_i to X_{i+1}, in metal of strain q_i. @param record  in: stroke, step; with `replay`, the
-    /// recorded decisions are obeyed. Out: scheme, contact, pairs, solves, energies, forces; iterations are
-    /// added.
+    /// Solves the stages from a state.
+    /// @param record  in: stroke, step; with `replay`, the recorded decisions are obeyed. Out: scheme,
+    /// contact, pairs, solves, energies, forces; iterations are added.
     /// @param guess  where the first stage begins
-    SolvedIncrement forward(const Process<double>      &process,
-                            const NodalVectors<double> &X,
-                            const std::vector<double>  &strain,
-                            bool                        replay,
-                            const Guess                &guess,
-                            IncrementRecord            &record);
+    SolvedIncrement forward(const Process<double>           &process,
+                            const WorkpieceState<3, double> &state,
+                            bool                             replay,
+                            const Guess                     &guess,
+                            IncrementRecord                 &record);
 
-    /// The same from what was recorded, to the bit: nothing is solved.
-    SolvedIncrement recorded(const Process<double>      &process,
-                             const NodalVectors<double> &X,
-                             const std::vector<double>  &strain,
-                             const IncrementRecord      &record) const;
+    /// Returns the same from what was recorded, to the bit: nothing is solved.
+    SolvedIncrement recorded(const Process<double>           &process,
+                             const WorkpieceState<3, double> &state,
+                             const IncrementRecord           &record) const;
 
-    /// Derivative of X_{i+1} along (X, strain, process), at a recorded increment.
-    NodalVectors<Dual> tangent(const Process<Dual>      &process,
-                               const NodalVectors<Dual> &X,
-                               const std::vector<Dual>  &strain,
-                               const IncrementRecord    &record,
-                               const TangentWatch       &watch);
+    /// Returns the derivative of X_{i+1} along (state, process), at a recorded increment.
+    NodalVectors<Dual> tangent(const Process<Dual>           &process,
+                               const WorkpieceState<3, Dual> &state,
+                               const IncrementRecord         &record,
+                               const TangentObserver         &observer);
 
     /// Reverse of forward, for several scalars at once: they share the matrix and its preconditioner, and
-    /// each has a solve per stage of its own. Costates are those of X_{i+1} and q_{i+1} on entry, of X_i and
-    /// q_i on exit.
-    void reverse(const Process<double>      &process,
-                 const NodalVectors<double> &X,
-                 const std::vector<double>  &strain,
-                 const IncrementRecord      &record,
-                 const StageSource          &source,
-                 std::vector<Costate>       &costates);
+    /// each has a solve per stage of its own. The costates' positions are those of X_{i+1} on entry, of X_i
+    /// on exit; to the costate of the strain at the start it adds what laws that depend on it take.
+    /// @param state  at the start of the increment; its strain is read where laws depend on it
+    /// @param source  of each stage: objectives, and the steps that follow mechanics
+    void reverse(const Process<double>           &process,
+                 const WorkpieceState<3, double> &state,
+                 const IncrementRecord           &record,
+                 const AdjointSource             &source,
+                 std::vector<Costate>            &costates);
 
     /// Where the increment after a solved one begins: its last solution, and how it changed from stage to
     /// stage. Only what is recorded enters, so that a run that is resumed begins there, too.
@@ -154,10 +152,9 @@ namespace retroforge
     void forget();
 
   private:
-    std::shared_ptr<const IncrementStart<double>> start_of(const Process<double>      &process,
-                                                           const NodalVectors<double> &X,
-                                                           const std::vector<double>  &strain,
-                                                           const IncrementRecord      &record) const;
+    std::shared_ptr<const IncrementStart<double>> start_of(const Process<double>           &process,
+                                                           const WorkpieceState<3, double> &state,
+                                                           const IncrementRecord           &record) const;
     /// That of the record, which is the model's unless the run was restarted with another.
     const Scheme &scheme_of(const IncrementRecord &record) const;
     /// Change of (V, P) over the stroke from the first stage to the last; empty where they are at one time.
@@ -179,10 +176,12 @@ namespace retroforge
                                                       const IncrementRecord        &record,
                                                       unsigned int                  s,
                                                       const NodeVector<3, double>  &bubbles = {}) const;
-    /// Of an adjoint system, relative to its right-hand side.
-    /// @param norm, largest  of that, and of the largest one of the increment's stages so far
-    double      tolerance_of(double norm, double largest) const;
-    bool        escaped(const Stage<double> &stage, const Field<double> &W) const;
+    /// Returns the relative tolerance of an adjoint system.
+    /// @param norm     of its right-hand side
+    /// @param largest  maximum of these norms over the increment's stages so far
+    double tolerance_of(double norm, double largest) const;
+    /// Returns whether a node that was not watched ran into a die. Collective.
+    bool        contacts_missed(const Stage<double> &stage, const Field<double> &W) const;
     Field<Dual> tangent_field(const Stage<Dual> &stage, const SolvedStage &at);
 
     const Scene     &scene_;
