@@ -279,7 +279,7 @@ namespace retroforge
       trial.write_record(base, parameters_at(forging_case, problem_.evaluator.middle_sample(mu, scenario)));
     write_msh(base + "_billet.msh", forging_case.billet, trial.X_0());
     write_boundary_stl(base + "_billet.stl", forging_case.billet, trial.X_0());
-    write_boundary_stl(base + "_forged.stl", trial.end().leg->scene.mesh, trial.end().X);
+    write_boundary_stl(base + "_forged.stl", trial.end().leg->scene.mesh, trial.end().workpiece.X);
     for (const Die &die : trial.dies())
       if (die.surface())
         write_stl(base + "_die_" + die.name + ".stl", *die.surface(), StlFormat::binary);
