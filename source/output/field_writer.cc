@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/base/data_out_base.h>
-
 #include <retroforge/mesh/whole_part.h>
 #include <retroforge/output/cell_fields.h>
 #include <retroforge/output/contact_fields.h>
