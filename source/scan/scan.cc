@@ -75,7 +75,8 @@ namespace retroforge
     one_run.resume      = false;
     Timings    timings;
     const Case scene(one_run, timings, comm);
-    check_scene(scene.parameters, MeshEpoch(scene.billet, scene.model, timings).scene, scene.process, scene.X_0);
+    check_scene(
+      scene.parameters, MeshEpoch(scene.billet, scene.model, timings).scene, scene.process, scene.X_0);
     warnings_   = estimate_scene(scene).warnings;
     echo_       = scene.echo;
     parameters_ = scene.parameters;
