@@ -101,6 +101,7 @@ end
   void Parameters::check_all()
   {
     billet.check();
+    discretization.check();
     contact.check();
     remeshing.check();
     scan.check();

@@ -35,6 +35,13 @@ namespace retroforge
       "elements; or quadrature, by code for any pair, whose derivatives are those of dual "
       "numbers at the points, some ten times slower. Results are the same to rounding: one is "
       "the check of the other. Units: none.");
+    prm.add_parameter(
+      "geometry degree",
+      choice.geometry_degree,
+      "Degree of positions as functions on a tetrahedron: 1, or with `assembly = quadrature` 2, "
+      "which gives them nodes in the middles of edges, too. These stay halfway between the ends, "
+      "so that results are the same to rounding: a trial of what curved cells need. Units: none.",
+      dealii::Patterns::Integer(1, 2));
     prm.leave_subsection();
     tag(prm, "Discretization", SettingRole::scene);
   }

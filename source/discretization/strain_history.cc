@@ -6,12 +6,12 @@
 
 namespace retroforge
 {
-  template <typename Number>
-  std::vector<Number> accumulate_strain(const Discretization<3>    &discretization,
-                                        const NodalVectors<Number> &X,
-                                        const Field<Number>        &W,
-                                        const Number               &dt,
-                                        const std::vector<Number>  &q_n)
+  template <typename Number, int dim>
+  std::vector<Number> accumulate_strain(const Discretization<dim>      &discretization,
+                                        const CellVectors<dim, Number> &X,
+                                        const FlowField<dim, Number>   &W,
+                                        const Number                   &dt,
+                                        const std::vector<Number>      &q_n)
   {
     Assert(X.size() == discretization.n_vertices(),
            dealii::ExcDimensionMismatch(X.size(), discretization.n_vertices()));
@@ -27,13 +27,14 @@ namespace retroforge
     return q;
   }
 
-  double reverse_accumulate_strain(const Discretization<3>    &discretization,
-                                   const NodalVectors<double> &X,
-                                   const Field<double>        &W,
-                                   const double                dt,
-                                   const std::vector<double>  &q_bar,
-                                   Field<double>              &W_bar,
-                                   NodalVectors<double>       &X_bar)
+  template <int dim>
+  double reverse_accumulate_strain(const Discretization<dim>      &discretization,
+                                   const CellVectors<dim, double> &X,
+                                   const FlowField<dim, double>   &W,
+                                   const double                    dt,
+                                   const std::vector<double>      &q_bar,
+                                   FlowField<dim, double>         &W_bar,
+                                   CellVectors<dim, double>       &X_bar)
   {
     Assert(X.size() == discretization.n_vertices(),
            dealii::ExcDimensionMismatch(X.size(), discretization.n_vertices()));
@@ -61,13 +62,24 @@ namespace retroforge
     return dt_bar;
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                         \
-  template std::vector<Number> accumulate_strain(const Discretization<3> &,    \
-                                                 const NodalVectors<Number> &, \
-                                                 const Field<Number> &,        \
-                                                 const Number &,               \
+#define RETROFORGE_INSTANTIATE_VALUES(dim, Number)                                 \
+  template std::vector<Number> accumulate_strain(const Discretization<dim> &,      \
+                                                 const CellVectors<dim, Number> &, \
+                                                 const FlowField<dim, Number> &,   \
+                                                 const Number &,                   \
                                                  const std::vector<Number> &);
-  RETROFORGE_INSTANTIATE(double)
-  RETROFORGE_INSTANTIATE(Dual)
+#define RETROFORGE_INSTANTIATE(dim)                                           \
+  RETROFORGE_INSTANTIATE_VALUES(dim, double)                                  \
+  RETROFORGE_INSTANTIATE_VALUES(dim, Dual)                                    \
+  template double reverse_accumulate_strain(const Discretization<dim> &,      \
+                                            const CellVectors<dim, double> &, \
+                                            const FlowField<dim, double> &,   \
+                                            double,                           \
+                                            const std::vector<double> &,      \
+                                            FlowField<dim, double> &,         \
+                                            CellVectors<dim, double> &);
+  RETROFORGE_INSTANTIATE(2)
+  RETROFORGE_INSTANTIATE(3)
 #undef RETROFORGE_INSTANTIATE
+#undef RETROFORGE_INSTANTIATE_VALUES
 } // namespace retroforge

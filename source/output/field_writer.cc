@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/discretization/element_pairs.h>
+#include <deal.II/base/data_out_base.h>
+
 #include <retroforge/mesh/whole_part.h>
+#include <retroforge/output/cell_fields.h>
 #include <retroforge/output/contact_fields.h>
 #include <retroforge/output/die_pictures.h>
 #include <retroforge/output/field_file.h>
@@ -17,9 +19,9 @@ namespace retroforge
     const TetMesh              &mesh;
     const MiddleNodes          *middles; ///< null where velocities are linear
     const NodalVectors<double> &X;
-    const NodalVectors<double> &position; ///< where V and P are an equilibrium
-    const NodalVectors<double> &V;        ///< of velocity nodes but bubbles, on this rank all
+    const NodalVectors<double> &V; ///< of velocity nodes but bubbles, on this rank all
     const std::vector<double>  &P;
+    const CellFields           &cells; ///< where V and P are an equilibrium
     const std::vector<double>  &strain;
     const NodalVectors<double> *displacement; ///< null: unknown
     const ContactFields        *contact;      ///< null: unknown
@@ -27,69 +29,25 @@ namespace retroforge
 
   namespace
   {
-    /// Of each cell: mean equivalent strain rate, von Mises stress, deviatoric stress.
-    struct CellFields
+    /// A flow known by its nodes, on this rank alone: bubbles follow from V and P.
+    Field<double> with_bubbles(const Discretization<3>                             &discretization,
+                               const NodalVectors<double>                          &X,
+                               const LastSolution                                  &solution,
+                               const std::function<MaterialLaw<double>(CellIndex)> &law)
     {
-      std::vector<double>          strain_rate, von_mises;
-      std::vector<SymmetricTensor> stress;
-    };
-
-    void recover_bubble(const CellGeometry<double> &geometry,
-                        const MaterialLaw<double>  &law,
-                        CellValues<double>         &w)
-    {
-      w.beta = solve_bubble(geometry, w, law);
-    }
-
-    void recover_bubble(const CellGeometry<double> &, const MaterialLaw<double> &, TaylorHoodValues<double> &)
-    {
-    }
-
-    /// Bubbles follow from V and P.
-    template <typename Values>
-    void
-    add_cell(const CellGeometry<double> &geometry, Values w, const MaterialLaw<double> &law, CellFields &to)
-    {
-      recover_bubble(geometry, law, w);
-      to.strain_rate.push_back(cell_strain_rate(geometry, w));
-      to.stress.push_back(cell_deviatoric_stress(geometry, w, law));
-      to.von_mises.push_back(von_mises(to.stress.back()));
-    }
-
-    CellFields cell_fields(const TetMesh              &mesh,
-                           const MiddleNodes          *middles,
-                           const NodalVectors<double> &X,
-                           const NodalVectors<double> &V,
-                           const std::vector<double>  &P,
-                           const Material<double>     &material,
-                           const std::vector<double>  &strain)
-    {
-      CellFields fields;
-      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
-      {
-        const auto              &nodes = mesh.cells[c];
-        const auto               law   = material.at({strain[c]});
-        Four<Vec3>               x;
-        CellValues<double>       linear;
-        TaylorHoodValues<double> quadratic;
-        for (unsigned int a = 0; a < 4; ++a)
-        {
-          x[a]        = X[nodes[a]];
-          linear.V[a] = quadratic.V[a] = V[nodes[a]];
-          linear.P[a] = quadratic.P[a] = P[nodes[a]];
-        }
-        if (middles)
-          for (unsigned int e = 0; e < 6; ++e)
-          {
-            const auto [a, b]  = tet_edge_corners[e];
-            quadratic.V[4 + e] = V[middles->between(nodes[a], nodes[b])];
-          }
-        if (middles)
-          add_cell(cell_geometry(x), quadratic, law, fields);
-        else
-          add_cell(cell_geometry(x), linear, law, fields);
-      }
-      return fields;
+      Field<double> W(discretization);
+      W.V.take(solution.V);
+      W.P.take(solution.P);
+      if (discretization.has_bubbles())
+        dispatch_element(discretization, [&](const auto pair) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(pair)>, TaylorHoodPair>)
+            for (const CellIndex c : discretization.visited_cells())
+              W.V.at_place(discretization.velocity_places(c)[discretization.n_nodes_per_cell()]) =
+                solve_bubble(cell_geometry(pair.positions(discretization, X, c)),
+                             pair.on_cell(discretization, W, c),
+                             law(c));
+        });
+      return W;
     }
 
     std::string six_digits(const unsigned int number)
@@ -124,15 +82,9 @@ namespace retroforge
 
   void FieldWriter::write(const std::string &file, const Workpiece &workpiece) const
   {
-    const TetMesh   &mesh  = workpiece.mesh;
-    const CellFields cells = cell_fields(mesh,
-                                         workpiece.middles,
-                                         workpiece.position,
-                                         workpiece.V,
-                                         workpiece.P,
-                                         process_.material,
-                                         workpiece.strain);
-    FieldFile<3>     picture(workpiece.X, mesh.cells);
+    const TetMesh    &mesh  = workpiece.mesh;
+    const CellFields &cells = workpiece.cells;
+    FieldFile<3>      picture(workpiece.X, mesh.cells);
     picture.add_linear("pressure", "MPa", workpiece.P);
     picture.add_velocity("velocity", "mm/s", workpiece.V, workpiece.middles);
     if (workpiece.displacement)
@@ -186,8 +138,11 @@ namespace retroforge
     const std::vector<double>  zero(billet_.n_nodes(), 0.), strain(billet_.n_cells(), 0.);
     const NodalVectors<double> still(billet_.n_nodes()), at_rest(discretization.condensed_nodes()->n());
     const ContactFields        contact{zero, zero, still};
+    const CellFields cells = cell_fields(discretization, X_0_, Field<double>(discretization), [&](CellIndex) {
+      return process_.material.at({0.});
+    });
     write(fields_file(0),
-          {billet_, discretization.middles(), X_0_, X_0_, at_rest, zero, strain, &still, &contact});
+          {billet_, discretization.middles(), X_0_, at_rest, zero, cells, strain, &still, &contact});
   }
 
   void FieldWriter::add_billet()
@@ -211,6 +166,8 @@ namespace retroforge
     const ForgingState &run   = event.state;
     const Scene        &scene = run.epoch->scene;
     const SolvedStage  &last  = event.solved.last();
+    const CellFields    cells =
+      cell_fields(scene.discretization, last.X, last.W, [&](const CellIndex c) { return last.stage.law(c); });
     if (is_first_)
     {
       const ContactFields contact = contact_fields(last.stage, last.W, last.active);
@@ -218,9 +175,9 @@ namespace retroforge
             {scene.mesh,
              scene.discretization.middles(),
              run.workpiece.X,
-             last.X,
              run.solution->V,
              run.solution->P,
+             cells,
              run.workpiece.strain,
              &displacement_,
              &contact});
@@ -237,17 +194,22 @@ namespace retroforge
       write_billet();
       add_step(0., fields_file(0), six_digits(0), X_0_);
     }
-    const auto        &discretization = state.epoch->scene.discretization;
-    const LastSolution at_rest        = {NodalVectors<double>(discretization.condensed_nodes()->n()),
-                                         std::vector<double>(discretization.n_vertices(), 0.)};
-    const LastSolution solution       = state.solution.value_or(at_rest);
+    const TetMesh              &mesh = state.epoch->scene.mesh;
+    const NodalVectors<double> &X    = state.workpiece.X;
+    const Discretization<3>     discretization(mesh, model_.discretization, MPI_COMM_SELF);
+    const LastSolution          at_rest  = {NodalVectors<double>(discretization.condensed_nodes()->n()),
+                                            std::vector<double>(discretization.n_vertices(), 0.)};
+    const LastSolution          solution = state.solution.value_or(at_rest);
+    const auto law = [&](const CellIndex c) { return process_.material.at({state.workpiece.strain[c]}); };
+    const CellFields cells =
+      cell_fields(discretization, X, with_bubbles(discretization, X, solution, law), law);
     write("failed.vtu",
-          {state.epoch->scene.mesh,
+          {mesh,
            discretization.middles(),
-           state.workpiece.X,
-           state.workpiece.X,
+           X,
            solution.V,
            solution.P,
+           cells,
            state.workpiece.strain,
            displacement,
            nullptr});

@@ -14,5 +14,8 @@ namespace retroforge
     DiscretizationChoice choice;
 
     void add_parameters(dealii::ParameterHandler &prm);
+
+    /// @throws Error  if what is chosen does not go together
+    void check() const { check_choice<3>(choice); }
   };
 } // namespace retroforge
