@@ -18,7 +18,7 @@
 
 using namespace retroforge;
 
-const std::string list = "list.pvd", link_to_it = "link.pvd";
+const std::string list_file = "list.pvd", link_to_it = "link.pvd";
 
 void add_billet(PictureSeries &series)
 {
@@ -32,37 +32,37 @@ void add_first(PictureSeries &series)
 
 void by_hand()
 {
-  PictureSeries series(list);
-  std::cout << "nothing is written before: " << !std::filesystem::exists(list) << series.empty() << std::endl;
+  PictureSeries series(list_file);
+  std::cout << "nothing is written before: " << !std::filesystem::exists(list_file) << series.empty() << std::endl;
   add_billet(series);
-  std::filesystem::create_hard_link(list, link_to_it);
-  std::cout << read_file(list);
+  std::filesystem::create_hard_link(list_file, link_to_it);
+  std::cout << read_file(list_file);
   add_first(series);
-  std::cout << read_file(list) << "in its place: " << (read_file(link_to_it) == read_file(list)) << std::endl;
+  std::cout << read_file(list_file) << "in its place: " << (read_file(link_to_it) == read_file(list_file)) << std::endl;
   series.add(0.5, {"fields_000002.vtu", "die_lower.vtu"});
   series.add(0.5, {"failed.vtu"});
-  std::cout << read_file(list);
+  std::cout << read_file(list_file);
 }
 
 void changed_by_others()
 {
-  PictureSeries series(list);
+  PictureSeries series(list_file);
   add_billet(series);
-  std::ofstream(list, std::ios::app) << "<!-- mine -->";
+  std::ofstream(list_file, std::ios::app) << "<!-- mine -->";
   add_first(series);
-  const std::string both = read_file(list);
-  std::filesystem::remove(list);
+  const std::string both = read_file(list_file);
+  std::filesystem::remove(list_file);
   series.add(0.5, {"last.vtu"});
   std::cout << "changed: " << (both.find("mine") == std::string::npos)
-            << ", removed: " << (read_file(list).size() > both.size()) << std::endl;
+            << ", removed: " << (read_file(list_file).size() > both.size()) << std::endl;
 }
 
 /// No file may grow beyond 1000 bytes.
 void full_disk()
 {
-  PictureSeries series(list);
+  PictureSeries series(list_file);
   add_billet(series);
-  const std::string before = read_file(list);
+  const std::string before = read_file(list_file);
   std::string       message;
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit limit;
@@ -78,12 +78,12 @@ void full_disk()
     message = error.what();
   }
   setrlimit(RLIMIT_FSIZE, &limit);
-  std::cout << message << "\nthe old list: " << (read_file(list) == before) << std::endl;
+  std::cout << message << "\nthe old list_file: " << (read_file(list_file) == before) << std::endl;
 }
 
 int main()
 {
-  std::filesystem::remove(list);
+  std::filesystem::remove(list_file);
   std::filesystem::remove(link_to_it);
   by_hand();
   changed_by_others();
