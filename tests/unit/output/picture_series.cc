@@ -78,7 +78,7 @@ void full_disk()
     message = error.what();
   }
   setrlimit(RLIMIT_FSIZE, &limit);
-  std::cout << message << "\nthe old list_file: " << (read_file(list_file) == before) << std::endl;
+  std::cout << message << "\nthe old list: " << (read_file(list_file) == before) << std::endl;
 }
 
 int main()
