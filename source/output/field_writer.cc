@@ -140,7 +140,7 @@ namespace retroforge
     const NodalVectors<double> still(billet_.n_nodes()), at_rest(discretization.condensed_nodes()->n());
     const ContactFields        contact{zero, zero, still};
     const CellFields cells = cell_fields(discretization, X_0_, Field<double>(discretization), [&](CellIndex) {
-      return process_.material.at({0.});
+      return process_.material.at({});
     });
     write(fields_file(0),
           {billet_, discretization.middles(), X_0_, at_rest, zero, cells, strain, &still, &contact});
@@ -204,8 +204,9 @@ namespace retroforge
     const LastSolution          at_rest  = {NodalVectors<double>(discretization.condensed_nodes()->n()),
                                             std::vector<double>(discretization.n_vertices(), 0.)};
     const LastSolution          solution = state.solution.value_or(at_rest);
-    const auto law = [&](const CellIndex c) { return process_.material.at({state.workpiece.strain[c]}); };
-    const CellFields cells =
+    const auto                  points   = point_states(mesh, state.workpiece);
+    const auto                  law      = [&](const CellIndex c) { return process_.material.at(points[c]); };
+    const CellFields            cells =
       cell_fields(discretization, X, with_bubbles(discretization, X, solution, law), law);
     write("failed.vtu",
           {mesh,

@@ -105,12 +105,15 @@ namespace retroforge
     Field<double> W(scene.discretization);
     W.V.take(state.solution->V);
     W.P.take(state.solution->P);
-    return optimal_sizes(
-      scene.mesh,
-      state.workpiece.X,
-      indicated_errors(scene.discretization, state.workpiece.X, W, process.material, state.workpiece.strain),
-      velocity_degree(scene.discretization),
-      remesher_.error_size_bounds());
+    return optimal_sizes(scene.mesh,
+                         state.workpiece.X,
+                         indicated_errors(scene.discretization,
+                                          state.workpiece.X,
+                                          W,
+                                          process.material,
+                                          point_states(scene.mesh, state.workpiece)),
+                         velocity_degree(scene.discretization),
+                         remesher_.error_size_bounds());
   }
 
   void Forging::remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const
@@ -134,7 +137,7 @@ namespace retroforge
                                  const Observer        &observer) const
   {
     const NodalVectors<double> X_before = state.workpiece.X;
-    if (process.material.depends_on_state())
+    if (Increment::reads_history(process))
       state.starts.push_back(without_positions(state.workpiece));
     {
       const auto timing = timings_.scope("checks");
