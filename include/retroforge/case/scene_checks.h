@@ -26,8 +26,8 @@ namespace retroforge
                                            const NodalVectors<double> &X);
 
   /// Checks whether a forging can come of billet and dies as they stand, before the first increment: sizes
-  /// that fit each other, a billet outside of all dies of the first operation, a die that comes against it, a stroke that ends
-  /// before planes meet, and no rigid motion left free.
+  /// that fit each other, a billet outside of all dies of the first operation, a die that comes against it, a
+  /// stroke that ends before planes meet, and no rigid motion left free.
   /// @param X  positions of the billet's nodes
   /// @return a sentence on each thing that is doubtful     @throws Error
   std::vector<std::string> check_scene(const Parameters           &parameters,

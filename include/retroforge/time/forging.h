@@ -16,9 +16,9 @@ namespace retroforge
     double                      time;
   };
 
-  /// The time loop through the operations of a process: increments of equal stroke, halved while an element would invert or a node would cross
-  /// too much of an edge, on meshes that are remade when they must. In a replay what was recorded is obeyed
-  /// instead.
+  /// The time loop through the operations of a process: increments of equal stroke, halved while an element
+  /// would invert or a node would cross too much of an edge, on meshes that are remade when they must. In a
+  /// replay what was recorded is obeyed instead.
   class Forging
   {
   public:
