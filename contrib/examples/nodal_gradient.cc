@@ -21,11 +21,11 @@ int main(int argc, char *argv[])
     Timings    timings;
     const Case made(
       CommandLine::parse(argc, argv), timings, MPI_COMM_WORLD); // mesh, dies, process, objectives
-    ForwardRun trial(made, made.process, made.X_0, ForwardRun::Keep::increments);
-    trial.check();
-    trial.forge([](const IncrementEvent &event) { std::cerr << "stroke " << event.state.stroke << " mm\n"; });
-    const std::vector<double> values = made.combine(trial.values());
-    const AdjointSweep        sweep  = trial.sweep(made.combinations); // one backward pass for all of them
+    ForwardRun run(made, made.process, made.X_0, ForwardRun::Keep::increments, timings);
+    run.check();
+    run.forge([](const IncrementEvent &event) { std::cerr << "stroke " << event.state.stroke << " mm\n"; });
+    const std::vector<double> values = made.combine(run.values());
+    const AdjointSweep        sweep  = run.sweep(made.combinations); // one backward pass for all of them
 
     std::cout.precision(17);
     for (std::size_t j = 0; j < values.size(); ++j)

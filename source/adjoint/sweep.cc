@@ -9,31 +9,21 @@ namespace retroforge
 {
   namespace
   {
-    bool is_first(MPI_Comm comm)
-    {
-      return dealii::Utilities::MPI::this_mpi_process(comm) == 0;
-    }
-
     void add(const double weight, const NodalVectors<double> &from, NodalVectors<double> &to)
     {
       for (std::size_t k = 0; k < to.size(); ++k)
         to[k] += weight * from[k];
     }
 
-    /// Derivatives of an objective of the end, complete but for the process.
-    FinalBar
-    reverse_at_end(const RecordedForging &run, const ForgingState &end, const FinalObjective &objective)
+    /// Derivatives of objective o, one of the end.
+    FinalBar reverse_at_end(const RecordedForging &run, const ForgingState &end, const std::size_t o)
     {
-      const MPI_Comm comm = run.model.comm;
-      const auto     dies = run.process.at_stroke(end.stroke).dies;
-      const auto view = final_view(objective, end.leg->scene, end.workpiece.X, end.workpiece.strain, dies);
-      const auto integrals = sum_over_ranks(objective.integrals(view), comm);
-      const auto d         = objective.target_die();
-      FinalBar   bar(end.leg->scene, d == invalid_index ? 0 : run.model.dies[d].surface()->vertices().size());
-      objective.reverse_integrals(view, objective.reverse_value(integrals), bar);
-      MPI_Allreduce(MPI_IN_PLACE, bar.X.data()->begin_raw(), 3 * bar.X.size(), MPI_DOUBLE, MPI_SUM, comm);
-      bar.q = sum_over_ranks(std::move(bar.q), comm);
-      return bar;
+      const FinalObjective &objective = *run.objectives[o].at_end;
+      const FinalDecisions &decisions = run.traced.decisions[o];
+      const auto            dies      = run.process.at_stroke(end.stroke, end.operation).dies;
+      const auto view = final_view(objective, end.epoch->scene, end.workpiece.X, end.workpiece.strain, dies);
+      const auto integrals = objective.integrals(view, decisions).complete();
+      return objective.derivatives(view, decisions, objective.reverse_value(integrals, decisions)).complete();
     }
 
     /// The costates of the workpiece at the end of the run.
@@ -43,12 +33,12 @@ namespace retroforge
     {
       std::vector<Costate> costates(combinations.size(),
                                     {zero_costate<3>(end.workpiece.X.size(), end.workpiece.strain.size()),
-                                     {no_process_derivatives(run.model.dies), run.model.comm}});
+                                     {no_process_derivatives(run.process, run.model.dies), run.model.comm}});
       for (std::size_t o = 0; o < run.objectives.size(); ++o)
       {
         if (!run.objectives[o].at_end)
           continue;
-        const FinalBar bar = reverse_at_end(run, end, *run.objectives[o].at_end);
+        const FinalBar bar = reverse_at_end(run, end, o);
         for (std::size_t j = 0; j < costates.size(); ++j)
         {
           const double weight = combinations[j].weights[o];
@@ -65,7 +55,9 @@ namespace retroforge
             physics_bar.dies[d].displacement = weight * bar.dies[d].displacement;
             add(weight, bar.dies[d].vertices, physics_bar.dies[d].vertices);
           }
-          reverse_at_stroke(run.process, {end.stroke, 0.}, 0., physics_bar, costates[j].process.part());
+          costates[j].process.add_once([&](Process<double> &part) {
+            reverse_over(run.process, {end.stroke, 0., end.operation}, 0., physics_bar, part);
+          });
         }
       }
       return costates;
@@ -73,13 +65,12 @@ namespace retroforge
 
     /// What objectives of the path give to increment i.
     AdjointSource source_of(const RecordedForging               &run,
-                            const std::vector<PathRows<double>> &rows,
                             const std::vector<PathRows<double>> &rows_bar,
                             const std::vector<Combination>      &combinations,
                             const unsigned int                   i)
     {
-      return [&run, &rows, &rows_bar, &combinations, i](
-               const std::size_t j, const StageView<double> &view, StageBar &bar) {
+      return [&run, &rows_bar, &combinations, i](
+               const std::size_t j, const EquilibriumView<double> &view, EquilibriumBar &bar) {
         for (std::size_t o = 0; o < run.objectives.size(); ++o)
         {
           const double weight = combinations[j].weights[o] * view.weight;
@@ -89,20 +80,39 @@ namespace retroforge
           for (double &w : weights)
             w *= weight;
           run.objectives[o].path->reverse_integrals(view, weights, bar);
-          if (is_first(run.model.comm))
-            bar.physics.dt += weight * dt_bar(rows[o][i], rows_bar[o][i]);
         }
       };
     }
+
+    /// What they take from the times of the increment, which all ranks know.
+    void reverse_times(const RecordedForging               &run,
+                       const std::vector<PathRows<double>> &rows_bar,
+                       const Combination                   &combination,
+                       const unsigned int                   i,
+                       const IncrementRecord               &record,
+                       Costate                             &costate)
+    {
+      PhysicsBar bar(run.model.dies);
+      for (std::size_t o = 0; o < run.objectives.size(); ++o)
+        if (run.objectives[o].path)
+        {
+          bar.dt += combination.weights[o] * rows_bar[o][i].dt;
+          bar.time += combination.weights[o] * rows_bar[o][i].time;
+        }
+      if (bar.dt != 0. || bar.time != 0.)
+        costate.process.add_once(
+          [&](Process<double> &part) { reverse_over(run.process, place(record), 0., bar, part); });
+    }
   } // namespace
 
-  AdjointSweep adjoint_sweep(const RecordedForging               &run,
-                             const std::vector<PathRows<double>> &rows,
-                             const ForgingState                  &end,
-                             const std::vector<Combination>      &combinations)
+  AdjointSweep adjoint_sweep(const RecordedForging          &run,
+                             const ForgingState             &end,
+                             const std::vector<Combination> &combinations)
   {
+    const std::vector<PathRows<double>> &rows = run.traced.rows;
     AssertDimension(end.increments, run.n);
     AssertDimension(rows.size(), run.objectives.size());
+    AssertDimension(run.traced.decisions.size(), run.objectives.size());
     Assert(std::all_of(combinations.begin(),
                        combinations.end(),
                        [&](const Combination &of) { return of.weights.size() == run.objectives.size(); }),
@@ -114,35 +124,38 @@ namespace retroforge
         AssertDimension(rows[o].size(), end.increments);
         rows_bar[o] = run.objectives[o].path->reverse_value(rows[o]);
       }
-    std::vector<Costate>      costates = start_costates(run, end, combinations);
-    WorkpieceState<3, double> state    = end.workpiece; // at the end, then at the start of each increment
-    std::vector<unsigned int> remeshed = end.remeshed;
-    std::shared_ptr<Leg>      leg      = end.leg;
-    AdjointSweep              sweep;
-    leg->increment.mechanics.forget();
+    std::vector<Costate>       costates = start_costates(run, end, combinations);
+    WorkpieceState<3, double>  state    = end.workpiece; // at the end, then at the start of each increment
+    std::vector<unsigned int>  remeshed = end.remeshed;
+    std::shared_ptr<MeshEpoch> epoch    = end.epoch;
+    AdjointSweep               sweep;
+    epoch->increment.mechanics.forget();
     for (unsigned int i = end.increments; i-- > 0;)
     {
-      const IncrementRecord     &record = run.source(i);
-      const unsigned int         before = leg->system.n_solves;
-      const NodalVectors<double> X      = leg->increment.mechanics.retreat(run.process, state.X, record);
+      const IncrementRecord     &record = run.record(i);
+      const unsigned int         before = epoch->system.n_solves;
+      const NodalVectors<double> X      = epoch->increment.mechanics.retreat(run.process, state.X, record);
       if (!end.starts.empty())
         state = end.starts[i];
       state.X = X;
-      leg->increment.reverse(
-        run.process, state, record, source_of(run, rows, rows_bar, combinations, i), costates);
-      sweep.linear_solves += leg->system.n_solves - before;
+      epoch->increment.reverse(
+        run.process, state, record, source_of(run, rows_bar, combinations, i), costates);
+      for (std::size_t j = 0; j < costates.size(); ++j)
+        reverse_times(run, rows_bar, combinations[j], i, record, costates[j]);
+      sweep.linear_solves += epoch->system.n_solves - before;
       if (record.remesh)
       {
         const auto remesh = record.remesh;
         remeshed.pop_back();
-        leg = remeshed.empty()
-                ? run.first
-                : std::make_shared<Leg>(run.source(remeshed.back()).remesh->mesh, run.model, run.timings);
-        leg->increment.mechanics.forget();
+        epoch =
+          remeshed.empty()
+            ? run.first
+            : std::make_shared<MeshEpoch>(run.record(remeshed.back()).remesh->mesh, run.model, run.timings);
+        epoch->increment.mechanics.forget();
         state   = end.left_behind[remeshed.size()];
         state.X = remesh->X_before;
         for (Costate &costate : costates)
-          costate.workpiece = reverse_change_mesh(leg->scene.mesh, *remesh, state, costate.workpiece);
+          costate.workpiece = reverse_change_mesh(epoch->scene.mesh, *remesh, state, costate.workpiece);
       }
     }
     for (Costate &costate : costates)
@@ -155,32 +168,32 @@ namespace retroforge
   {
     AssertDimension(X.size(), run.first->scene.mesh.n_nodes());
     AssertDimension(process.dies.size(), run.model.dies.size());
-    std::shared_ptr<Leg>        leg = run.first;
+    std::shared_ptr<MeshEpoch>  epoch = run.first;
     std::vector<PathRows<Dual>> rows(run.objectives.size());
-    auto                        state = initial_state<3>(std::move(X), leg->scene.mesh.n_cells());
-    double                      end   = 0.;
+    auto                        state = initial_state<3>(std::move(X), epoch->scene.mesh.n_cells());
+    StrokeStep                  end{0., 0.};
     for (unsigned int i = 0; i < run.n; ++i)
     {
-      const IncrementRecord &record = run.source(i);
+      const IncrementRecord &record = run.record(i);
       if (record.remesh)
       {
-        state = change_mesh(leg->scene.mesh, *record.remesh, state);
-        leg   = std::make_shared<Leg>(record.remesh->mesh, run.model, run.timings);
+        state = change_mesh(epoch->scene.mesh, *record.remesh, state);
+        epoch = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model, run.timings);
       }
-      end = record.stroke + record.step;
+      end = place(record);
       for (auto &of_objective : rows)
         of_objective.push_back(row_of(record, process));
-      leg->increment.tangent(
+      epoch->increment.tangent(
         process,
         record,
-        [&](const StageView<Dual> &view, const Dual &) {
+        [&](const EquilibriumView<Dual> &view, const Dual &) {
           for (std::size_t o = 0; o < run.objectives.size(); ++o)
             if (run.objectives[o].path)
               add_integrals(*run.objectives[o].path, view, rows[o].back());
         },
         state);
     }
-    const auto        dies = process.at_stroke(end).dies;
+    const auto        dies = process.at_stroke(end.stroke + end.step, end.operation).dies;
     std::vector<Dual> values;
     for (std::size_t o = 0; o < run.objectives.size(); ++o)
       if (run.objectives[o].path)
@@ -188,8 +201,9 @@ namespace retroforge
       else
       {
         const FinalObjective &objective = *run.objectives[o].at_end;
-        const auto            view      = final_view(objective, leg->scene, state.X, state.strain, dies);
-        values.push_back(objective.value(sum_over_ranks(objective.integrals(view), run.model.comm)));
+        const auto            view      = final_view(objective, epoch->scene, state.X, state.strain, dies);
+        const FinalDecisions &decisions = run.traced.decisions[o];
+        values.push_back(objective.value(objective.integrals(view, decisions).complete(), decisions));
       }
     return values;
   }

@@ -63,7 +63,7 @@ namespace retroforge
       , stroke_(stroke)
       , billet_map_(billet, first)
       , nominal_X_(billet_map_.nominal_positions())
-      , width_(billet.shape == "file" ? extent_in_x(nominal_X_) : billet.whole_width())
+      , width_(billet.is_from_file() ? extent_in_x(nominal_X_) : billet.whole_width())
   {
     for (const DieParameters &die : dies_)
     {
@@ -280,8 +280,8 @@ namespace retroforge
         for (unsigned int i = 0; i < 3; ++i)
           process.dies[d].displacement[i] += facing[i] * shift;
         // Along its facing it goes stroke v·facing/|v|, and now -shift more.
-        if (d == process_.leading_die)
-          process.stretch -= shift / (stroke_ * (dies_[d].velocity * facing) / dies_[d].velocity.norm());
+        if (auto &operation = process.operations.front(); d == operation.leading_die)
+          operation.path_scale -= shift / (stroke_ * (dies_[d].velocity * facing) / dies_[d].velocity.norm());
       }
   }
 

@@ -124,17 +124,16 @@ namespace retroforge
       , triangulation_(distributed_triangulation(mesh, choice.triangulation, comm))
       , velocity_dofs_(*triangulation_)
       , pressure_dofs_(*triangulation_)
-      , geometry_dofs_(*triangulation_)
   {
-    const auto          element = velocity_element<dim>(choice.pair);
-    const FESystem<dim> geometry(FE_SimplexP<dim>(choice.geometry_degree), dim);
+    const auto             element = velocity_element<dim>(choice.pair);
+    const FE_SimplexP<dim> geometry(choice.geometry_degree); // of each component
     if (element->dofs_per_line > 0 || geometry.dofs_per_line > 0)
       number_edges(mesh);
     if (choice.assembly == Assembly::quadrature)
       quadrature_ = std::make_unique<const ReferenceElement<dim>>(reference_element<dim>(choice));
     places_per_cell_    = element->dofs_per_cell / dim;
     nodes_per_cell_     = places_per_cell_ - (has_bubbles() ? 1 : 0);
-    positions_per_cell_ = geometry.dofs_per_cell / dim;
+    positions_per_cell_ = geometry.dofs_per_cell;
 
     std::vector<CellIndex> own_cells;
     for (const auto &cell : triangulation_->active_cell_iterators())
@@ -143,10 +142,13 @@ namespace retroforge
     std::sort(own_cells.begin(), own_cells.end());
     cells_ = ReplicatedEntries(own_cells, mesh.n_cells(), comm);
 
-    const FE_SimplexP<dim>       linear(1);
     const std::vector<NodeIndex> velocities = distribute(mesh, *element, velocity_dofs_),
-                                 pressures  = distribute(mesh, linear, pressure_dofs_);
-    distribute(mesh, geometry, geometry_dofs_);
+                                 pressures  = distribute(mesh, FE_SimplexP<dim>(1), pressure_dofs_);
+    if (choice.geometry_degree > 1)
+    {
+      quadratic_geometry_dofs_ = std::make_unique<DoFHandler<dim>>(*triangulation_);
+      distribute(mesh, geometry, *quadratic_geometry_dofs_);
+    }
     visit_cells(mesh, velocities);
 
     std::vector<NodeIndex> read            = nodes_read(mesh);
@@ -265,11 +267,14 @@ namespace retroforge
       const auto nodes = nodes_of(mesh, element, cell);
       to.insert(to.end(), nodes.begin(), nodes.end());
     };
+    visited_.reserve(visited.size());
+    nodes_of_visited_.reserve(places_per_cell_ * visited.size());
+    geometry_nodes_.reserve(positions_per_cell_ * visited.size());
     for (const auto &[c, cell] : visited)
     {
       visited_.push_back(c);
       append(velocity_dofs_.get_fe(), cell, nodes_of_visited_);
-      append(geometry_dofs_.get_fe(), cell, geometry_nodes_);
+      append(geometry_dofs().get_fe(), cell, geometry_nodes_);
     }
     if (visited_.size() == mesh.n_cells())
       return;
@@ -297,9 +302,11 @@ namespace retroforge
   template <int dim>
   void Discretization<dim>::make_tables(const SimplexMesh<dim> &mesh)
   {
+    velocity_places_.reserve(nodes_of_visited_.size());
     for (const NodeIndex k : nodes_of_visited_)
       velocity_places_.push_back(velocity_nodes_->place(k));
-    nodes_of_visited_ = {};
+    nodes_of_visited_ = std::vector<NodeIndex>(); // gives its memory back
+    pressure_places_.reserve((dim + 1) * visited_.size());
     for (const CellIndex c : visited_)
       for (const NodeIndex k : mesh.cells[c])
         pressure_places_.push_back(pressure_nodes_->place(k));

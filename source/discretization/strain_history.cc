@@ -19,7 +19,7 @@ namespace retroforge
            dealii::ExcDimensionMismatch(q_n.size(), discretization.cells().range().n));
     Assert(W.belongs_to(discretization), dealii::ExcMessage("the velocities are of another discretisation"));
     std::vector<Number> q = q_n;
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
         q[c] += dt * cell_strain_rate(cell_geometry(pair.positions(discretization, X, c)),
                                       pair.on_cell(discretization, W, c));
@@ -44,7 +44,7 @@ namespace retroforge
     Assert(W.belongs_to(discretization) && W_bar.belongs_to(discretization),
            dealii::ExcMessage("the velocities are of another discretisation"));
     double dt_bar = 0.;
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
       {
         if (q_bar[c] == 0.)

@@ -16,7 +16,7 @@ namespace retroforge
     const unsigned int       n     = cells.range().n;
     CellFields               fields{std::vector<double>(n), std::vector<double>(n), {}};
     fields.stress.resize(n);
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : cells.owned())
       {
         const auto geometry   = cell_geometry(pair.positions(discretization, X, c));

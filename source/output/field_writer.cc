@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/base/data_out_base.h>
-
 #include <retroforge/mesh/whole_part.h>
 #include <retroforge/output/cell_fields.h>
 #include <retroforge/output/contact_fields.h>
 #include <retroforge/output/die_pictures.h>
 #include <retroforge/output/field_file.h>
 #include <retroforge/output/field_writer.h>
-#include <retroforge/output/safe_file.h>
 
 #include <cstdio>
-#include <sstream>
 
 namespace retroforge
 {
@@ -41,7 +37,7 @@ namespace retroforge
       W.V.take(solution.V);
       W.P.take(solution.P);
       if (discretization.has_bubbles())
-        with_pair(discretization, [&](const auto pair) {
+        dispatch_element(discretization, [&](const auto pair) {
           if constexpr (!std::is_same_v<std::decay_t<decltype(pair)>, TaylorHoodPair>)
             for (const CellIndex c : discretization.visited_cells())
               W.V.at_place(discretization.velocity_places(c)[discretization.n_nodes_per_cell()]) =
@@ -78,6 +74,7 @@ namespace retroforge
       , billet_(billet)
       , X_0_(X_0)
       , displacement_(X_0.size())
+      , series_(directory + "/fields.pvd")
   {
   }
 
@@ -125,17 +122,12 @@ namespace retroforge
                              const std::string          &suffix,
                              const NodalVectors<double> &X)
   {
-    const double time = process_.time(stroke);
-    while (!series_.empty() && series_.back().first == time)
-      series_.pop_back();
-    series_.emplace_back(time, file);
     if (!is_first_)
       return;
+    std::vector<std::string> pictures = {file};
     for (unsigned int d = 0; d < model_.dies.size(); ++d)
-      series_.emplace_back(time, write_die(d, stroke, suffix, X));
-    std::ostringstream out;
-    dealii::DataOutBase::write_pvd_record(out, series_);
-    write_file(directory_ + "/fields.pvd", out.str());
+      pictures.push_back(write_die(d, stroke, suffix, X));
+    series_.add(process_.time(stroke), pictures);
   }
 
   void FieldWriter::write_billet() const
@@ -170,7 +162,7 @@ namespace retroforge
   void FieldWriter::add(const IncrementEvent &event)
   {
     const ForgingState &run   = event.state;
-    const Scene        &scene = run.leg->scene;
+    const Scene        &scene = run.epoch->scene;
     const SolvedStage  &last  = event.solved.last();
     const CellFields    cells =
       cell_fields(scene.discretization, last.X, last.W, [&](const CellIndex c) { return last.stage.law(c); });
@@ -200,7 +192,7 @@ namespace retroforge
       write_billet();
       add_step(0., fields_file(0), six_digits(0), X_0_);
     }
-    const TetMesh              &mesh = state.leg->scene.mesh;
+    const TetMesh              &mesh = state.epoch->scene.mesh;
     const NodalVectors<double> &X    = state.workpiece.X;
     const Discretization<3>     discretization(mesh, model_.discretization, MPI_COMM_SELF);
     const LastSolution          at_rest  = {NodalVectors<double>(discretization.condensed_nodes()->n()),

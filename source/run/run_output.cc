@@ -87,14 +87,13 @@ namespace retroforge
   {
     const auto              timing      = timings_.scope("objectives");
     const Objectives       &objectives  = case_.objectives;
-    const auto              values      = trace_.values(state, true, false);
-    const auto              diagnostics = trace_.diagnostics(state);
+    const auto              evaluations = trace_.evaluate_so_far(state);
     std::vector<NamedValue> columns;
     for (std::size_t j = 0; j < objectives.size(); ++j)
     {
       const std::string unit = " [" + objectives[j].unit() + "]";
-      columns.emplace_back(objectives[j].name + unit, values[j]);
-      for (const auto *numbers : {&diagnostics[j].parts, &diagnostics[j].details})
+      columns.emplace_back(objectives[j].name + unit, evaluations[j].value);
+      for (const auto *numbers : {&evaluations[j].parts, &evaluations[j].details})
         for (const auto &[name, value] : *numbers)
           columns.emplace_back(objectives[j].name + ": " + name + unit, value);
     }
@@ -117,11 +116,11 @@ namespace retroforge
   HistoryRow RunOutput::row_of(const IncrementEvent &event)
   {
     const ForgingState      &state  = event.state;
-    const Scene             &scene  = state.leg->scene;
+    const Scene             &scene  = state.epoch->scene;
     const ReplicatedEntries &cells  = scene.discretization.cells();
     const std::vector<Die>  &dies   = case_.model.dies;
     const double             size   = volume(scene.mesh, state.workpiece.X, cells);
-    const auto               states = case_.process.at_stroke(state.stroke).dies;
+    const auto               states = case_.process.at_stroke(state.stroke, state.operation).dies;
     const Penetration        deepest =
       deepest_point(scene.mesh, scene.topology, dies, states, state.workpiece.X, case_.comm);
     if (!(deepest.depth <= deepest_.depth))
@@ -130,7 +129,7 @@ namespace retroforge
                   state.stroke,
                   {{deepest.place[0], deepest.place[1], deepest.place[2]}},
                   deepest.die == invalid_index ? "" : dies[deepest.die].name};
-    const unsigned int leading  = case_.nominal.leading_die;
+    const unsigned int leading  = case_.nominal.operations[state.operation].leading_die;
     const Vec3        &velocity = case_.nominal.dies[leading].velocity;
     const double       force    = event.record.forces[leading] * velocity / velocity.norm();
     const double       energy   = state.energy.total();
@@ -151,7 +150,7 @@ namespace retroforge
 
   void RunOutput::print(const IncrementEvent &event, const HistoryRow &row)
   {
-    const TetMesh &mesh = event.state.leg->scene.mesh;
+    const TetMesh &mesh = event.state.epoch->scene.mesh;
     if (event.record.remesh)
       std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());
     if (!std::isnan(seconds_)) // solved, not restored

@@ -6,7 +6,7 @@
 namespace retroforge
 {
   template <typename Number>
-  void add_history(const StageView<Number> &view, const Number &dt, WorkpieceState<3, Number> &state)
+  void add_history(const EquilibriumView<Number> &view, const Number &dt, WorkpieceState<3, Number> &state)
   {
     state.strain = accumulate_strain<Number>(
       view.stage.scene.discretization, view.stage.X, view.W, Number(view.weight * dt), state.strain);
@@ -18,17 +18,17 @@ namespace retroforge
     complete_entries(discretization.cells(), state.strain.data(), 1);
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                                               \
-  template void add_history(const StageView<Number> &, const Number &, WorkpieceState<3, Number> &); \
+#define RETROFORGE_INSTANTIATE(Number)                                                                     \
+  template void add_history(const EquilibriumView<Number> &, const Number &, WorkpieceState<3, Number> &); \
   template void complete_history(const Discretization<3> &, WorkpieceState<3, Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE
 
-  void reverse_history(const StageView<double>         &view,
+  void reverse_history(const EquilibriumView<double>   &view,
                        const double                     dt,
                        const WorkpieceState<3, double> &costate,
-                       StageBar                        &bar)
+                       EquilibriumBar                  &bar)
   {
     if (is_zero(costate.strain))
       return;

@@ -19,10 +19,11 @@ namespace retroforge
                           WorkpieceState<3, Dual> &state)
   {
     WorkpieceState<3, Dual> next = state;
-    next.X = mechanics.tangent(process, state, record, [&](const StageView<Dual> &view, const Dual &dt) {
-      observer(view, dt);
-      add_history(view, dt, next);
-    });
+    next.X =
+      mechanics.tangent(process, state, record, [&](const EquilibriumView<Dual> &view, const Dual &dt) {
+        observer(view, dt);
+        add_history(view, dt, next);
+      });
     complete_history(scene_.discretization, next);
     state = std::move(next);
   }
@@ -33,12 +34,12 @@ namespace retroforge
                           const AdjointSource             &source,
                           std::vector<Costate>            &costates)
   {
-    const double dt = process.time(record.step);
+    const double dt = process.duration(place(record));
     mechanics.reverse(
       process,
       state,
       record,
-      [&](const std::size_t j, const StageView<double> &view, StageBar &bar) {
+      [&](const std::size_t j, const EquilibriumView<double> &view, EquilibriumBar &bar) {
         source(j, view, bar);
         reverse_history(view, dt, costates[j].workpiece, bar);
       },

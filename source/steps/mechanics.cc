@@ -12,8 +12,8 @@ namespace retroforge
                                          const Process<Number>           &process,
                                          const WorkpieceState<3, Number> &state,
                                          const IncrementRecord           &record)
-      : physics(process.at_stroke(record.stroke))
-      , dt(process.time(record.step))
+      : physics(process.over(place(record)))
+      , dt(process.duration(place(record)))
       , contact(make_contact_set<Number>(scene.view(physics.dies, state.X),
                                          record.pairs,
                                          {record.contact.ramp,
@@ -44,7 +44,7 @@ namespace retroforge
       W.V = bubbles;
     W.V.take(solve.V);
     W.P.take(solve.P);
-    settle_bubbles(stage, W);
+    solve_bubbles(stage, W);
   }
 
   Mechanics::Mechanics(const Scene            &scene,
@@ -56,7 +56,7 @@ namespace retroforge
   {
   }
 
-  bool Mechanics::contacts_missed(const Stage<double> &stage, const Field<double> &W) const
+  bool Mechanics::contacts_missed(const Equilibrium<double> &stage, const Field<double> &W) const
   {
     const auto                     timing = timings_.scope("checks");
     const auto                    &nodes  = *scene_.discretization.condensed_nodes();
@@ -66,7 +66,8 @@ namespace retroforge
         watched[pair.die][pair.point.velocity_node] = true;
     // A point that was not watched must not have run into a die. Each rank looks at its own.
     const auto runs_into = [&](const unsigned int d, const ContactPoint &point) {
-      if (!nodes.owns(point.velocity_node) || watched[d][point.velocity_node])
+      if (!nodes.owns(point.velocity_node) || watched[d][point.velocity_node] ||
+          stage.physics.dies[d].in_press == 0)
         return false;
       const auto  &die = stage.physics.dies[d];
       const Vec3   u = point.velocity(W.V) - die.velocity, x = point.position(stage.X);
@@ -108,7 +109,7 @@ namespace retroforge
                                                    const NodalVectors<double>   &X,
                                                    const bool                    replay,
                                                    const bool                    all_found,
-                                                   const Guess                  &guess,
+                                                   const InitialGuess           &guess,
                                                    IncrementRecord              &record)
   {
     Field<double>            W      = guess.W;
@@ -119,17 +120,17 @@ namespace retroforge
     for (unsigned int s = 0; s < scheme.n_stages() && !lost; ++s)
     {
       const NodalVectors<double> position = advanced(X, start.dt, scheme.a[s], solves);
-      const Stage<double>        stage(scene_, start.physics, start.contact, position, start.strain);
-      const ActiveSet            frozen = replay ? record.solves[s].active : ActiveSet();
-      const Start                known  = s == 0 ? guess.known : Start::near;
+      const Equilibrium<double>  stage(scene_, start.physics, start.contact, position, start.strain);
+      const ActiveChoice         frozen = replay ? ActiveChoice(record.solves[s].active) : ActiveChoice();
+      const Origin               origin = s == 0 ? guess.origin : Origin::previous;
       guess.advance(s == 0 ? guess.ahead : record.step * (scheme.node(s) - scheme.node(s - 1)), W);
       const NewtonStatistics statistics =
-        newton_.solve(stage, W, frozen, known, s == 0 ? ActiveSet() : solves.back().active);
+        newton_.solve(stage, W, frozen, origin, s == 0 ? ActiveChoice() : ActiveChoice(solves.back().active));
       record.newton += statistics.iterations;
       record.krylov += statistics.krylov;
       solves.push_back({W.V.complete(*scene_.discretization.condensed_nodes()),
                         W.P.complete(*scene_.discretization.pressure_nodes()),
-                        replay ? frozen : stage.decide_active(W)});
+                        replay ? *frozen : stage.decide_active(W)});
       if (scene_.discretization.middles())
         solves.back().vertices = motion(stage, W);
       lost = !replay && !all_found && contacts_missed(stage, W);
@@ -159,7 +160,7 @@ namespace retroforge
   SolvedIncrement Mechanics::forward(const Process<double>           &process,
                                      const WorkpieceState<3, double> &state,
                                      const bool                       replay,
-                                     const Guess                     &guess,
+                                     const InitialGuess              &guess,
                                      IncrementRecord                 &record)
   {
     const NodalVectors<double> &X = state.X;
@@ -170,7 +171,7 @@ namespace retroforge
     Assert(record.step > 0., dealii::ExcMessage("an increment has a stroke"));
     Assert(!replay || record.solves.size() == scheme_of(record).n_stages(),
            dealii::ExcMessage("a replay obeys a record of each stage"));
-    const Physics<double> physics = process.at_stroke(record.stroke);
+    const Physics<double> physics = process.over(place(record));
     if (!replay)
     {
       record.scheme  = model_.scheme.name;
@@ -235,7 +236,7 @@ namespace retroforge
     return recorded(start_of(process, state, record), state.X, record);
   }
 
-  Field<double> Mechanics::rate(const IncrementRecord &record) const
+  std::optional<Field<double>> Mechanics::rate(const IncrementRecord &record) const
   {
     const Scheme &scheme = scheme_of(record);
     const double  stroke = record.step * (scheme.node(scheme.n_stages() - 1) - scheme.node(0));
@@ -256,25 +257,27 @@ namespace retroforge
     return rate;
   }
 
-  Guess Mechanics::guess_after(const SolvedIncrement &solved, const IncrementRecord &record) const
+  InitialGuess Mechanics::guess_after(const SolvedIncrement &solved, const IncrementRecord &record) const
   {
     const Scheme &scheme = scheme_of(record);
-    return {
-      solved.last().W, Start::near, rate(record), record.step * (1. - scheme.node(scheme.n_stages() - 1))};
+    return {solved.last().W,
+            Origin::previous,
+            rate(record),
+            record.step * (1. - scheme.node(scheme.n_stages() - 1))};
   }
 
-  Guess Mechanics::recorded_guess(const IncrementRecord &record) const
+  InitialGuess Mechanics::recorded_guess(const IncrementRecord &record) const
   {
     Field<double> W(scene_.discretization);
     W.V.take(record.solves.front().V);
     W.P.take(record.solves.front().P);
-    return {std::move(W), Start::near, rate(record)};
+    return {std::move(W), Origin::previous, rate(record)};
   }
 
   NodalVectors<double> Mechanics::retreat(const Process<double>      &process,
                                           const NodalVectors<double> &X_next,
                                           const IncrementRecord      &record) const
   {
-    return advanced(X_next, -process.time(record.step), scheme_of(record).b, record.solves);
+    return advanced(X_next, -process.duration(place(record)), scheme_of(record).b, record.solves);
   }
 } // namespace retroforge

@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/geometry/vector_algebra.h>
 #include <retroforge/solver/stage_motion.h>
 #include <retroforge/steps/mechanics.h>
 
 namespace retroforge
 {
-  namespace
-  {
-    double dot(const NodalVectors<double> &a, const NodalVectors<double> &b)
-    {
-      double sum = 0.;
-      for (std::size_t k = 0; k < a.size(); ++k)
-        sum += a[k] * b[k];
-      return sum;
-    }
-  } // namespace
-
   void Mechanics::forget()
   {
     system_.reset();
@@ -32,8 +22,8 @@ namespace retroforge
     /// Derivatives of one scalar that an increment collects from its stages.
     struct IncrementBar
     {
-      ContactSetBar       contact;
-      RankSum<PhysicsBar> physics;
+      RankSum<ContactSetBar> contact;
+      RankSum<PhysicsBar>    physics;
       /// In the positions of each stage: of those that follow the one that is reversed.
       std::vector<NodalVectors<double>> Y;
     };
@@ -87,7 +77,7 @@ namespace retroforge
     const auto                    shared = start_of(process, state, record);
     const IncrementStart<double> &start  = *shared;
     std::vector<IncrementBar>     bars(costates.size(),
-                                   {ContactSetBar(record.pairs.size()),
+                                   {{ContactSetBar(record.pairs.size()), comm},
                                         {PhysicsBar(scene_.dies), comm},
                                         std::vector<NodalVectors<double>>(n)});
     earlier_lambdas_.resize(n);
@@ -97,9 +87,9 @@ namespace retroforge
     std::vector<double> largest(costates.size(), 0.);
     for (unsigned int s = n; s-- > 0;)
     {
-      const auto              at   = recorded_stage(start, X, record, s, earlier_bubbles_[s]);
-      const StageView<double> view = at->view();
-      earlier_bubbles_[s]          = at->W.V;
+      const auto                    at   = recorded_stage(start, X, record, s, earlier_bubbles_[s]);
+      const EquilibriumView<double> view = at->view();
+      earlier_bubbles_[s]                = at->W.V;
       system_.assemble(at->stage, at->W, at->active);
       earlier_lambdas_[s].resize(costates.size());
       for (std::size_t j = 0; j < costates.size(); ++j)
@@ -108,7 +98,8 @@ namespace retroforge
         PhysicsBar                   &physics = bar.physics.part();
         RankSum<NodalVectors<double>> position_bar(NodalVectors<double>(X.size()), comm);
         Field<double>                 rhs(scene_.discretization);
-        StageBar   stage_bar{rhs, position_bar.part(), bar.contact, physics, model_.shape_derivatives};
+        EquilibriumBar                stage_bar{
+          rhs, position_bar.part(), bar.contact.part(), physics, model_.shape_derivatives};
         const auto led_to = led_to_by(scheme, s, costates[j].workpiece.X, bar);
         bar.physics.add_once([&](PhysicsBar &part) {
           for (const auto &[weight, there] : led_to)
@@ -123,7 +114,7 @@ namespace retroforge
         for (const auto &[weight, there] : led_to)
           for (std::size_t k = 0; k < X.size(); ++k)
             motion_bar[k] += weight * start.dt * (*there)[k];
-        reverse_motion(at->stage, at->W, motion_bar, stage_bar);
+        reverse_motion(at->stage, at->W, motion_bar, rhs, position_bar, bar.contact);
         Field<double> minus_rhs(scene_.discretization), lambda;
         minus_rhs.add(-1., rhs);
         auto        &guesses = earlier_lambdas_[s][j];
@@ -138,7 +129,7 @@ namespace retroforge
           reverse_contact_set(scene_.view(start.physics.dies, X),
                               start.contact,
                               record.contact.ramp,
-                              bar.contact,
+                              bar.contact.part(),
                               position_bar.part(),
                               physics.dies);
         bar.Y[s] = position_bar.complete();
@@ -158,8 +149,7 @@ namespace retroforge
         for (std::size_t c = 0; c < workpiece.strain.size(); ++c)
           workpiece.strain[c] += strain_bar[c];
       }
-      reverse_at_stroke(
-        process, {record.stroke, record.step}, record.contact.approach, physics, costates[j].process.part());
+      reverse_over(process, place(record), record.contact.approach, physics, costates[j].process.part());
     }
   }
 } // namespace retroforge

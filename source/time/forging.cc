@@ -20,31 +20,31 @@ namespace retroforge
   {
   }
 
-  ForgingState Forging::start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0) const
+  ForgingState Forging::start(std::shared_ptr<MeshEpoch> epoch, const NodalVectors<double> &X_0)
   {
-    Assert(leg != nullptr, dealii::ExcMessage("a run starts on a mesh"));
-    AssertDimension(X_0.size(), leg->scene.mesh.n_nodes());
+    Assert(epoch != nullptr, dealii::ExcMessage("a run starts on a mesh"));
+    AssertDimension(X_0.size(), epoch->scene.mesh.n_nodes());
     ForgingState state;
-    state.workpiece = initial_state<3>(X_0, leg->scene.mesh.n_cells());
-    state.volume    = volume(leg->scene.mesh.cells, X_0);
-    state.next.W    = Field<double>(leg->scene.discretization);
-    state.leg       = std::move(leg);
+    state.workpiece = initial_state<3>(X_0, epoch->scene.mesh.n_cells());
+    state.volume    = volume(epoch->scene.mesh.cells, X_0);
+    state.next.W    = Field<double>(epoch->scene.discretization);
+    state.epoch     = std::move(epoch);
     return state;
   }
 
-  Refusal Forging::attempt(const Process<double> &process,
-                           const ForgingState    &state,
-                           Guess                 &guess,
-                           IncrementRecord       &record,
-                           SolvedIncrement       &solved) const
+  std::optional<StepRejection> Forging::attempt(const Process<double> &process,
+                                                const ForgingState    &state,
+                                                InitialGuess          &guess,
+                                                IncrementRecord       &record,
+                                                SolvedIncrement       &solved) const
   {
     try
     {
-      solved = state.leg->increment.mechanics.forward(process, state.workpiece, false, guess, record);
+      solved = state.epoch->increment.mechanics.forward(process, state.workpiece, false, guess, record);
     }
     catch (const NoEquilibrium &failure)
     {
-      return {failure.what()};
+      return StepRejection{failure.what()};
     }
     catch (const NoLinearSolution &)
     {
@@ -52,44 +52,45 @@ namespace retroforge
     }
     guess.W.V.take(record.solves.front().V);
     guess.W.P.take(record.solves.front().P);
-    guess.known       = Start::near;
+    guess.origin      = Origin::previous;
     guess.ahead       = 0.;
     const auto timing = timings_.scope("checks");
-    return limits_.refusal(process, *state.leg, record, state.workpiece.X, solved.X);
+    return limits_.rejection(process, *state.epoch, record, state.workpiece.X, solved.X);
   }
 
   namespace
   {
     bool crosses(const ForgingState &state)
     {
-      return !self_crossings(state.leg->scene.mesh, state.workpiece.X).empty();
+      return !self_crossings(state.epoch->scene.mesh, state.workpiece.X).empty();
     }
   } // namespace
 
   void Forging::change_mesh(const RemeshRecord &remesh, ForgingState &state) const
   {
-    state.repaired += remesh.repaired;
-    const TransferOperator    &J           = remesh.transfer;
-    const std::shared_ptr<Leg> before      = state.leg; // fields know its nodes
-    const auto                 transferred = [&](const Field<double> &W) {
+    state.removed_volume += remesh.removed_volume;
+    const TransferOperator          &J           = remesh.transfer;
+    const std::shared_ptr<MeshEpoch> before      = state.epoch; // fields know its nodes
+    const auto                       transferred = [&](const Field<double> &W) {
       if (W.empty())
         return W;
       const auto          &old = before->scene.discretization;
       NodalVectors<double> V   = W.V.complete(*old.condensed_nodes());
       V.resize(old.n_vertices());
       return interpolated(
-        state.leg->scene.discretization, J.apply(V), J.apply(W.P.complete(*old.pressure_nodes())));
+        state.epoch->scene.discretization, J.apply(V), J.apply(W.P.complete(*old.pressure_nodes())));
     };
     auto workpiece = retroforge::change_mesh(before->scene.mesh, remesh, state.workpiece);
     state.left_behind.push_back(without_positions(std::exchange(state.workpiece, std::move(workpiece))));
-    state.leg       = std::make_shared<Leg>(remesh.mesh, model_, timings_);
-    state.next.W    = transferred(state.next.W);
-    state.next.rate = transferred(state.next.rate);
+    state.epoch  = std::make_shared<MeshEpoch>(remesh.mesh, model_, timings_);
+    state.next.W = transferred(state.next.W);
+    if (state.next.rate)
+      state.next.rate = transferred(*state.next.rate);
     // Fields on the new mesh are shown, and measured, where an increment fails that began with it.
-    const auto &discretization = state.leg->scene.discretization;
+    const auto &discretization = state.epoch->scene.discretization;
     state.solution             = LastSolution{state.next.W.V.complete(*discretization.condensed_nodes()),
                                   state.next.W.P.complete(*discretization.pressure_nodes())};
-    state.next.known           = Start::far;
+    state.next.origin          = Origin::transferred;
     state.remeshed.push_back(state.increments);
   }
 
@@ -99,7 +100,7 @@ namespace retroforge
     if (!remesher_.follows_errors() || !state.solution || state.increments == 0)
       return {};
     const auto    timing = timings_.scope("error sizes");
-    const Scene  &scene  = state.leg->scene;
+    const Scene  &scene  = state.epoch->scene;
     Field<double> W(scene.discretization);
     W.V.take(state.solution->V);
     W.P.take(state.solution->P);
@@ -114,10 +115,10 @@ namespace retroforge
   void Forging::remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const
   {
     const auto   timing     = timings_.scope("remeshing");
-    const double repairable = remesher_.largest_repair() * state.volume - state.repaired;
-    record.remesh           = remesher_.remesh(state.leg->scene.mesh,
+    const double repairable = remesher_.largest_repair() * state.volume - state.removed_volume;
+    record.remesh           = remesher_.remesh(state.epoch->scene.mesh,
                                      state.workpiece.X,
-                                     process.at_stroke(state.stroke).dies,
+                                     process.at_stroke(state.stroke, state.operation).dies,
                                      error_sizes(process, state),
                                      repairable,
                                      timings_);
@@ -129,17 +130,17 @@ namespace retroforge
                                  const IncrementRecord &record,
                                  const SolvedIncrement &solved,
                                  ForgingState          &state,
-                                 const Watch           &watch) const
+                                 const Observer        &observer) const
   {
     const NodalVectors<double> X_before = state.workpiece.X;
     if (process.material.depends_on_state())
       state.starts.push_back(without_positions(state.workpiece));
     {
       const auto timing = timings_.scope("checks");
-      state.leg->increment.advance(solved, state.workpiece);
+      state.epoch->increment.advance(solved, state.workpiece);
     }
-    state.next                 = state.leg->increment.mechanics.guess_after(solved, record);
-    const auto &discretization = state.leg->scene.discretization;
+    state.next                 = state.epoch->increment.mechanics.guess_after(solved, record);
+    const auto &discretization = state.epoch->scene.discretization;
     state.solution             = LastSolution{solved.last().W.V.complete(*discretization.condensed_nodes()),
                                   solved.last().W.P.complete(*discretization.pressure_nodes())};
     state.slip                 = limits_.slip(process, record, X_before, state.workpiece.X) / record.step;
@@ -158,8 +159,8 @@ namespace retroforge
     while (state.depth > 0 && limits_.allow(state.slip * whole / (1 << (state.depth - 1))) &&
            std::abs(done * (1 << (state.depth - 1)) - std::round(done * (1 << (state.depth - 1)))) < 1e-9)
       --state.depth;
-    if (watch)
-      watch({record, X_before, solved, state, process.time(state.stroke)});
+    if (observer)
+      observer({record, X_before, solved, state, process.time(state.stroke, state.operation)});
   }
 
   void Forging::change_numerics(std::optional<std::string> parameters, ForgingState &state)
@@ -172,14 +173,14 @@ namespace retroforge
 
   bool Forging::is_left(const ForgingState &state) const
   {
-    return state.stroke < press_.stroke - 1e-9 * whole();
+    return state.stroke < press_.stroke - 1e-9 * nominal_step();
   }
 
-  void Forging::run(const Process<double> &process, ForgingState &state, const Watch &watch) const
+  void Forging::run(const Process<double> &process, ForgingState &state, const Observer &observer) const
   {
     std::vector<bool> frozen;
     if (remesher_.enabled())
-      frozen = remesher_.frozen(state.leg->scene.mesh);
+      frozen = remesher_.frozen(state.epoch->scene.mesh);
     const auto since_remeshing = [&]() {
       return state.increments - (state.remeshed.empty() ? 0 : state.remeshed.back());
     };
@@ -193,72 +194,75 @@ namespace retroforge
       IncrementRecord record;
       const auto      renew = [&]() {
         remesh(process, state, record);
-        frozen = remesher_.frozen(state.leg->scene.mesh);
+        frozen = remesher_.frozen(state.epoch->scene.mesh);
       };
       const auto ask_for_other_sizes = [&](const std::optional<OptimalSizes> &errors) {
         return errors && Remesher::worthwhile(*errors, since_remeshing(), state.increments == 1);
       };
       const bool crossed = remesher_.enabled() && crosses(state);
-      if (crossed && state.repaired >= remesher_.largest_repair() * state.volume)
+      if (crossed && state.removed_volume >= remesher_.largest_repair() * state.volume)
         limits_.check_fold(state);
-      if (crossed || (remesher_.enabled() && (remesher_.due(state.leg->scene.mesh,
-                                                            state.workpiece.X,
-                                                            process.at_stroke(state.stroke).dies,
-                                                            frozen,
-                                                            since_remeshing(),
-                                                            state.increments == 0) ||
-                                              ask_for_other_sizes(error_sizes(process, state)))))
+      if (crossed ||
+          (remesher_.enabled() && (remesher_.due(state.epoch->scene.mesh,
+                                                 state.workpiece.X,
+                                                 process.at_stroke(state.stroke, state.operation).dies,
+                                                 frozen,
+                                                 since_remeshing(),
+                                                 state.increments == 0) ||
+                                   ask_for_other_sizes(error_sizes(process, state)))))
         renew();
       if (crossed)
         limits_.check_fold(state);
+      record.operation  = state.operation;
       record.stroke     = state.stroke;
-      record.step       = std::min(whole() / (1 << state.depth), press_.stroke - state.stroke);
+      record.step       = std::min(nominal_step() / (1 << state.depth), press_.stroke - state.stroke);
       record.parameters = std::exchange(state.parameters, std::nullopt);
       SolvedIncrement solved;
-      Guess           guess   = state.next;
+      InitialGuess    guess   = state.next;
       bool            is_full = false;
       for (;;)
       {
-        Refusal refusal = attempt(process, state, guess, record, solved);
-        if (refusal.reason.empty())
+        auto rejection = attempt(process, state, guess, record, solved);
+        if (!rejection)
           break;
-        is_full = refusal.is_full |= is_full;
-        if (refusal.of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0)
+        is_full = rejection->is_full |= is_full;
+        if (rejection->of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0)
         {
           renew();
           guess = state.next;
           continue;
         }
-        record.step = std::ldexp(record.step, -static_cast<int>(refusal.halvings));
-        record.cuts += refusal.halvings;
+        record.step = std::ldexp(record.step, -static_cast<int>(rejection->halvings));
+        record.cuts += rejection->halvings;
         if (limits_.too_short(record.step))
         {
           // A fold that is closing is the true reason.
           limits_.check_fold(state);
-          limits_.stop(process, state, record, refusal);
+          limits_.stop(process, state, record, *rejection);
         }
       }
-      finish_increment(process, record, solved, state, watch);
+      finish_increment(process, record, solved, state, observer);
       limits_.check_progress(state);
       // With remeshing, the next increment begins with a repair.
       const bool last = !is_left(state);
-      if (remesher_.enabled() ? last && !remesher_.repairs(state.leg->scene.mesh,
-                                                           state.workpiece.X,
-                                                           process.at_stroke(state.stroke).dies)
-                              : last || state.increments % fold_interval == 0)
+      if (remesher_.enabled()
+            ? last && !remesher_.repairs(state.epoch->scene.mesh,
+                                         state.workpiece.X,
+                                         process.at_stroke(state.stroke, state.operation).dies)
+            : last || state.increments % fold_interval == 0)
         limits_.check_fold(state);
     }
   }
 
   void Forging::restore(const Process<double> &process,
                         const unsigned int     n,
-                        const Source          &source,
+                        const RecordAccess    &access,
                         ForgingState          &state,
-                        const Watch           &watch) const
+                        const Observer        &observer) const
   {
     for (unsigned int i = 0; i < n; ++i)
     {
-      const IncrementRecord &record = source(i);
+      const IncrementRecord &record = access(i);
       if (record.parameters)
         change_numerics({}, state);
       if (record.remesh)
@@ -268,28 +272,28 @@ namespace retroforge
       }
       finish_increment(process,
                        record,
-                       state.leg->increment.mechanics.recorded(process, state.workpiece, record),
+                       state.epoch->increment.mechanics.recorded(process, state.workpiece, record),
                        state,
-                       watch);
+                       observer);
     }
   }
 
   void Forging::replay(const Process<double> &process,
                        const unsigned int     n,
-                       const Source          &source,
+                       const RecordAccess    &access,
                        ForgingState          &state,
-                       const Watch           &watch) const
+                       const Observer        &observer) const
   {
     for (unsigned int i = 0; i < n; ++i)
     {
-      IncrementRecord record = source(i);
+      IncrementRecord record = access(i);
       record.newton = record.krylov = record.linear_solves = 0;
       if (record.remesh)
         change_mesh(*record.remesh, state);
-      const Guess           guess = state.leg->increment.mechanics.recorded_guess(record);
+      const InitialGuess    guess = state.epoch->increment.mechanics.recorded_guess(record);
       const SolvedIncrement solved =
-        state.leg->increment.mechanics.forward(process, state.workpiece, true, guess, record);
-      finish_increment(process, record, solved, state, watch);
+        state.epoch->increment.mechanics.forward(process, state.workpiece, true, guess, record);
+      finish_increment(process, record, solved, state, observer);
     }
   }
 } // namespace retroforge

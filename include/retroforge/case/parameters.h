@@ -23,14 +23,14 @@
 
 namespace retroforge
 {
-  /// What parameters that are left open follow from.
+  /// Size of the billet, from which parameters left open follow.
   struct BilletSize
   {
     double side;   ///< cube root of the mesh's volume [mm]
-    double height; ///< of the whole billet; of one from a file, along the way of the leading die [mm]
+    double height; ///< height of the whole billet; for one from a file, along the way of the leading die [mm]
   };
 
-  /// All that a parameter file says.
+  /// All settings of a parameter file.
   struct Parameters
   {
     BilletParameters           billet;
@@ -107,7 +107,7 @@ namespace retroforge
     /// @param file  of the case, beside which other files are looked for
     static Parameters of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo);
 
-    double edge_stiffness_ = 1.; ///< of edges' penalty over the nodes', once defaults are resolved
+    double edge_stiffness_ = 1.; ///< penalty of edges over that of nodes, once defaults are resolved
 
     /// By which the dies close over the stroke [mm]: the stroke itself, where one die moves.
     double                        closing_path() const;

@@ -30,8 +30,8 @@ namespace retroforge
     RecordHeader                header;
     std::vector<RecordedInput>  inputs;
     unsigned int                n_increments;
-    double                      stroke;  ///< where the record ends [mm]
-    std::vector<ChangedSetting> changes; ///< of numerics, against those the record ends with
+    double                      stroke;  ///< stroke at which the record ends [mm]
+    std::vector<ChangedSetting> changes; ///< changes of numerics, against those the record ends with
 
     /// @param parameters  the complete input of the run that is to go on
     /// @param stroke      the whole of it [mm]

@@ -17,8 +17,8 @@ namespace retroforge
   /// A place as messages have it: (x, y, z).
   std::string in_brackets(const Vec3 &x);
 
-  /// How each die stands to the billet at the start, and what becomes of it: of the billet as its measures
-  /// give it, whatever its mesh.
+  /// Returns for each die its position relative to the billet at the start and its first contact, for the
+  /// billet as its measures define it, whatever its mesh.
   /// @param X  positions of the billet's nodes
   std::vector<DieApproach> find_approaches(const Parameters           &parameters,
                                            const Scene                &scene,

@@ -119,7 +119,7 @@ namespace retroforge
       internal::for_each_member([](const auto &a, auto &b) { convert(a, b); }, from, to);
   }
 
-  /// The same aggregate of another number type.
+  /// Returns the aggregate with another number type.
   template <typename To, template <typename> class Aggregate, typename From>
   Aggregate<To> converted(const Aggregate<From> &from)
   {
@@ -128,8 +128,8 @@ namespace retroforge
     return to;
   }
 
-  /// How a number of an aggregate is known to users, who may choose it as a design parameter. An aggregate
-  /// with a static `info()` tells that of all its numbers, in their order.
+  /// Name, unit and range of a number of an aggregate, which users may choose as a design parameter. An
+  /// aggregate with a static `info()` returns those of all its numbers, in their order.
   struct NumberInfo
   {
     std::string name, unit;

@@ -8,16 +8,14 @@
 
 namespace retroforge
 {
+  /// The section Discretization.
   struct DiscretizationParameters
   {
-    std::string element         = "mini";
-    std::string triangulation   = "shared";
-    std::string assembly        = "closed form";
-    int         geometry_degree = 1;
+    DiscretizationChoice choice;
 
     void add_parameters(dealii::ParameterHandler &prm);
+
     /// @throws Error  if what is chosen does not go together
-    void                 check() const { check_choice<3>(choice()); }
-    DiscretizationChoice choice() const;
+    void check() const { check_choice<3>(choice); }
   };
 } // namespace retroforge

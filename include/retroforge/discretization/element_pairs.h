@@ -9,7 +9,7 @@
 
 /// @file
 /// Cells of fields. What is done cell by cell is written once, as a function of a pair,
-///   with_pair(discretization, [&](const auto pair) {
+///   dispatch_element(discretization, [&](const auto pair) {
 ///     const auto geometry = cell_geometry(pair.positions(discretization, X, c));
 ///     ... cell_residual(geometry, pair.on_cell(discretization, W, c), law) ...
 ///   });
@@ -17,7 +17,7 @@
 /// dimensions there are those by quadrature.
 namespace retroforge
 {
-  /// Where the geometry nodes of a visited cell are.
+  /// Returns the positions of the geometry nodes of a visited cell.
   template <typename Number>
   Four<Vector3<Number>>
   positions_of_cell(const Discretization<3> &discretization, const NodalVectors<Number> &X, const CellIndex c)
@@ -53,7 +53,7 @@ namespace retroforge
 
     static CellValues<double> no_values() { return {}; }
 
-    /// Of a cell, its bubble left out: zero.
+    /// Returns the values of a cell without its bubble, which is zero.
     template <typename Number>
     static CellValues<Number>
     at_nodes(const Discretization<3> &discretization, const Field<Number> &W, const CellIndex c)
@@ -224,9 +224,9 @@ namespace retroforge
   template <int dim>
   QuadraturePair(const ReferenceElement<dim> *) -> QuadraturePair<dim>;
 
-  /// f(pair), of the one that the discretisation is made for.
+  /// Returns f(pair) for the velocity-pressure pair of the discretisation.
   template <int dim, typename F>
-  decltype(auto) with_pair(const Discretization<dim> &discretization, const F &f)
+  decltype(auto) dispatch_element(const Discretization<dim> &discretization, const F &f)
   {
     if constexpr (dim == 3)
       if (!discretization.quadrature())

@@ -13,7 +13,8 @@ namespace retroforge
     return discretization.pair() == ElementPair::mini ? 1 : 2;
   }
 
-  /// What each cell adds to the error of the power, as far as it shows in jumps of the strain rate [mJ/s]:
+  /// Returns the contribution of each cell to the error of the power, as indicated by jumps of the strain
+  /// rate [mJ/s]:
   ///
   ///   eta_T = int_T (s(eps*) - s(eps)) : (eps* - eps) >= 0,
   ///

@@ -30,15 +30,16 @@ namespace retroforge
     NodalVectors<double> X_before; ///< positions on the old mesh [mm]
     TetMesh              mesh;     ///< the new one; its X are the positions after
     TransferOperator     transfer;
-    double               repaired = 0.; ///< metal thinner than an element taken away [mm^3]
+    double               removed_volume = 0.; ///< metal thinner than an element taken away [mm^3]
   };
 
   /// What the backward pass and a replay need of one increment. Positions follow from X_0 and the velocities.
   struct IncrementRecord
   {
-    double       stroke = 0.; ///< of the leading die at the start [mm]
-    double       step   = 0.; ///< [mm]
-    unsigned int cuts   = 0;  ///< times the step was halved
+    unsigned int operation = 0;
+    double       stroke    = 0.; ///< of the leading die in the operation, at the start [mm]
+    double       step      = 0.; ///< [mm]
+    unsigned int cuts      = 0;  ///< times the step was halved
     /// The complete input, where other settings hold from this increment on.
     std::optional<std::string> parameters;
     /// Made just before the increment; null when it goes on with the mesh there was.

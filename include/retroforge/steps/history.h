@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/solver/stage.h>
+#include <retroforge/solver/equilibrium.h>
 #include <retroforge/steps/workpiece_state.h>
 
 /// @file
@@ -12,7 +12,7 @@ namespace retroforge
 {
   /// Adds one stage, weighted as its view says, in the cells this rank owns; on dual numbers the tangent.
   template <typename Number>
-  void add_history(const StageView<Number> &view, const Number &dt, WorkpieceState<3, Number> &state);
+  void add_history(const EquilibriumView<Number> &view, const Number &dt, WorkpieceState<3, Number> &state);
 
   /// Gives every rank the cells of the others, after the last stage. Collective.
   template <typename Number>
@@ -20,8 +20,8 @@ namespace retroforge
 
   /// Reverse of add_history(): adds to the derivatives in the stage's unknowns and positions, and in dt, this
   /// rank's part. The costate of the state after is that of the state before.
-  void reverse_history(const StageView<double>         &view,
+  void reverse_history(const EquilibriumView<double>   &view,
                        double                           dt,
                        const WorkpieceState<3, double> &costate,
-                       StageBar                        &bar);
+                       EquilibriumBar                  &bar);
 } // namespace retroforge

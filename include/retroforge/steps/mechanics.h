@@ -40,10 +40,10 @@ namespace retroforge
   };
 
   /// Adds what costate j's Phi takes from a stage of the increment, this rank's part.
-  using AdjointSource = std::function<void(std::size_t j, const StageView<double> &, StageBar &)>;
+  using AdjointSource = std::function<void(std::size_t j, const EquilibriumView<double> &, EquilibriumBar &)>;
 
   /// Observer of a tangent: called after each stage that integrals weigh, with the increment's time dt.
-  using TangentObserver = std::function<void(const StageView<Dual> &, const Dual &)>;
+  using TangentObserver = std::function<void(const EquilibriumView<Dual> &, const Dual &)>;
 
   /// What the stages of an increment share, as found at its start.
   template <typename Number>
@@ -69,7 +69,7 @@ namespace retroforge
     const NodalVectors<double> X;
     const ActiveSet            active;
     const double               weight; ///< b_s of the scheme
-    const Stage<double>        stage;
+    const Equilibrium<double>  stage;
     Field<double>              W;
 
     SolvedStage(const Scene                  &scene,
@@ -80,7 +80,7 @@ namespace retroforge
                 const NodeVector<3, double>  &bubbles = {});
     SolvedStage(const SolvedStage &) = delete; // its members refer to each other
 
-    StageView<double> view() const { return {stage, W, active, weight}; }
+    EquilibriumView<double> view() const { return {stage, W, active, weight}; }
   };
 
   /// An increment when it is done: the stages that integrals weigh, and where it leads to.
@@ -111,7 +111,7 @@ namespace retroforge
     SolvedIncrement forward(const Process<double>           &process,
                             const WorkpieceState<3, double> &state,
                             bool                             replay,
-                            const Guess                     &guess,
+                            const InitialGuess              &guess,
                             IncrementRecord                 &record);
 
     /// Returns the same from what was recorded, to the bit: nothing is solved.
@@ -138,10 +138,10 @@ namespace retroforge
 
     /// Where the increment after a solved one begins: its last solution, and how it changed from stage to
     /// stage. Only what is recorded enters, so that a run that is resumed begins there, too.
-    Guess guess_after(const SolvedIncrement &solved, const IncrementRecord &record) const;
+    InitialGuess guess_after(const SolvedIncrement &solved, const IncrementRecord &record) const;
 
     /// Where a replay begins: at what was recorded.
-    Guess recorded_guess(const IncrementRecord &record) const;
+    InitialGuess recorded_guess(const IncrementRecord &record) const;
 
     /// X_i of a recorded increment from X_{i+1}, but for rounding.
     NodalVectors<double> retreat(const Process<double>      &process,
@@ -157,14 +157,14 @@ namespace retroforge
                                                            const IncrementRecord           &record) const;
     /// That of the record, which is the model's unless the run was restarted with another.
     const Scheme &scheme_of(const IncrementRecord &record) const;
-    /// Change of (V, P) over the stroke from the first stage to the last; empty where they are at one time.
-    Field<double> rate(const IncrementRecord &record) const;
+    /// Change of (V, P) over the stroke from the first stage to the last; none where they are at one time.
+    std::optional<Field<double>> rate(const IncrementRecord &record) const;
     /// @return nothing where a node ran into a die unwatched
     std::vector<SolveRecord> solve_stages(const IncrementStart<double> &start,
                                           const NodalVectors<double>   &X,
                                           bool                          replay,
                                           bool                          all_found,
-                                          const Guess                  &guess,
+                                          const InitialGuess           &guess,
                                           IncrementRecord              &record);
     /// Energies and forces of the increment.
     void                               account(const SolvedIncrement &solved, IncrementRecord &record) const;
@@ -181,8 +181,8 @@ namespace retroforge
     /// @param largest  maximum of these norms over the increment's stages so far
     double tolerance_of(double norm, double largest) const;
     /// Returns whether a node that was not watched ran into a die. Collective.
-    bool        contacts_missed(const Stage<double> &stage, const Field<double> &W) const;
-    Field<Dual> tangent_field(const Stage<Dual> &stage, const SolvedStage &at);
+    bool        contacts_missed(const Equilibrium<double> &stage, const Field<double> &W) const;
+    Field<Dual> tangent_field(const Equilibrium<Dual> &stage, const SolvedStage &at);
 
     const Scene     &scene_;
     const StepModel &model_;

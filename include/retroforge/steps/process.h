@@ -2,56 +2,97 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/solver/stage.h>
+#include <retroforge/record/increment_record.h>
+#include <retroforge/solver/equilibrium.h>
+#include <retroforge/steps/press_motion.h>
 
 namespace retroforge
 {
-  /// One increment's place: from `stroke` on by `step` [mm], both fixed by decision; the times follow.
+  /// One increment's place, fixed by decision: in an operation, from `stroke` on by `step` [mm]. The times
+  /// follow.
   struct StrokeStep
   {
-    double stroke, step;
+    double       stroke, step;
+    unsigned int operation = 0;
   };
 
-  /// Everything about the process that a design can change, constant over a run. Derivatives of a scalar in
-  /// it are another such aggregate. `dies[d].displacement` is the die's offset at the start; its position
-  /// later is offset + velocity * time. Time follows the stroke: the path of the leading die, at its speed.
-  template <typename Number>
-  struct Process
+  /// Returns that of a recorded increment.
+  inline StrokeStep place(const IncrementRecord &record)
   {
-    Material<Number>              material;
-    ContactLaw<Number>            contact;
-    std::vector<DieState<Number>> dies;
-    unsigned int                  leading_die = 0;
+    return {record.stroke, record.step, record.operation};
+  }
+
+  /// One stroke of the press: which dies stand in it, and how it goes.
+  template <typename Number>
+  struct Operation
+  {
+    std::vector<unsigned int> dies;            ///< those in the press
+    unsigned int              leading_die = 0; ///< whose path is the stroke
     /// Path of the leading die over the stroke, which is that of the nominal design: not 1 where this die
     /// follows a billet whose height has changed.
-    Number stretch = Number(1.);
+    Number              path_scale = Number(1.);
+    PressMotion<Number> motion;
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[material, contact, dies, leading_die, stretch] = self;
-      return std::tie(material, contact, dies, leading_die, stretch);
+      auto &[dies, leading_die, path_scale, motion] = self;
+      return std::tie(dies, leading_die, path_scale, motion);
     }
-
-    Number speed() const;
-
-    /// Of the leading die over a part of the stroke [mm]:  stretch stroke / speed  [s].
-    Number time(double stroke) const;
-
-    /// Laws and dies when the leading die has gone `stroke` [mm].
-    Physics<Number> at_stroke(double stroke) const;
   };
 
-  /// Pull-back of at_stroke, dt = time(step) and tau = approach dt: adds to process_bar.
-  void reverse_at_stroke(const Process<double> &process,
-                         const StrokeStep      &step,
-                         double                 approach,
-                         const PhysicsBar      &bar,
-                         Process<double>       &process_bar);
+  /// Everything about the process that a design can change: the material, the dies of all operations, and the
+  /// operations. Derivatives of a scalar in it are another such aggregate. `dies[d].displacement` is the
+  /// die's offset at the start of its operation, `velocity` that of a press at constant speed. Time follows
+  /// the stroke: the path of the leading die, at its speed, by the motion of the press.
+  template <typename Number>
+  struct Process
+  {
+    Material<Number>               material;
+    ContactLaw<Number>             contact;
+    std::vector<DieState<Number>>  dies;
+    std::vector<Operation<Number>> operations;
 
-  /// Zero derivatives in a process of these dies.
-  Process<double> no_process_derivatives(const std::vector<Die> &dies);
+    template <typename Self>
+    static auto members(Self &self)
+    {
+      auto &[material, contact, dies, operations] = self;
+      return std::tie(material, contact, dies, operations);
+    }
 
-  /// Completes the sums of all ranks.
-  void sum_over_ranks(Process<double> &process_bar, MPI_Comm comm);
+    /// Returns the velocity of the leading die of an operation [mm/s].
+    const Vector3<Number> &leading_velocity(unsigned int operation = 0) const;
+
+    /// Returns its speed [mm/s].
+    Number speed(unsigned int operation = 0) const;
+
+    /// Returns the time that a press at constant speed takes to a stroke [s]: a die's path is this times its
+    /// velocity, whatever the motion.
+    Number nominal_time(double stroke, unsigned int operation = 0) const;
+
+    /// Returns the time from the start of an operation to a stroke [s].
+    Number time(double stroke, unsigned int operation = 0) const;
+
+    /// Returns the time that an increment takes:  scale * path(stroke, step) / speed  [s].
+    Number duration(const StrokeStep &at) const;
+
+    /// Returns laws and dies when the leading die has gone `stroke` [mm] in an operation. Their velocities
+    /// are those of a press at constant speed.
+    Physics<Number> at_stroke(double stroke, unsigned int operation = 0) const;
+
+    /// Returns laws and dies at the start of an increment, the dies with their mean velocities over it; dies
+    /// that are not of its operation are not in the press.
+    Physics<Number> over(const StrokeStep &at) const;
+  };
+
+  /// Pull-back of over(), dt = duration(), tau = approach dt, and the time at the start: adds to process_bar.
+  void reverse_over(const Process<double> &process,
+                    const StrokeStep      &at,
+                    double                 approach,
+                    const PhysicsBar      &bar,
+                    Process<double>       &process_bar);
+
+  /// Returns zero derivatives in a process.
+  /// @param dies  with their surfaces, whose vertices have derivatives
+  Process<double> no_process_derivatives(const Process<double> &process, const std::vector<Die> &dies);
 } // namespace retroforge

@@ -22,8 +22,8 @@ namespace retroforge
   class Forging
   {
   public:
-    using Watch  = std::function<void(const IncrementEvent &)>;
-    using Source = std::function<const IncrementRecord &(unsigned int)>;
+    using Observer     = std::function<void(const IncrementEvent &)>;
+    using RecordAccess = std::function<const IncrementRecord &(unsigned int)>;
 
     Forging(const ForgingModel    &model,
             const PressParameters &press,
@@ -31,7 +31,7 @@ namespace retroforge
             Timings               &timings);
 
     /// Before the first increment.
-    ForgingState start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0) const;
+    static ForgingState start(std::shared_ptr<MeshEpoch> epoch, const NodalVectors<double> &X_0);
 
     /// From `state` on other numerics hold: it goes on with whole increments of theirs.
     /// @param parameters  the complete input, which the next increment's record is to tell; none where the
@@ -42,44 +42,45 @@ namespace retroforge
     bool is_left(const ForgingState &state) const;
 
     /// Goes on from `state` to the end of the stroke, and decides everything anew.
-    void run(const Process<double> &process, ForgingState &state, const Watch &watch) const;
+    void run(const Process<double> &process, ForgingState &state, const Observer &observer) const;
 
     /// Where a run stood after n recorded increments, to the bit: nothing is solved.
     void restore(const Process<double> &process,
                  unsigned int           n,
-                 const Source          &source,
+                 const RecordAccess    &access,
                  ForgingState          &state,
-                 const Watch           &watch) const;
+                 const Observer        &observer) const;
 
     /// Obeys the decisions of n recorded increments, and starts each solve from the recorded one.
     void replay(const Process<double> &process,
                 unsigned int           n,
-                const Source          &source,
+                const RecordAccess    &access,
                 ForgingState          &state,
-                const Watch           &watch = {}) const;
+                const Observer        &observer = {}) const;
 
-    /// Changes the mesh as recorded: positions X' = J X + c, strain by transfer_cells().
+    /// Takes the state to another mesh as recorded: the workpiece by the step steps/change_of_mesh.h.
     void change_mesh(const RemeshRecord &remesh, ForgingState &state) const;
 
   private:
-    /// Solves an increment of record.step. @param guess  out: what was found, for a shorter increment
-    Refusal attempt(const Process<double> &process,
-                    const ForgingState    &state,
-                    Guess                 &guess,
-                    IncrementRecord       &record,
-                    SolvedIncrement       &solved) const;
-    void    remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
+    /// Solves an increment of record.step, and returns why it is rejected, if it is.
+    /// @param guess  out: what was found, for a shorter increment
+    std::optional<StepRejection> attempt(const Process<double> &process,
+                                         const ForgingState    &state,
+                                         InitialGuess          &guess,
+                                         IncrementRecord       &record,
+                                         SolvedIncrement       &solved) const;
+    void remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
     /// What the last solution's errors ask for; empty where sizes do not follow them, or nothing is solved.
     std::optional<OptimalSizes> error_sizes(const Process<double> &process, const ForgingState &state) const;
-    /// Takes the state to the increment's end, and tells `watch`.
+    /// Takes the state to the increment's end, and tells `observer`.
     void finish_increment(const Process<double> &process,
                           const IncrementRecord &record,
                           const SolvedIncrement &solved,
                           ForgingState          &state,
-                          const Watch           &watch) const;
+                          const Observer        &observer) const;
 
     /// Stroke of an increment that is not cut [mm].
-    double whole() const { return model_.step.contact.step; }
+    double nominal_step() const { return model_.step.contact.step; }
 
     const ForgingModel    &model_;
     const PressParameters &press_;

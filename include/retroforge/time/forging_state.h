@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/time/leg.h>
+#include <retroforge/time/mesh_epoch.h>
 
 #include <optional>
 
@@ -18,14 +18,15 @@ namespace retroforge
   /// Where a run stands between two increments.
   struct ForgingState
   {
-    std::shared_ptr<Leg>        leg;
+    std::shared_ptr<MeshEpoch>  epoch;
     WorkpieceState<3, double>   workpiece;
     std::optional<LastSolution> solution; ///< of the last increment, none before the first
-    Guess                       next;     ///< where the next increment starts
-    double                      stroke   = 0.;
-    double                      volume   = 0.; ///< at the start of the run [mm^3]
-    double                      repaired = 0.; ///< metal thinner than an element taken away [mm^3]
-    unsigned int                depth    = 0;  ///< an increment is the whole one / 2^depth
+    InitialGuess                next;     ///< where the next increment starts
+    unsigned int                operation      = 0;
+    double                      stroke         = 0.; ///< of the operation [mm]
+    double                      volume         = 0.; ///< at the start of the run [mm^3]
+    double                      removed_volume = 0.; ///< metal thinner than an element taken away [mm^3]
+    unsigned int                depth          = 0;  ///< an increment is the whole one / 2^depth
     double slip = 0.; ///< of the last increment: largest one along a curved die, in edges [mm^-1]
 
     /// Where the present numerics began to hold: stroke [mm] and increments before.

@@ -10,12 +10,10 @@
 //   a degree of freedom for each component;
 // - middles of edges are as many as Euler's formula asks for, and those of Topology on the surface;
 // - velocities at the nodes meet, in the pattern, as the cells say, and by no cell else;
-// - what is sent to ghosts is what owners know; what is added at ghosts comes together at the owner;
-// complete()
-//   and take() are each other's reverse;
+// - a rank reads the velocities of the whole surface; what is sent to ghosts is what owners know; what is
+//   added at ghosts comes together at the owner; complete() and take() are each other's reverse;
 // - a field that AffineConstraints complete keeps to planes of symmetry of any orientation, and one that
-// keeps
-//   to them is left alone; fixed_directions() span their normals;
+//   keeps to them is left alone; fixed_directions() span their normals;
 // - METIS' parts are of equal size to 10 %.
 
 #include <deal.II/base/mpi.h>
@@ -87,14 +85,17 @@ namespace
     return mesh;
   }
 
-  /// A box whose sides x = 0 and z = 0 are planes of symmetry, turned about y by 0.4.
+  /// A box whose sides x = 0 and z = 0 are planes of symmetry, turned about y by 0.4, then about x by 0.3:
+  /// the directions that both hold are not in a plane of coordinates.
   TetMesh turned_box()
   {
     TetMesh mesh      = kuhn_box(4, 0.1);
     mesh.patches      = {{"free", {}}, {"x", Plane{}}, {"z", Plane{}}};
     const auto turned = [](const Vec3 &x) {
-      return Vec3(
-        {std::cos(0.4) * x[0] + std::sin(0.4) * x[2], x[1], -std::sin(0.4) * x[0] + std::cos(0.4) * x[2]});
+      const double z = -std::sin(0.4) * x[0] + std::cos(0.4) * x[2];
+      return Vec3({std::cos(0.4) * x[0] + std::sin(0.4) * x[2],
+                   std::cos(0.3) * x[1] - std::sin(0.3) * z,
+                   std::sin(0.3) * x[1] + std::cos(0.3) * z});
     };
     for (BoundaryFace &face : mesh.faces)
     {
@@ -190,7 +191,8 @@ namespace
           right = right && off.norm() < 1e-14;
         }
       }
-    say("positions are at the nodes of the geometry", right && seen.size() == dim * first.size());
+    say("positions are at the nodes of the geometry",
+        right && seen.size() == element.n_components() * first.size());
   }
 
   /// Of a mesh without holes.
@@ -256,37 +258,77 @@ namespace
     return v;
   }
 
+  /// Whatever rank owns them: each rank decides of all contacts.
+  template <int dim>
+  void check_surface(const SimplexMesh<dim> &mesh, const Discretization<dim> &discretization)
+  {
+    bool       right = true;
+    const auto reads = [&](const NodeIndex k) {
+      return discretization.velocity_nodes()->place(k) != invalid_index;
+    };
+    for (const auto &face : mesh.faces)
+      if (mesh.is_surface(face))
+        for (unsigned int i = 0; i < dim; ++i)
+        {
+          right = right && reads(face.nodes[i]);
+          for (unsigned int j = 0; j < i && discretization.middles(); ++j)
+            right = right && reads(discretization.middles()->between(face.nodes[i], face.nodes[j]));
+        }
+    say("all ranks read the velocities of the surface", right);
+  }
+
   template <int dim>
   void check_exchange(const Discretization<dim> &discretization)
   {
-    const auto            &nodes = *discretization.velocity_nodes();
+    const auto of_both = [](FlowField<dim, double> &field, const auto &f) {
+      f(field.V, [](const NodeIndex k) { return known<dim>(k); });
+      f(field.P, [](const NodeIndex k) { return 10. * k + 0.25; });
+    };
     FlowField<dim, double> field(discretization);
-    for (unsigned int place = 0; place < nodes.n_owned(); ++place)
-      field.V.at_place(place) = known<dim>(nodes.node_at(place));
-    field.V.update_ghosts();
+    of_both(field, [](auto &values, const auto &known_at) {
+      const NodeNumbering &nodes = *values.numbering();
+      for (unsigned int place = 0; place < nodes.n_owned(); ++place)
+        values.at_place(place) = known_at(nodes.node_at(place));
+    });
+    field.update_ghosts();
     bool right = true;
-    for (unsigned int place = 0; place < nodes.n_places(); ++place)
-      right = right && field.V.at_place(place) == known<dim>(nodes.node_at(place));
+    of_both(field, [&](auto &values, const auto &known_at) {
+      for (unsigned int place = 0; place < values.size(); ++place)
+        right = right && values.at_place(place) == known_at(values.numbering()->node_at(place));
+    });
     const FlowField<dim, double> copy = field;
-    right                             = right && std::equal(copy.V.begin(), copy.V.end(), field.V.begin());
+    right                             = right && std::equal(copy.V.begin(), copy.V.end(), field.V.begin()) &&
+            std::equal(copy.P.begin(), copy.P.end(), field.P.begin());
     say("ghosts and copies are what owners know", right);
 
     // Each rank that has a node adds one more than its number.
-    const auto          rank = dealii::Utilities::MPI::this_mpi_process(comm);
-    std::vector<double> whole(nodes.n(), 0.);
-    for (unsigned int place = 0; place < nodes.n_places(); ++place)
-    {
-      field.V.at_place(place)     = (rank + 1.) * known<dim>(nodes.node_at(place));
-      whole[nodes.node_at(place)] = rank + 1.;
-    }
-    dealii::Utilities::MPI::sum(whole, comm, whole);
+    const auto                       rank = dealii::Utilities::MPI::this_mpi_process(comm);
+    std::vector<std::vector<double>> sums;
+    of_both(field, [&](auto &values, const auto &known_at) {
+      const NodeNumbering &nodes = *values.numbering();
+      sums.emplace_back(nodes.n(), 0.);
+      for (unsigned int place = 0; place < nodes.n_places(); ++place)
+      {
+        const NodeIndex k      = nodes.node_at(place);
+        values.at_place(place) = (rank + 1.) * known_at(k);
+        sums.back()[k]         = rank + 1.;
+      }
+      dealii::Utilities::MPI::sum(sums.back(), comm, sums.back());
+    });
     field.sum_ghosts();
-    right = true;
-    for (unsigned int place = 0; place < nodes.n_places(); ++place)
-      right =
-        right && field.V.at_place(place) == whole[nodes.node_at(place)] * known<dim>(nodes.node_at(place));
+    right      = true;
+    auto whole = sums.begin();
+    of_both(field, [&](auto &values, const auto &known_at) {
+      for (unsigned int place = 0; place < values.size(); ++place)
+      {
+        const NodeIndex k = values.numbering()->node_at(place);
+        right             = right && values.at_place(place) == (*whole)[k] * known_at(k);
+      }
+      ++whole;
+    });
     say("sums come together", right);
 
+    const auto            &nodes     = *discretization.velocity_nodes();
     const auto            &condensed = *discretization.condensed_nodes();
     FlowField<dim, double> again(discretization);
     const auto             all = copy.V.complete(condensed);
@@ -357,6 +399,7 @@ namespace
     check_positions(mesh, discretization);
     check_middles(mesh, discretization);
     check_pattern(mesh, discretization);
+    check_surface(mesh, discretization);
     check_exchange(discretization);
     check_symmetry(mesh, discretization);
     const double share = discretization.cells().owned().size() *

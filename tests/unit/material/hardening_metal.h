@@ -12,7 +12,7 @@ namespace retroforge
   public:
     static constexpr unsigned int a = 0, n = 1; ///< among Material::numbers
 
-    std::vector<NumberInfo> info() const override { return {{"a", "", true}, {"n", ""}}; }
+    std::vector<NumberInfo> info() const override { return {{"a", "", true}, {"n", "", false, 1.}}; }
 
     template <typename Number>
     MaterialLaw<Number> compute_law(const Material<Number> &metal, const PointState<Number> &state) const

@@ -71,7 +71,10 @@ namespace
       corner.physics.material = metal_of(corner.physics.material.law);
     }
 
-    Stage<double> stage() const { return {corner.scene, corner.physics, corner.contact, corner.X, strain}; }
+    Equilibrium<double> stage() const
+    {
+      return {corner.scene, corner.physics, corner.contact, corner.X, strain};
+    }
   };
 
   Dual along(const double x, const double x_dot)
@@ -95,7 +98,7 @@ namespace
     const HardenedStage       hardened(random, pair);
     const CornerStage        &corner         = hardened.corner;
     const auto               &discretization = corner.scene.discretization;
-    const Stage<double>       stage          = hardened.stage();
+    const Equilibrium<double> stage          = hardened.stage();
     const std::vector<double> strain_dot     = random.scalars(hardened.strain.size());
     std::vector<double>       numbers_dot;
     Physics<Dual>             physics = converted<Dual>(corner.physics);
@@ -115,8 +118,8 @@ namespace
       convert(corner.W.V.at_place(place), W.V.at_place(place));
     for (unsigned int place = 0; place < W.P.size(); ++place)
       W.P.at_place(place) = corner.W.P.at_place(place);
-    const ContactSet<Dual> contact = contact_of(corner, physics, X);
-    const Stage<Dual>      moved(corner.scene, physics, contact, X, strain);
+    const ContactSet<Dual>  contact = contact_of(corner, physics, X);
+    const Equilibrium<Dual> moved(corner.scene, physics, contact, X, strain);
 
     const Field<double> lambda  = corner.random_field(random);
     const Field<Dual>   r       = moved.residual(W, corner.active);
@@ -127,13 +130,13 @@ namespace
     const auto [deformation, friction] = moved.power(W, corner.active);
     const double power_forward         = 0.6 * deformation.dx(0) + 0.8 * friction.dx(0);
 
-    const StageView<double> view{stage, corner.W, corner.active};
-    const auto              product = [&](const auto &pull_back) {
+    const EquilibriumView<double> view{stage, corner.W, corner.active};
+    const auto                    product = [&](const auto &pull_back) {
       Field<double>        W_bar(discretization);
       NodalVectors<double> X_bar(corner.X.size());
       ContactSetBar        contact_bar(corner.contact.pairs.size());
       PhysicsBar           bar(corner.scene.dies);
-      StageBar             stage_bar{W_bar, X_bar, contact_bar, bar};
+      EquilibriumBar       stage_bar{W_bar, X_bar, contact_bar, bar};
       pull_back(stage_bar);
       double sum  = 0.;
       auto   next = numbers_dot.begin();
@@ -143,10 +146,10 @@ namespace
       return discretization.sum(sum);
     };
     errors.compare("residual, transposed",
-                   product([&](StageBar &bar) { reverse_residual(view, lambda, bar); }),
+                   product([&](EquilibriumBar &bar) { reverse_residual(view, lambda, bar); }),
                    discretization.sum(forward));
     errors.compare("power, transposed",
-                   product([&](StageBar &bar) { reverse_power(view, 0.6, 0.8, bar); }),
+                   product([&](EquilibriumBar &bar) { reverse_power(view, 0.6, 0.8, bar); }),
                    discretization.sum(power_forward));
   }
 
@@ -164,20 +167,20 @@ namespace
   /// The matrix, whose cells come in packs of four laws: M^-1 (dR/dW w) = w, dR/dW w by dual numbers.
   void check_tangent(Random &random, const ElementPair pair, Errors &errors)
   {
-    const HardenedStage hardened(random, pair);
-    const CornerStage  &corner = hardened.corner;
-    const auto         &spaces = corner.scene.discretization;
-    const Stage<double> stage  = hardened.stage();
-    Field<double>       at     = corner.W;
-    const Field<double> w      = corner.random_field(random);
-    settle_bubbles(stage, at);
+    const HardenedStage       hardened(random, pair);
+    const CornerStage        &corner = hardened.corner;
+    const auto               &spaces = corner.scene.discretization;
+    const Equilibrium<double> stage  = hardened.stage();
+    Field<double>             at     = corner.W;
+    const Field<double>       w      = corner.random_field(random);
+    solve_bubbles(stage, at);
     Physics<Dual>      physics = converted<Dual>(corner.physics);
     std::vector<Dual>  strain(hardened.strain.begin(), hardened.strain.end());
     NodalVectors<Dual> X;
     convert(corner.X, X);
-    const auto        contact = contact_of(corner, physics, X);
-    const Stage<Dual> moved(corner.scene, physics, contact, X, strain);
-    Field<Dual>       W(spaces);
+    const auto              contact = contact_of(corner, physics, X);
+    const Equilibrium<Dual> moved(corner.scene, physics, contact, X, strain);
+    Field<Dual>             W(spaces);
     for (unsigned int place = 0; place < W.V.size(); ++place)
       for (unsigned int i = 0; i < 3; ++i)
         W.V.at_place(place)[i] = along(at.V.at_place(place)[i], w.V.at_place(place)[i]);
@@ -192,7 +195,7 @@ namespace
       image.P.at_place(place) = r.P.at_place(place).dx(0);
     Timings                timings;
     LinearSolverParameters parameters;
-    parameters.method = "direct";
+    parameters.method = LinearSolverParameters::Method::direct;
     LinearSystem system(corner.scene, parameters, timings);
     system.assemble(stage, at, corner.active);
     system.solve_derivative(image, 1e-13, x);
@@ -220,8 +223,11 @@ namespace
     refuse(parameters);
     parameters.type = "hardening";
     refuse(parameters);
-    parameters.numbers = {1., 0.};
-    refuse(parameters);
+    for (const double n : {0., 1.5})
+    {
+      parameters.numbers = {1., n};
+      refuse(parameters);
+    }
     parameters.numbers = {0., 0.2};
     std::cout << "known: " << parameters.metal(1.).info().back().name << "\n";
     parameters.type = "Norton-Hoff";

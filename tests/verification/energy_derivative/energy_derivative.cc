@@ -84,21 +84,21 @@ namespace
       NodalVectors<double> X_bar(scene.mesh.n_nodes());
       ContactSetBar        contact_bar(contact.pairs.size());
       PhysicsBar           physics_bar(scene.dies);
-      StageBar             bar{W_bar, X_bar, contact_bar, physics_bar};
+      EquilibriumBar       bar{W_bar, X_bar, contact_bar, physics_bar};
       reverse_power({stage, W, active}, 1., 1., bar);
       return W_bar.V.complete(*scene.discretization.condensed_nodes());
     }
 
-    Parameters         parameters;
-    Timings            timings;
-    Scene              scene;
-    StepModel          model;
-    Process<double>    process;
-    Physics<double>    physics;
-    ContactSet<double> contact;
-    Stage<double>      stage;
-    Field<double>      W;
-    ActiveSet          active;
+    Parameters          parameters;
+    Timings             timings;
+    Scene               scene;
+    StepModel           model;
+    Process<double>     process;
+    Physics<double>     physics;
+    ContactSet<double>  contact;
+    Equilibrium<double> stage;
+    Field<double>       W;
+    ActiveSet           active;
   };
 
   Vector3<Dual> dual(const Vec3 &v)

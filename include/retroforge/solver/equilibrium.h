@@ -8,6 +8,8 @@
 #include <retroforge/element/semi_analytic.h>
 #include <retroforge/material/material.h>
 
+#include <optional>
+
 namespace retroforge
 {
   /// What does not move: the mesh, the spaces on it, and the shapes of the dies.
@@ -63,18 +65,36 @@ namespace retroforge
   /// Zero derivatives in the states of dies, their vertices included.
   std::vector<DieState<double>> no_derivatives(const std::vector<Die> &dies);
 
-  /// Derivatives of a scalar in what Physics holds, in the increment's times, and in the strain of each cell
-  /// at its start, of the cells this rank owns; empty: none.
+  /// Derivatives of a scalar in what Physics holds, in the increment's times (dt, approach time, and the time
+  /// at its start), and in the strain of each cell at its start, of the cells this rank owns; empty: none.
   struct PhysicsBar : Physics<double>
   {
-    double              dt = 0., tau = 0.;
+    double              dt = 0., tau = 0., time = 0.;
     std::vector<double> strain;
 
     explicit PhysicsBar(const std::vector<Die> &dies) { this->dies = no_derivatives(dies); }
   };
 
-  /// Which pairs are pressed; empty: decide from the velocity. A replay passes what was recorded.
+  /// Which pairs are pressed.
   using ActiveSet = std::vector<char>;
+
+  /// A set that is given, as a replay has it, or none: then the velocity decides. Refers to the set.
+  class ActiveChoice
+  {
+  public:
+    ActiveChoice() = default;
+    ActiveChoice(const ActiveSet &given) : given_(&given) {}
+    ActiveChoice(const std::optional<ActiveSet> &given) : given_(given ? &*given : nullptr) {}
+
+    bool             is_given() const { return given_ != nullptr; }
+    const ActiveSet &operator*() const { return *given_; }
+
+    /// Returns whether it may be a choice between so many pairs.
+    bool fits(const std::size_t n_pairs) const { return !given_ || given_->size() == n_pairs; }
+
+  private:
+    const ActiveSet *given_ = nullptr;
+  };
 
   /// The strain of metal in its initial state.
   template <typename Number>
@@ -88,16 +108,16 @@ namespace retroforge
   /// and their reverse. Entries of results are right on owned nodes and in visited cells;
   /// Field::update_ghosts completes them.
   template <typename Number>
-  class Stage
+  class Equilibrium
   {
   public:
     /// What is passed must live as long.
     /// @param strain  of each cell at the start of the increment; empty: none
-    Stage(const Scene                &scene,
-          const Physics<Number>      &physics,
-          const ContactSet<Number>   &contact,
-          const NodalVectors<Number> &X,
-          const std::vector<Number>  &strain = no_strain<Number>());
+    Equilibrium(const Scene                &scene,
+                const Physics<Number>      &physics,
+                const ContactSet<Number>   &contact,
+                const NodalVectors<Number> &X,
+                const std::vector<Number>  &strain = no_strain<Number>());
 
     /// The law of the metal in a cell.
     MaterialLaw<Number> law(const CellIndex c) const { return physics.material.at(state(c)); }
@@ -105,13 +125,14 @@ namespace retroforge
     /// The state of the metal in a cell.
     PointState<Number> state(CellIndex c) const;
 
-    /// Pair p as its force sees it. @param active  empty: its own h > 0; or the choice
-    ContactNode<Number> contact_node(unsigned int p, const Field<Number> &W, const ActiveSet &active) const;
+    /// Pair p as its force sees it, pressed as chosen or by its own h > 0.
+    ContactNode<Number>
+    contact_node(unsigned int p, const Field<Number> &W, const ActiveChoice &active) const;
 
-    Field<Number> residual(const Field<Number> &W, const ActiveSet &active) const;
+    Field<Number> residual(const Field<Number> &W, const ActiveChoice &active) const;
 
     /// Deformation and friction power [mJ/s], this rank's part of the sums.
-    std::pair<Number, Number> power(const Field<Number> &W, const ActiveSet &active) const;
+    std::pair<Number, Number> power(const Field<Number> &W, const ActiveChoice &active) const;
 
     /// Whether the residual is the gradient of a power functional in V, and the Newton matrix symmetric:
     /// where the friction of all dies is.
@@ -130,30 +151,31 @@ namespace retroforge
 
   /// Sum over the nodes of the norms of the cells' forces, the scale a residual is measured against, as a
   /// root of squares over nodes: (momentum [N], continuity [mm^3/s]).
-  std::pair<double, double> residual_scale(const Stage<double> &stage, const Field<double> &W);
+  std::pair<double, double> residual_scale(const Equilibrium<double> &stage, const Field<double> &W);
 
   /// Force of each die on the workpiece [N], contact and friction.
-  std::vector<Vec3> die_forces(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
+  std::vector<Vec3>
+  die_forces(const Equilibrium<double> &stage, const Field<double> &W, const ActiveSet &active);
 
   /// The equilibrium of bubbles at given velocities of the nodes and P, in the cells this rank visits; they
   /// start where they are.
-  void settle_bubbles(const Stage<double> &stage, Field<double> &W);
+  void solve_bubbles(const Equilibrium<double> &stage, Field<double> &W);
 
   /// The same from the velocities at nodes and P alone: bubbles start from nothing.
-  void recover_bubbles(const Stage<double> &stage, Field<double> &W);
+  void recover_bubbles(const Equilibrium<double> &stage, Field<double> &W);
 
   /// A stage and its solution.
   template <typename Number>
-  struct StageView
+  struct EquilibriumView
   {
-    const Stage<Number> &stage;
-    const Field<Number> &W;
-    const ActiveSet     &active;
-    double               weight = 1.; ///< in integrals over the increment
+    const Equilibrium<Number> &stage;
+    const Field<Number>       &W;
+    const ActiveSet           &active;
+    double                     weight = 1.; ///< in integrals over the increment
   };
 
   /// Where derivatives go. Sums are this rank's part, completed by the caller once per increment.
-  struct StageBar
+  struct EquilibriumBar
   {
     Field<double>        &W;
     NodalVectors<double> &X; ///< positions of the stage
@@ -163,17 +185,21 @@ namespace retroforge
   };
 
   /// Adds the derivatives of  lambda·residual  at fixed W to all but bar.W.
-  void reverse_residual(const StageView<double> &view, const Field<double> &lambda, StageBar &bar);
+  void
+  reverse_residual(const EquilibriumView<double> &view, const Field<double> &lambda, EquilibriumBar &bar);
 
   /// Adds the derivatives of  deformation * (deformation power) + friction * (friction power).
-  void reverse_power(const StageView<double> &view, double deformation, double friction, StageBar &bar);
+  void reverse_power(const EquilibriumView<double> &view,
+                     double                         deformation,
+                     double                         friction,
+                     EquilibriumBar                &bar);
 
   template <typename Number>
-  Stage<Number>::Stage(const Scene                &scene,
-                       const Physics<Number>      &physics,
-                       const ContactSet<Number>   &contact,
-                       const NodalVectors<Number> &X,
-                       const std::vector<Number>  &strain)
+  Equilibrium<Number>::Equilibrium(const Scene                &scene,
+                                   const Physics<Number>      &physics,
+                                   const ContactSet<Number>   &contact,
+                                   const NodalVectors<Number> &X,
+                                   const std::vector<Number>  &strain)
       : scene(scene)
       , physics(physics)
       , contact(contact)
@@ -190,7 +216,7 @@ namespace retroforge
   }
 
   template <typename Number>
-  PointState<Number> Stage<Number>::state(const CellIndex c) const
+  PointState<Number> Equilibrium<Number>::state(const CellIndex c) const
   {
     return strain.empty() ? PointState<Number>{} : PointState<Number>{strain[c]};
   }

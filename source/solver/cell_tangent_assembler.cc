@@ -3,7 +3,7 @@
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/element/cell_geometry.templates.h>
 #include <retroforge/element/tangent_pack.templates.h>
-#include <retroforge/solver/tangent_sums.h>
+#include <retroforge/solver/cell_tangent_assembler.h>
 
 namespace retroforge
 {
@@ -11,7 +11,7 @@ namespace retroforge
 
   namespace
   {
-    /// Of edge length h, in h^3: a regular tetrahedron has the volume h^3 / (6 sqrt 2).
+    /// Number of regular tetrahedra of edge length h in h^3: one has the volume h^3 / (6 sqrt 2).
     constexpr double regular_tetrahedra = 8.5;
 
     /// Into one lane of a pack, of the blocks that both pairs have.
@@ -115,13 +115,13 @@ namespace retroforge
     };
 
     /// Adds four entries of four cells to row i of the block that each cell has for them.
-    RETROFORGE_INLINE void add_row(const Pack          first,
-                                   const Pack          second,
-                                   const Pack          third,
-                                   const Pack          fourth,
-                                   const unsigned int *pairs,
-                                   const unsigned int  i,
-                                   TangentSums::Block *blocks)
+    RETROFORGE_INLINE void add_row(const Pack                   first,
+                                   const Pack                   second,
+                                   const Pack                   third,
+                                   const Pack                   fourth,
+                                   const unsigned int          *pairs,
+                                   const unsigned int           i,
+                                   CellTangentAssembler::Block *blocks)
     {
       // The transpose of a matrix whose rows are the four packs.
       const Pack even_low = __builtin_shufflevector(first, second, 0, 4, 2, 6),
@@ -135,8 +135,10 @@ namespace retroforge
     }
 
     template <typename Tangents>
-    RETROFORGE_INLINE void
-    add_tangents(const Tangents &t, const unsigned int *pairs, TangentSums::Block *blocks, double *schur)
+    RETROFORGE_INLINE void add_tangents(const Tangents              &t,
+                                        const unsigned int          *pairs,
+                                        CellTangentAssembler::Block *blocks,
+                                        double                      *schur)
     {
       const Pack mass = t.volume / 20. / t.viscosity;
       for (unsigned int a = 0; a < Tangents::n_nodes; ++a)
@@ -164,16 +166,19 @@ namespace retroforge
     }
 
     RETROFORGE_ALSO_FOR("fma")
-    void add_pack(const MiniTangents &t, const unsigned int *pairs, TangentSums::Block *blocks, double *schur)
+    void add_pack(const MiniTangents          &t,
+                  const unsigned int          *pairs,
+                  CellTangentAssembler::Block *blocks,
+                  double                      *schur)
     {
       add_tangents(t, pairs, blocks, schur);
     }
 
     RETROFORGE_ALSO_FOR("fma")
-    void add_pack(const TaylorHoodTangents &t,
-                  const unsigned int       *pairs,
-                  TangentSums::Block       *blocks,
-                  double                   *schur)
+    void add_pack(const TaylorHoodTangents    &t,
+                  const unsigned int          *pairs,
+                  CellTangentAssembler::Block *blocks,
+                  double                      *schur)
     {
       add_tangents(t, pairs, blocks, schur);
     }
@@ -184,7 +189,8 @@ namespace retroforge
     }
   } // namespace
 
-  TangentSums::TangentSums(const Scene &scene, const NodePattern &met) : scene_(scene), begin_(1, 0)
+  CellTangentAssembler::CellTangentAssembler(const Scene &scene, const NodePattern &met)
+      : scene_(scene), begin_(1, 0)
   {
     const auto          &discretization = scene.discretization;
     const NodeNumbering &velocities     = *discretization.condensed_nodes();
@@ -213,10 +219,10 @@ namespace retroforge
   }
 
   template <typename Tangents, typename Pair>
-  void TangentSums::add_cells(const Pair          &pair,
-                              const Stage<double> &stage,
-                              const Field<double> &W,
-                              const Linearisation  linearisation)
+  void CellTangentAssembler::add_cells(const Pair                &pair,
+                                       const Equilibrium<double> &stage,
+                                       const Field<double>       &W,
+                                       const Linearisation        linearisation)
   {
     const auto        &discretization = scene_.discretization;
     const auto        &visited        = discretization.visited_cells();
@@ -254,12 +260,13 @@ namespace retroforge
                            std::cbrt(regular_tetrahedra * volume / scene_.mesh.n_cells());
   }
 
-  void
-  TangentSums::assemble(const Stage<double> &stage, const Field<double> &W, const Linearisation linearisation)
+  void CellTangentAssembler::assemble(const Equilibrium<double> &stage,
+                                      const Field<double>       &W,
+                                      const Linearisation        linearisation)
   {
     std::fill(blocks_.begin(), blocks_.end(), Block{});
     std::fill(schur_.begin(), schur_.end(), 0.);
-    with_pair(scene_.discretization, [&](const auto &pair) {
+    dispatch_element(scene_.discretization, [&](const auto &pair) {
       // By quadrature, too, either pair's tangents are those that its blocks are made for.
       using Pair = std::decay_t<decltype(pair)>;
       if constexpr (!std::is_same_v<Pair, TaylorHoodPair>)

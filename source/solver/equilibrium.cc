@@ -18,18 +18,19 @@ namespace retroforge
   {
     /// What the sums of a stage need: unknowns of its scene, and a choice for each pair if for any.
     template <typename Number>
-    void check_arguments([[maybe_unused]] const Stage<Number> &stage,
-                         [[maybe_unused]] const Field<Number> &W,
-                         [[maybe_unused]] const ActiveSet     &active)
+    void check_arguments([[maybe_unused]] const Equilibrium<Number> &stage,
+                         [[maybe_unused]] const Field<Number>       &W,
+                         [[maybe_unused]] const ActiveChoice        &active)
     {
       Assert(W.belongs_to(stage.scene.discretization),
              dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
-      Assert(active.empty() || active.size() == stage.contact.pairs.size(),
-             dealii::ExcDimensionMismatch(active.size(), stage.contact.pairs.size()));
+      Assert(active.fits(stage.contact.pairs.size()),
+             dealii::ExcMessage("a choice of active contacts has an entry for each pair"));
     }
 
     /// The same of derivatives: an entry for each that the stage depends on.
-    void check_bar([[maybe_unused]] const Stage<double> &stage, [[maybe_unused]] const StageBar &bar)
+    void check_bar([[maybe_unused]] const Equilibrium<double> &stage,
+                   [[maybe_unused]] const EquilibriumBar      &bar)
     {
       AssertDimension(bar.X.size(), stage.X.size());
       AssertDimension(bar.contact.delta.size(), stage.contact.pairs.size());
@@ -40,8 +41,9 @@ namespace retroforge
   } // namespace
 
   template <typename Number>
-  ContactNode<Number>
-  Stage<Number>::contact_node(const unsigned int p, const Field<Number> &W, const ActiveSet &active) const
+  ContactNode<Number> Equilibrium<Number>::contact_node(const unsigned int   p,
+                                                        const Field<Number> &W,
+                                                        const ActiveChoice  &active) const
   {
     AssertIndexRange(p, contact.pairs.size());
     check_arguments(*this, W, active);
@@ -57,12 +59,12 @@ namespace retroforge
     node.Sf            = areas.Sf[p];
     node.alpha         = die.friction;
     node.interface_law = die.interface_law;
-    node.active        = active.empty() ? value_of(approach_excess(node)) > 0. : active[p] != 0;
+    node.active        = active.is_given() ? (*active)[p] != 0 : value_of(approach_excess(node)) > 0.;
     return node;
   }
 
   template <typename Number>
-  bool Stage<Number>::has_potential() const
+  bool Equilibrium<Number>::has_potential() const
   {
     return std::all_of(physics.dies.begin(), physics.dies.end(), [](const DieState<Number> &die) {
       return value_of(die.friction) == 0. || interface_law(die.interface_law).has_potential();
@@ -70,7 +72,7 @@ namespace retroforge
   }
 
   template <typename Number>
-  ActiveSet Stage<Number>::decide_active(const Field<Number> &W) const
+  ActiveSet Equilibrium<Number>::decide_active(const Field<Number> &W) const
   {
     ActiveSet active(contact.pairs.size());
     for (unsigned int p = 0; p < active.size(); ++p)
@@ -83,13 +85,13 @@ namespace retroforge
   }
 
   template <typename Number>
-  Field<Number> Stage<Number>::residual(const Field<Number> &W, const ActiveSet &active) const
+  Field<Number> Equilibrium<Number>::residual(const Field<Number> &W, const ActiveChoice &active) const
   {
     check_arguments(*this, W, active);
     const Discretization<3> &discretization = scene.discretization;
-    const ActiveSet          chosen         = active.empty() ? decide_active(W) : active;
+    const ActiveSet          chosen         = active.is_given() ? *active : decide_active(W);
     Field<Number>            r(discretization);
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.visited_cells())
         pair.add(discretization,
                  cell_residual(cell_geometry(pair.positions(discretization, X, c)),
@@ -106,12 +108,13 @@ namespace retroforge
   }
 
   template <typename Number>
-  std::pair<Number, Number> Stage<Number>::power(const Field<Number> &W, const ActiveSet &active) const
+  std::pair<Number, Number> Equilibrium<Number>::power(const Field<Number> &W,
+                                                       const ActiveChoice  &active) const
   {
     check_arguments(*this, W, active);
     const Discretization<3>  &discretization = scene.discretization;
     std::pair<Number, Number> power{Number(0.), Number(0.)};
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
         power.first += cell_dissipation(
           cell_geometry(pair.positions(discretization, X, c)), pair.on_cell(discretization, W, c), law(c));
@@ -122,17 +125,17 @@ namespace retroforge
     return power;
   }
 
-  template class Stage<double>;
-  template class Stage<Dual>;
+  template class Equilibrium<double>;
+  template class Equilibrium<Dual>;
 
-  std::pair<double, double> residual_scale(const Stage<double> &stage, const Field<double> &W)
+  std::pair<double, double> residual_scale(const Equilibrium<double> &stage, const Field<double> &W)
   {
     check_arguments(stage, W, {});
     const auto         &discretization = stage.scene.discretization;
     const auto         &velocities     = *discretization.velocity_nodes();
     const auto         &pressures      = *discretization.pressure_nodes();
     std::vector<double> force(velocities.n_places(), 0.), flow(pressures.n_places(), 0.);
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.visited_cells())
       {
         const auto   geometry = cell_geometry(pair.positions(discretization, stage.X, c));
@@ -153,7 +156,8 @@ namespace retroforge
     return {std::sqrt(discretization.sum(force2)), std::sqrt(discretization.sum(flow2))};
   }
 
-  std::vector<Vec3> die_forces(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
+  std::vector<Vec3>
+  die_forces(const Equilibrium<double> &stage, const Field<double> &W, const ActiveSet &active)
   {
     std::vector<Vec3> forces(stage.scene.dies.size());
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
@@ -162,7 +166,7 @@ namespace retroforge
     return forces;
   }
 
-  void settle_bubbles(const Stage<double> &stage, Field<double> &W)
+  void solve_bubbles(const Equilibrium<double> &stage, Field<double> &W)
   {
     check_arguments(stage, W, {});
     const Discretization<3> &discretization = stage.scene.discretization;
@@ -197,7 +201,7 @@ namespace retroforge
     }
   }
 
-  void recover_bubbles(const Stage<double> &stage, Field<double> &W)
+  void recover_bubbles(const Equilibrium<double> &stage, Field<double> &W)
   {
     check_arguments(stage, W, {});
     const Discretization<3> &discretization = stage.scene.discretization;
@@ -205,13 +209,13 @@ namespace retroforge
       return;
     for (const CellIndex c : discretization.visited_cells())
       MiniPair::bubble(discretization, W, c) = Vec3();
-    settle_bubbles(stage, W);
+    solve_bubbles(stage, W);
   }
 
   namespace
   {
     /// From the law of a cell to what it follows from.
-    void reverse_law(const Stage<double>       &stage,
+    void reverse_law(const Equilibrium<double> &stage,
                      const CellIndex            c,
                      const MaterialLaw<double> &law_bar,
                      PhysicsBar                &bar)
@@ -225,14 +229,14 @@ namespace retroforge
     }
   } // namespace
 
-  void reverse_residual(const StageView<double> &view, const Field<double> &lambda, StageBar &bar)
+  void reverse_residual(const EquilibriumView<double> &view, const Field<double> &lambda, EquilibriumBar &bar)
   {
     check_arguments(view.stage, view.W, view.active);
     check_arguments(view.stage, lambda, {});
     check_bar(view.stage, bar);
-    const Stage<double>     &stage          = view.stage;
-    const Discretization<3> &discretization = stage.scene.discretization;
-    with_pair(discretization, [&](const auto pair) {
+    const Equilibrium<double> &stage          = view.stage;
+    const Discretization<3>   &discretization = stage.scene.discretization;
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
       {
         const auto X        = pair.positions(discretization, stage.X, c);
@@ -257,15 +261,17 @@ namespace retroforge
     pullback.finish();
   }
 
-  void
-  reverse_power(const StageView<double> &view, const double deformation, const double friction, StageBar &bar)
+  void reverse_power(const EquilibriumView<double> &view,
+                     const double                   deformation,
+                     const double                   friction,
+                     EquilibriumBar                &bar)
   {
     check_arguments(view.stage, view.W, view.active);
     check_arguments(view.stage, bar.W, {});
     check_bar(view.stage, bar);
-    const Stage<double>     &stage          = view.stage;
-    const Discretization<3> &discretization = stage.scene.discretization;
-    with_pair(discretization, [&](const auto pair) {
+    const Equilibrium<double> &stage          = view.stage;
+    const Discretization<3>   &discretization = stage.scene.discretization;
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
       {
         const auto X     = pair.positions(discretization, stage.X, c);

@@ -45,7 +45,7 @@ namespace
     p.press.largest_loss     = 0.1;
     p.contact.penetration    = 1e-9;
     p.newton.tolerance       = 1e-10;
-    p.linear_solver.method   = "direct";
+    p.linear_solver.method   = LinearSolverParameters::Method::direct;
     return p;
   }
 
@@ -57,13 +57,13 @@ namespace
     if (run.records.size() != increments)
       std::printf("an increment was cut\n");
     double width = 0.;
-    for (const Vec3 &x : run.forged.workpiece.X)
+    for (const Vec3 &x : run.state().workpiece.X)
       width = std::max(width, 2. * x[0]);
     const double h1 = h0 - stroke, K = p.material.law.K;
     // a quarter of the cube
     const double energy = 0.25 * 3. * K * h0 * h0 * h0 * v * (1. / h1 - 1. / h0);
     return {std::abs(width / (h0 * std::sqrt(h0 / h1)) - 1.),
-            std::abs(run.forged.energy.total() / energy - 1.)};
+            std::abs(run.state().energy.total() / energy - 1.)};
   }
 
   void show_order(const Scheme &scheme)
@@ -100,12 +100,7 @@ namespace
   std::vector<double> replayed(const RecordedRun &run, const Direction &direction, const double t)
   {
     const auto [process, X] = along<double>(run, direction, t);
-    ForgingState   state    = run.forging.start(run.leg, X);
-    ObjectiveTrace trace(run.objectives, run.model, process);
-    run.forging.replay(process, run.records.size(), run.source(), state, [&](const IncrementEvent &event) {
-      trace.add(event);
-    });
-    return trace.values(state, false);
+    return run.replayed_values(process, X);
   }
 
   void judge(const std::string &what, const double found, const double bar)
@@ -120,21 +115,20 @@ namespace
   {
     const Parameters parameters = tilted_block();
     RecordedRun run(parameters, {parameters.dies[0].die(), parameters.dies[1].die()}, objectives(), kutta);
-    run.trace.values(run.forged, true);
-    const auto sweep = adjoint_sweep(run.recorded(), run.trace.rows(), run.forged, each(run.objectives));
-    const NodalVectors<double> still(run.forged.workpiece.X.size());
+    const auto  sweep = run.sweep(each(run.objectives()));
+    const NodalVectors<double> still(run.state().workpiece.X.size());
     const double               h = 1e-5;
     for (const Direction &direction :
-         {Direction{"nodes", random_vectors(run.forged.workpiece.X.size()), 0., 0., {}},
+         {Direction{"nodes", random_vectors(run.state().workpiece.X.size()), 0., 0., {}},
           Direction{"speed", still, 1., 0., {}},
           Direction{"offset", still, 0., 1., {}}})
     {
       const auto [process, X] = along<Dual>(run, direction, 0.);
-      const auto tangents     = tangent_sweep(run.recorded(), process, X);
+      const auto tangents     = run.tangent(process, X);
       const auto plus = replayed(run, direction, h), minus = replayed(run, direction, -h);
-      for (std::size_t o = 0; o < run.objectives.size(); ++o)
+      for (std::size_t o = 0; o < run.objectives().size(); ++o)
       {
-        const std::string what    = run.objectives[o].name + ", " + direction.name + ": ";
+        const std::string what    = run.objectives()[o].name + ", " + direction.name + ": ";
         const double      adjoint = slope(run, sweep.gradients[o], direction);
         judge(what + "tangent", relative_error(adjoint, tangents[o].dx(0)), 1e-10);
         judge(what + "differences", relative_error(adjoint, (plus[o] - minus[o]) / (2. * h)), 1e-6);

@@ -18,18 +18,18 @@ namespace retroforge
   };
 
   /// One mesh and all that works on it: the part of a run between two remeshings.
-  struct Leg
+  struct MeshEpoch
   {
     Scene        scene;
     LinearSystem system;
     Increment    increment;
 
-    Leg(TetMesh mesh, const ForgingModel &model, Timings &timings)
+    MeshEpoch(TetMesh mesh, const ForgingModel &model, Timings &timings)
         : scene(std::move(mesh), model.discretization, model.dies, model.comm)
         , system(scene, model.linear_solver, timings)
         , increment(scene, model.step, model.newton, system, timings)
     {
     }
-    Leg(const Leg &) = delete; // its members refer to each other
+    MeshEpoch(const MeshEpoch &) = delete; // its members refer to each other
   };
 } // namespace retroforge
