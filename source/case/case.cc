@@ -150,8 +150,7 @@ namespace retroforge
                parameters.dies,
                nominal,
                parameters.open_contact(size()),
-               first,
-               parameters.press.stroke)
+               first)
       , mu(design.at(parameters.design.at))
       , process(design.process(mu))
       , X_0(design.positions(mu))

@@ -123,6 +123,7 @@ namespace retroforge
     Operation<double> &operation = process.operations.front();
     operation.leading_die        = leading_die();
     operation.motion             = press.motion();
+    operation.stroke             = press.stroke;
     for (unsigned int d = 0; d < process.dies.size(); ++d)
       operation.dies.push_back(d);
     const double speed = closing_speed(process.dies);

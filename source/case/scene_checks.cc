@@ -257,7 +257,7 @@ namespace retroforge
       for (const Plane &plane : symmetry_planes(scene.mesh))
         if (std::abs(velocity * plane.normal) > 1e-6 * velocity.norm())
           return;
-      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      for (const unsigned int d : process.operations.front().dies)
         if (const Vec3 beside = process.dies[d].velocity - velocity; beside.norm() > 0.)
           if (comes_against(scene,
                             d,
@@ -306,7 +306,7 @@ namespace retroforge
     {
       std::vector<Wall> walls;
       const auto        dies = process.at_stroke(parameters.press.stroke).dies;
-      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      for (const unsigned int d : process.operations.front().dies)
         if (!scene.dies[d].surface())
           walls.push_back({"die " + scene.dies[d].name,
                            parameters.dies[d].point + dies[d].displacement,
@@ -365,8 +365,8 @@ namespace retroforge
       const auto   faces_billet = beside(X, process.leading_velocity());
       const auto   first = process.at_stroke(0.).dies, dies = process.at_stroke(parameters.press.stroke).dies;
       const double allowed = touching_distance(scene, X);
-      for (unsigned int a = 0; a < dies.size(); ++a)
-        for (unsigned int b = 0; b < dies.size(); ++b)
+      for (const unsigned int a : process.operations.front().dies)
+        for (const unsigned int b : process.operations.front().dies)
           if (const TriangleSurface *surface = scene.dies[a].surface();
               a != b && surface && (dies[a].velocity - dies[b].velocity).norm() > 0.)
           {
@@ -408,14 +408,14 @@ namespace retroforge
   {
     const double             near  = touching_distance(scene, X);
     const MetalSurface       metal = billet_surface(parameters.billet, scene.mesh, X, 0.2 * near);
-    std::vector<DieApproach> approaches;
-    for (unsigned int d = 0; d < scene.dies.size(); ++d)
-      approaches.push_back(find_approach(scene.dies[d],
-                                         process.dies[d].displacement,
-                                         process.dies[d].velocity,
-                                         parameters.dies[d].facing,
-                                         metal,
-                                         near));
+    std::vector<DieApproach> approaches(scene.dies.size());
+    for (const unsigned int d : process.operations.front().dies)
+      approaches[d] = find_approach(scene.dies[d],
+                                    process.dies[d].displacement,
+                                    process.dies[d].velocity,
+                                    parameters.dies[d].facing,
+                                    metal,
+                                    near);
     return approaches;
   }
 

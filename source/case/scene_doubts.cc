@@ -30,7 +30,7 @@ namespace retroforge
                      std::vector<std::string>   &warnings)
     {
       const double near = touching_distance(scene, X);
-      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      for (const unsigned int d : process.operations.front().dies)
       {
         const Vec3 &displacement = process.dies[d].displacement;
         double      bulge        = 0.;
@@ -109,7 +109,7 @@ namespace retroforge
                    std::vector<std::string> &warnings)
     {
       const double most = 0.5 * parameters.edge_length(scene.mesh);
-      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      for (const unsigned int d : process.operations.front().dies)
         for (const Patch &patch : scene.mesh.patches)
           if (const TriangleSurface *surface = scene.dies[d].surface(); surface && patch.symmetry)
           {
@@ -174,7 +174,7 @@ namespace retroforge
       const MetalSurface metal = metal_surface(scene.mesh, X);
       const double       edge = parameters.edge_length(scene.mesh), near = touching_distance(scene, X);
       const Vec3        &lead = process.leading_velocity();
-      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      for (const unsigned int d : process.operations.front().dies)
       {
         if (!scene.dies[d].surface())
           continue;

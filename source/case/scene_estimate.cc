@@ -131,7 +131,7 @@ namespace retroforge
         return met ? met->travel : std::numeric_limits<double>::max();
       };
       double against = std::numeric_limits<double>::max();
-      for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
+      for (const unsigned int d : view.process.operations.front().dies)
         if (d != view.process.operations.front().leading_die)
           against = std::min(against, gap(d, -view.way));
       const double ahead = gap(view.process.operations.front().leading_die, view.way);
@@ -204,9 +204,10 @@ namespace retroforge
         return std::min(most, rim_friction(die, process.material.law, rate, radius));
       };
       double other = 0.;
-      for (unsigned int d = 0; d < process.dies.size() && !is_halved(view); ++d)
-        if (d != process.operations.front().leading_die)
-          other = std::max(other, tau(process.dies[d]));
+      if (!is_halved(view))
+        for (const unsigned int d : process.operations.front().dies)
+          if (d != process.operations.front().leading_die)
+            other = std::max(other, tau(process.dies[d]));
       const double friction = (tau(process.dies[process.operations.front().leading_die]) + other) * radius /
                               ((process.material.law.m + 3.) * height);
       return dealii::numbers::PI * radius * radius * (stress + friction);

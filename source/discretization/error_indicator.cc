@@ -86,11 +86,11 @@ namespace retroforge
     }
   } // namespace
 
-  std::vector<double> indicated_errors(const Discretization<3>    &discretization,
-                                       const NodalVectors<double> &X,
-                                       const Field<double>        &W,
-                                       const Material<double>     &material,
-                                       const std::vector<double>  &strain)
+  std::vector<double> indicated_errors(const Discretization<3>               &discretization,
+                                       const NodalVectors<double>            &X,
+                                       const Field<double>                   &W,
+                                       const Material<double>                &material,
+                                       const std::vector<PointState<double>> &points)
   {
     Assert(X.size() == discretization.n_vertices(),
            dealii::ExcDimensionMismatch(X.size(), discretization.n_vertices()));
@@ -103,7 +103,7 @@ namespace retroforge
       const unsigned int  i      = discretization.place_of_cell(c);
       const unsigned int *n      = discretization.pressure_places(c);
       const double        weight = 0.25 * rates.volume[i];
-      const auto          law    = material.at({strain[c]});
+      const auto          law    = material.at(points[c]);
       PointRates<double>  at_corners;
       for (unsigned int a = 0; a < 4; ++a)
         at_corners[a] = to_symmetric(at_nodes.at_place(n[a]));

@@ -102,22 +102,22 @@ namespace retroforge
   }
 
   std::string FieldWriter::write_die(const unsigned int          d,
-                                     const double                stroke,
+                                     const Vec3                 &displacement,
                                      const std::string          &suffix,
-                                     const NodalVectors<double> &X) const
+                                     const NodalVectors<double> &X)
   {
     const Die        &die   = model_.dies[d];
     const bool        still = die.surface() && process_.dies[d].velocity.norm() == 0.;
     const std::string file  = "die_" + die.name + "_" + (still ? six_digits(0) : suffix) + ".vtu";
-    if (!still || stroke == 0.)
+    if (!still || drawn_still_.insert(d).second)
     {
-      const TriangleSurface picture = die_picture(die, process_.at_stroke(stroke).dies[d].displacement, X);
+      const TriangleSurface picture = die_picture(die, displacement, X);
       FieldFile<2>(picture.vertices(), picture.triangles()).write(directory_ + "/" + file);
     }
     return file;
   }
 
-  void FieldWriter::add_step(const double                stroke,
+  void FieldWriter::add_step(const StrokeStep           &at,
                              const std::string          &file,
                              const std::string          &suffix,
                              const NodalVectors<double> &X)
@@ -125,9 +125,10 @@ namespace retroforge
     if (!is_first_)
       return;
     std::vector<std::string> pictures = {file};
-    for (unsigned int d = 0; d < model_.dies.size(); ++d)
-      pictures.push_back(write_die(d, stroke, suffix, X));
-    series_.add(process_.time(stroke), pictures);
+    const auto               dies     = process_.at_stroke(at.stroke, at.operation).dies;
+    for (const unsigned int d : process_.operations[at.operation].dies)
+      pictures.push_back(write_die(d, dies[d].displacement, suffix, X));
+    series_.add(process_.whole_time(at.stroke, at.operation), pictures);
   }
 
   void FieldWriter::write_billet() const
@@ -137,7 +138,7 @@ namespace retroforge
     const NodalVectors<double> still(billet_.n_nodes()), at_rest(discretization.condensed_nodes()->n());
     const ContactFields        contact{zero, zero, still};
     const CellFields cells = cell_fields(discretization, X_0_, Field<double>(discretization), [&](CellIndex) {
-      return process_.material.at({0.});
+      return process_.material.at({});
     });
     write(fields_file(0),
           {billet_, discretization.middles(), X_0_, at_rest, zero, cells, strain, &still, &contact});
@@ -147,7 +148,7 @@ namespace retroforge
   {
     if (is_first_)
       write_billet();
-    add_step(0., fields_file(0), six_digits(0), X_0_);
+    add_step({0., 0.}, fields_file(0), six_digits(0), X_0_);
   }
 
   void FieldWriter::follow(const IncrementEvent &event)
@@ -180,7 +181,10 @@ namespace retroforge
              &displacement_,
              &contact});
     }
-    add_step(run.stroke, fields_file(run.increments), six_digits(run.increments), run.workpiece.X);
+    add_step({run.stroke, 0., run.operation},
+             fields_file(run.increments),
+             six_digits(run.increments),
+             run.workpiece.X);
   }
 
   void FieldWriter::add_failed(const ForgingState &state)
@@ -190,7 +194,7 @@ namespace retroforge
     if (series_.empty())
     {
       write_billet();
-      add_step(0., fields_file(0), six_digits(0), X_0_);
+      add_step({0., 0.}, fields_file(0), six_digits(0), X_0_);
     }
     const TetMesh              &mesh = state.epoch->scene.mesh;
     const NodalVectors<double> &X    = state.workpiece.X;
@@ -198,8 +202,9 @@ namespace retroforge
     const LastSolution          at_rest  = {NodalVectors<double>(discretization.condensed_nodes()->n()),
                                             std::vector<double>(discretization.n_vertices(), 0.)};
     const LastSolution          solution = state.solution.value_or(at_rest);
-    const auto law = [&](const CellIndex c) { return process_.material.at({state.workpiece.strain[c]}); };
-    const CellFields cells =
+    const auto                  points   = point_states(mesh, state.workpiece);
+    const auto                  law      = [&](const CellIndex c) { return process_.material.at(points[c]); };
+    const CellFields            cells =
       cell_fields(discretization, X, with_bubbles(discretization, X, solution, law), law);
     write("failed.vtu",
           {mesh,
@@ -211,6 +216,6 @@ namespace retroforge
            state.workpiece.strain,
            displacement,
            nullptr});
-    add_step(state.stroke, "failed.vtu", "failed", state.workpiece.X);
+    add_step({state.stroke, 0., state.operation}, "failed.vtu", "failed", state.workpiece.X);
   }
 } // namespace retroforge

@@ -31,6 +31,15 @@ namespace retroforge
       model.linear_solver = numerics.linear_solver;
     }
 
+    /// Where a segment of the run ends.
+    StrokeStep end_of(const ForgingProblem &problem, const std::size_t segment)
+    {
+      if (segment + 1 == problem.segments.size())
+        return problem.process.end();
+      const RecordedInput &next = problem.segments[segment + 1].input;
+      return {next.stroke, 0., next.operation};
+    }
+
     /// A mesh that someone else owns.
     std::shared_ptr<const TetMesh> borrowed(const TetMesh &mesh)
     {
@@ -73,18 +82,13 @@ namespace retroforge
   ForwardRun::SegmentRun::SegmentRun(const ForgingProblem &problem,
                                      const std::size_t     segment,
                                      Timings              &timings)
-      : press([&] {
-        PressParameters press = problem.segments[segment].parameters.press;
-        if (segment + 1 < problem.segments.size())
-          press.stroke = problem.segments[segment + 1].input.stroke;
-        return press;
-      }())
+      : press(problem.segments[segment].parameters.press)
       , remesher(problem.segments[segment].parameters.remeshing,
                  problem.segments[segment].parameters.edge_length(*problem.nominal_billet),
                  problem.model.dies,
                  problem.billet->patches,
                  problem.model.comm)
-      , forging(problem.model, press, remesher, timings)
+      , forging(problem.model, press, end_of(problem, segment), remesher, timings)
   {
   }
 
@@ -143,9 +147,7 @@ namespace retroforge
 
   bool ForwardRun::is_left() const
   {
-    // By the stroke that is wanted now, which may be longer than that of the record.
-    const Parameters &parameters = problem_.parameters;
-    return state_.stroke < parameters.press.stroke - 1e-9 * parameters.step_model().contact.step;
+    return segment_ + 1 < problem_.segments.size() || running_->forging.is_left(state_);
   }
 
   void ForwardRun::forge(const Forging::Observer &observer)

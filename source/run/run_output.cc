@@ -12,6 +12,19 @@
 
 namespace retroforge
 {
+  namespace
+  {
+    double whole_stroke(const Process<double> &process, const StrokeStep &at)
+    {
+      return process.whole_stroke(at.stroke, at.operation);
+    }
+
+    StrokeStep place(const ForgingState &state)
+    {
+      return {state.stroke, 0., state.operation};
+    }
+  } // namespace
+
   RunOutput::RunOutput(const Case           &forging_case,
                        const WholePart      &whole,
                        const ObjectiveTrace &trace,
@@ -20,7 +33,7 @@ namespace retroforge
       , whole_(whole)
       , trace_(trace)
       , timings_(timings)
-      , time_left_(forging_case.parameters.press.stroke)
+      , time_left_(whole_stroke(forging_case.process, forging_case.process.end()))
       , fields_(forging_case.comm,
                 forging_case.command.output_directory,
                 forging_case.model,
@@ -48,7 +61,8 @@ namespace retroforge
 
   bool RunOutput::is_due(const ForgingState &state, const unsigned int every) const
   {
-    const bool at_end = state.stroke >= case_.parameters.press.stroke * (1. - 1e-9);
+    const bool at_end = whole_stroke(case_.process, place(state)) >=
+                        whole_stroke(case_.process, case_.process.end()) * (1. - 1e-9);
     return every > 0 && (state.increments % every == 0 || at_end);
   }
 
@@ -57,10 +71,12 @@ namespace retroforge
     if (case_.parameters.output.every)
       return is_due(event.state, *case_.parameters.output.every);
     constexpr double n_pictures = 20.;
-    const auto       interval   = [&](const double stroke) {
-      return std::floor(n_pictures * stroke / case_.parameters.press.stroke + 1e-6);
+    const auto       interval   = [&](const StrokeStep &at) {
+      return std::floor(n_pictures * whole_stroke(case_.process, at) /
+                          whole_stroke(case_.process, case_.process.end()) +
+                        1e-6);
     };
-    return interval(event.state.stroke) > interval(event.record.stroke);
+    return interval(place(event.state)) > interval(retroforge::place(event.record));
   }
 
   void RunOutput::add(const IncrementEvent &event)
@@ -98,7 +114,7 @@ namespace retroforge
           columns.emplace_back(objectives[j].name + ": " + name + unit, value);
     }
     if (objectives_)
-      objectives_->add(state.stroke, columns);
+      objectives_->add(whole_stroke(case_.process, place(state)), columns);
   }
 
   void RunOutput::watch_edges(const IncrementEvent &event)
@@ -135,7 +151,7 @@ namespace retroforge
     const double       energy   = state.energy.total();
     return {state.increments,
             event.time,
-            state.stroke,
+            whole_stroke(case_.process, place(state)),
             force,
             energy,
             size,

@@ -275,7 +275,8 @@ namespace retroforge
     const bool          is_left = run_.is_left();
     if (is_left && !changes.empty())
     {
-      case_.segments.push_back({{state.increments, state.stroke, case_.echo}, case_.parameters});
+      case_.segments.push_back(
+        {{state.increments, state.stroke, case_.echo, state.operation}, case_.parameters});
       run_.change_numerics(case_.segments.back());
     }
     if (!root_)

@@ -212,22 +212,18 @@ namespace retroforge
     solve_bubbles(stage, W);
   }
 
-  namespace
+  void reverse_law(const Equilibrium<double> &stage,
+                   const CellIndex            c,
+                   const MaterialLaw<double> &law_bar,
+                   PhysicsBar                &bar)
   {
-    /// From the law of a cell to what it follows from.
-    void reverse_law(const Equilibrium<double> &stage,
-                     const CellIndex            c,
-                     const MaterialLaw<double> &law_bar,
-                     PhysicsBar                &bar)
-    {
-      PointState<double> state_bar;
-      reverse_at(stage.physics.material, stage.state(c), law_bar, bar.material, state_bar);
-      if (!stage.physics.material.depends_on_state())
-        return;
-      bar.strain.resize(stage.scene.mesh.n_cells(), 0.);
-      bar.strain[c] += state_bar.strain;
-    }
-  } // namespace
+    PointState<double> state_bar;
+    reverse_at(stage.physics.material, stage.state(c), law_bar, bar.material, state_bar);
+    if (!stage.physics.material.depends_on_state())
+      return;
+    bar.points.resize(stage.scene.mesh.n_cells());
+    add_numbers(state_bar, bar.points[c]);
+  }
 
   void reverse_residual(const EquilibriumView<double> &view, const Field<double> &lambda, EquilibriumBar &bar)
   {

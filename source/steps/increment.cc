@@ -5,6 +5,11 @@
 
 namespace retroforge
 {
+  bool Increment::reads_history(const Process<double> &process)
+  {
+    return process.material.depends_on_state();
+  }
+
   void Increment::advance(const SolvedIncrement &solved, WorkpieceState<3, double> &state) const
   {
     for (const auto &stage : solved.stages)

@@ -22,7 +22,7 @@ namespace retroforge
                                           record.contact.edge_stiffness}))
   {
     if (process.material.depends_on_state())
-      strain = state.strain;
+      points = point_states(scene.mesh, state);
   }
 
   template struct IncrementStart<double>;
@@ -37,7 +37,7 @@ namespace retroforge
       : X(std::move(positions))
       , active(solve.active)
       , weight(weight)
-      , stage(scene, start.physics, start.contact, X, start.strain)
+      , stage(scene, start.physics, start.contact, X, start.points)
       , W(scene.discretization)
   {
     if (!bubbles.empty())
@@ -120,7 +120,7 @@ namespace retroforge
     for (unsigned int s = 0; s < scheme.n_stages() && !lost; ++s)
     {
       const NodalVectors<double> position = advanced(X, start.dt, scheme.a[s], solves);
-      const Equilibrium<double>  stage(scene_, start.physics, start.contact, position, start.strain);
+      const Equilibrium<double>  stage(scene_, start.physics, start.contact, position, start.points);
       const ActiveChoice         frozen = replay ? ActiveChoice(record.solves[s].active) : ActiveChoice();
       const Origin               origin = s == 0 ? guess.origin : Origin::previous;
       guess.advance(s == 0 ? guess.ahead : record.step * (scheme.node(s) - scheme.node(s - 1)), W);

@@ -144,10 +144,9 @@ namespace retroforge
           workpiece.X[k] += bars[j].Y[s][k];
       if (process.material.depends_on_state())
       {
-        physics.strain.resize(workpiece.strain.size(), 0.);
-        const auto strain_bar = RankSum<std::vector<double>>(std::move(physics.strain), comm).complete();
-        for (std::size_t c = 0; c < workpiece.strain.size(); ++c)
-          workpiece.strain[c] += strain_bar[c];
+        physics.points.resize(scene_.mesh.n_cells());
+        const RankSum<std::vector<PointState<double>>> points_bar(std::move(physics.points), comm);
+        reverse_point_states(scene_.mesh, points_bar.complete(), workpiece);
       }
       reverse_over(process, place(record), record.contact.approach, physics, costates[j].process.part());
     }

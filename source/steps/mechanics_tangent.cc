@@ -92,7 +92,7 @@ namespace retroforge
     for (unsigned int s = 0; s < scheme.n_stages(); ++s)
     {
       const NodalVectors<Dual> position = advanced(state.X, start.dt, scheme.a[s], stages);
-      const Equilibrium<Dual>  stage(scene_, start.physics, start.contact, position, start.strain);
+      const Equilibrium<Dual>  stage(scene_, start.physics, start.contact, position, start.points);
       const Field<Dual>        W = tangent_field(stage, *recorded_stage(*start_value, value.X, record, s));
       stages.push_back({retroforge::motion(stage, W)});
       if (scheme.b[s] != 0.)

@@ -2,8 +2,6 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/steps/process.h>
 
-#include <algorithm>
-
 namespace retroforge
 {
   template <typename Number>
@@ -42,14 +40,33 @@ namespace retroforge
     return operation.path_scale * operation.motion.path(at.stroke, at.step) / speed(at.operation);
   }
 
+  template <typename Number>
+  StrokeStep Process<Number>::end() const
+  {
+    Assert(!operations.empty(), dealii::ExcMessage("a process has an operation"));
+    return {value_of(operations.back().stroke), 0., static_cast<unsigned int>(operations.size() - 1)};
+  }
+
+  template <typename Number>
+  Number Process<Number>::whole_stroke(const double stroke, const unsigned int operation) const
+  {
+    Number sum(stroke);
+    for (unsigned int o = 0; o < operation; ++o)
+      sum += operations[o].stroke;
+    return sum;
+  }
+
+  template <typename Number>
+  Number Process<Number>::whole_time(const double stroke, const unsigned int operation) const
+  {
+    Number sum = time(stroke, operation);
+    for (unsigned int o = 0; o < operation; ++o)
+      sum += time(value_of(operations[o].stroke), o);
+    return sum;
+  }
+
   namespace
   {
-    template <typename Number>
-    bool is_in(const Operation<Number> &operation, const unsigned int die)
-    {
-      return std::find(operation.dies.begin(), operation.dies.end(), die) != operation.dies.end();
-    }
-
     /// Mean speed of a press over an increment, over that of its dies.
     template <typename Number>
     Number pace(const Operation<Number> &operation, const StrokeStep &at)
@@ -69,7 +86,7 @@ namespace retroforge
     for (unsigned int d = 0; d < dies.size(); ++d)
     {
       DieState<Number> &die = physics.dies[d];
-      die.in_press          = is_in(operation, d) ? 1 : 0;
+      die.in_press          = operation.has(d) ? 1 : 0;
       die.displacement += die.velocity * passed;
       die.velocity *= die.in_press == 1 ? faster : Number(0.);
     }
@@ -107,7 +124,7 @@ namespace retroforge
     for (std::size_t d = 0; d < dies_bar.size(); ++d)
     {
       const Vec3 &v = process.dies[d].velocity;
-      if (!is_in(operation, d))
+      if (!operation.has(d))
         dies_bar[d].velocity = Vec3();
       pace_bar += dies_bar[d].velocity * v;
       per_path_bar += dies_bar[d].displacement * v * at.stroke;

@@ -14,9 +14,10 @@ namespace retroforge
 
   Forging::Forging(const ForgingModel    &model,
                    const PressParameters &press,
+                   const StrokeStep      &end,
                    const Remesher        &remesher,
                    Timings               &timings)
-      : model_(model), press_(press), remesher_(remesher), timings_(timings), limits_(model, press, remesher)
+      : model_(model), end_(end), remesher_(remesher), timings_(timings), limits_(model, press, remesher)
   {
   }
 
@@ -104,12 +105,15 @@ namespace retroforge
     Field<double> W(scene.discretization);
     W.V.take(state.solution->V);
     W.P.take(state.solution->P);
-    return optimal_sizes(
-      scene.mesh,
-      state.workpiece.X,
-      indicated_errors(scene.discretization, state.workpiece.X, W, process.material, state.workpiece.strain),
-      velocity_degree(scene.discretization),
-      remesher_.error_size_bounds());
+    return optimal_sizes(scene.mesh,
+                         state.workpiece.X,
+                         indicated_errors(scene.discretization,
+                                          state.workpiece.X,
+                                          W,
+                                          process.material,
+                                          point_states(scene.mesh, state.workpiece)),
+                         velocity_degree(scene.discretization),
+                         remesher_.error_size_bounds());
   }
 
   void Forging::remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const
@@ -133,7 +137,7 @@ namespace retroforge
                                  const Observer        &observer) const
   {
     const NodalVectors<double> X_before = state.workpiece.X;
-    if (process.material.depends_on_state())
+    if (Increment::reads_history(process))
       state.starts.push_back(without_positions(state.workpiece));
     {
       const auto timing = timings_.scope("checks");
@@ -160,7 +164,7 @@ namespace retroforge
            std::abs(done * (1 << (state.depth - 1)) - std::round(done * (1 << (state.depth - 1)))) < 1e-9)
       --state.depth;
     if (observer)
-      observer({record, X_before, solved, state, process.time(state.stroke, state.operation)});
+      observer({record, X_before, solved, state, process.whole_time(state.stroke, state.operation)});
   }
 
   void Forging::change_numerics(std::optional<std::string> parameters, ForgingState &state)
@@ -171,9 +175,26 @@ namespace retroforge
     state.parameters          = std::move(parameters);
   }
 
+  void Forging::enter(const unsigned int operation, ForgingState &state) const
+  {
+    if (operation == state.operation)
+      return;
+    state.operation = operation;
+    state.stroke    = 0.;
+    change_numerics(state.parameters, state);
+    state.next   = {};
+    state.next.W = Field<double>(state.epoch->scene.discretization);
+  }
+
+  double Forging::last_stroke(const Process<double> &process, const ForgingState &state) const
+  {
+    AssertIndexRange(state.operation, process.operations.size());
+    return state.operation == end_.operation ? end_.stroke : process.operations[state.operation].stroke;
+  }
+
   bool Forging::is_left(const ForgingState &state) const
   {
-    return state.stroke < press_.stroke - 1e-9 * nominal_step();
+    return state.operation < end_.operation || state.stroke < end_.stroke - 1e-9 * nominal_step();
   }
 
   void Forging::run(const Process<double> &process, ForgingState &state, const Observer &observer) const
@@ -191,6 +212,11 @@ namespace retroforge
       limits_.check_progress(state);
     while (is_left(state))
     {
+      if (!(state.stroke < last_stroke(process, state) - 1e-9 * nominal_step()))
+      {
+        enter(state.operation + 1, state);
+        continue; // other numerics may begin here
+      }
       IncrementRecord record;
       const auto      renew = [&]() {
         remesh(process, state, record);
@@ -213,9 +239,9 @@ namespace retroforge
         renew();
       if (crossed)
         limits_.check_fold(state);
-      record.operation  = state.operation;
-      record.stroke     = state.stroke;
-      record.step       = std::min(nominal_step() / (1 << state.depth), press_.stroke - state.stroke);
+      record.operation = state.operation;
+      record.stroke    = state.stroke;
+      record.step = std::min(nominal_step() / (1 << state.depth), last_stroke(process, state) - state.stroke);
       record.parameters = std::exchange(state.parameters, std::nullopt);
       SolvedIncrement solved;
       InitialGuess    guess   = state.next;
@@ -263,6 +289,7 @@ namespace retroforge
     for (unsigned int i = 0; i < n; ++i)
     {
       const IncrementRecord &record = access(i);
+      enter(record.operation, state);
       if (record.parameters)
         change_numerics({}, state);
       if (record.remesh)
@@ -288,6 +315,7 @@ namespace retroforge
     {
       IncrementRecord record = access(i);
       record.newton = record.krylov = record.linear_solves = 0;
+      enter(record.operation, state);
       if (record.remesh)
         change_mesh(*record.remesh, state);
       const InitialGuess    guess = state.epoch->increment.mechanics.recorded_guess(record);

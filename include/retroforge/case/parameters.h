@@ -18,6 +18,7 @@
 #include <retroforge/output/output_parameters.h>
 #include <retroforge/time/forging.h>
 
+#include <functional>
 #include <iosfwd>
 #include <optional>
 
@@ -52,10 +53,13 @@ namespace retroforge
 
     std::vector<std::string> without_effect; ///< a sentence on each setting that nothing reads
 
-    /// Declares everything; dies and objectives are those of the names given.
-    void add_parameters(dealii::ParameterHandler       &prm,
-                        const std::vector<std::string> &die_names,
-                        const std::vector<std::string> &objective_names);
+    /// The names in a list, as `Dies/names`, each of which has a section of a kind, as `Die NAME`.
+    using NamesOf = std::function<std::vector<std::string>(const std::string &kind,
+                                                           const std::string &list,
+                                                           const std::string &by_default)>;
+
+    /// Declares everything, with a section for each name.
+    void add_parameters(dealii::ParameterHandler &prm, const NamesOf &names_of);
 
     /// Reads a file and overrides, and checks all of it.  @throws Error
     static Parameters read(const std::string                                      &file,

@@ -56,14 +56,12 @@ namespace retroforge
   public:
     /// @param names   as in `material/K`, `die upper/friction`, `billet/stretch`; unknown ones throw Error
     /// @param contact  what numbers of the contact law follow from that are no parameters
-    /// @param stroke  of the leading die in the nominal design [mm]
     Design(const std::vector<std::string>   &names,
            const BilletParameters           &billet,
            const std::vector<DieParameters> &dies,
            const Process<double>            &nominal_process,
            const OpenContact                &contact,
-           const FirstMesh                  &first,
-           double                            stroke);
+           const FirstMesh                  &first);
 
     const std::vector<DesignParameter> &parameters() const { return parameters_; }
     std::vector<double>                 nominal() const;
@@ -133,7 +131,6 @@ namespace retroforge
     std::vector<DieFreeForm>     die_forms_; ///< free form of each die
     Process<double>              process_;
     OpenContact                  contact_;
-    double                       stroke_;
     BilletMap                    billet_map_;
     NodalVectors<double>         nominal_X_; ///< positions of the nodes in the nominal shape
     std::vector<NodeIndex>       followed_;  ///< by each die: the billet's first node in its way; or none

@@ -22,12 +22,12 @@ namespace retroforge
   /// around it, by their volumes, and linear between. The power functional is convex with the stress s as its
   /// gradient, so that this is twice its error to second order if eps* were exact.
   /// @param X, W    positions [mm] and velocities [mm/s]
-  /// @param strain  of each cell, dimensionless
+  /// @param points  state of the metal in each cell
   /// @return of all cells, on every rank. Collective.
   /// Cells that are inverted count as flat: nothing. @cite Zienkiewicz1987
-  std::vector<double> indicated_errors(const Discretization<3>    &discretization,
-                                       const NodalVectors<double> &X,
-                                       const Field<double>        &W,
-                                       const Material<double>     &material,
-                                       const std::vector<double>  &strain);
+  std::vector<double> indicated_errors(const Discretization<3>               &discretization,
+                                       const NodalVectors<double>            &X,
+                                       const Field<double>                   &W,
+                                       const Material<double>                &material,
+                                       const std::vector<PointState<double>> &points);
 } // namespace retroforge

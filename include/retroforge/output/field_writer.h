@@ -5,6 +5,8 @@
 #include <retroforge/output/picture_series.h>
 #include <retroforge/time/forging.h>
 
+#include <set>
+
 namespace retroforge
 {
   /// The shapes of a run with their fields and the dies beside them, for ParaView: fields.pvd with
@@ -47,10 +49,12 @@ namespace retroforge
     /// @param suffix  of the file's name
     /// @param X       of the workpiece, which the picture of a plane covers
     /// @returns the file
-    std::string
-    write_die(unsigned int d, double stroke, const std::string &suffix, const NodalVectors<double> &X) const;
+    std::string write_die(unsigned int                d,
+                          const Vec3                 &displacement,
+                          const std::string          &suffix,
+                          const NodalVectors<double> &X);
     /// Replaces the last step where it is at the same time.
-    void add_step(double                      stroke,
+    void add_step(const StrokeStep           &at,
                   const std::string          &file,
                   const std::string          &suffix,
                   const NodalVectors<double> &X);
@@ -64,5 +68,6 @@ namespace retroforge
     NodalVectors<double>        displacement_;     ///< since the billet [mm]
     std::size_t                 n_remeshings_ = 0; ///< number of remeshings it has been carried through
     PictureSeries               series_;           ///< at each time the workpiece, then the dies
+    std::set<unsigned int>      drawn_still_;      ///< dies that stand still and have their one picture
   };
 } // namespace retroforge

@@ -66,11 +66,12 @@ namespace retroforge
   std::vector<DieState<double>> no_derivatives(const std::vector<Die> &dies);
 
   /// Derivatives of a scalar in what Physics holds, in the increment's times (dt, approach time, and the time
-  /// at its start), and in the strain of each cell at its start, of the cells this rank owns; empty: none.
+  /// at its start), and in the state of the metal in each cell at its start, of the cells this rank owns;
+  /// empty: none.
   struct PhysicsBar : Physics<double>
   {
-    double              dt = 0., tau = 0., time = 0.;
-    std::vector<double> strain;
+    double                          dt = 0., tau = 0., time = 0.;
+    std::vector<PointState<double>> points;
 
     explicit PhysicsBar(const std::vector<Die> &dies) { this->dies = no_derivatives(dies); }
   };
@@ -96,11 +97,11 @@ namespace retroforge
     const ActiveSet *given_ = nullptr;
   };
 
-  /// The strain of metal in its initial state.
+  /// Metal in its initial state.
   template <typename Number>
-  const std::vector<Number> &no_strain()
+  const std::vector<PointState<Number>> &initial_points()
   {
-    static const std::vector<Number> none;
+    static const std::vector<PointState<Number>> none;
     return none;
   }
 
@@ -112,12 +113,12 @@ namespace retroforge
   {
   public:
     /// What is passed must live as long.
-    /// @param strain  of each cell at the start of the increment; empty: none
-    Equilibrium(const Scene                &scene,
-                const Physics<Number>      &physics,
-                const ContactSet<Number>   &contact,
-                const NodalVectors<Number> &X,
-                const std::vector<Number>  &strain = no_strain<Number>());
+    /// @param points  state of the metal in each cell at the start of the increment; empty: the initial one
+    Equilibrium(const Scene                           &scene,
+                const Physics<Number>                 &physics,
+                const ContactSet<Number>              &contact,
+                const NodalVectors<Number>            &X,
+                const std::vector<PointState<Number>> &points = initial_points<Number>());
 
     /// The law of the metal in a cell.
     MaterialLaw<Number> law(const CellIndex c) const { return physics.material.at(state(c)); }
@@ -141,12 +142,12 @@ namespace retroforge
     /// Which pairs are pressed: those with h > 0, and what they hold (ContactSet::middles_around).
     ActiveSet decide_active(const Field<Number> &W) const;
 
-    const Scene                &scene;
-    const Physics<Number>      &physics;
-    const ContactSet<Number>   &contact;
-    const NodalVectors<Number> &X;
-    const std::vector<Number>  &strain;
-    ContactAreas<Number>        areas;
+    const Scene                           &scene;
+    const Physics<Number>                 &physics;
+    const ContactSet<Number>              &contact;
+    const NodalVectors<Number>            &X;
+    const std::vector<PointState<Number>> &points;
+    ContactAreas<Number>                   areas;
   };
 
   /// Sum over the nodes of the norms of the cells' forces, the scale a residual is measured against, as a
@@ -184,6 +185,13 @@ namespace retroforge
     ShapeDerivatives      shape = {}; ///< how derivatives of cells in X are found
   };
 
+  /// Reverse of Equilibrium::law(): adds the derivatives in the numbers of the metal and in the state of a cell.
+  /// @param law_bar  derivatives in the law of the cell
+  void reverse_law(const Equilibrium<double> &stage,
+                   CellIndex                  c,
+                   const MaterialLaw<double> &law_bar,
+                   PhysicsBar                &bar);
+
   /// Adds the derivatives of  lambda·residual  at fixed W to all but bar.W.
   void
   reverse_residual(const EquilibriumView<double> &view, const Field<double> &lambda, EquilibriumBar &bar);
@@ -195,29 +203,29 @@ namespace retroforge
                      EquilibriumBar                &bar);
 
   template <typename Number>
-  Equilibrium<Number>::Equilibrium(const Scene                &scene,
-                                   const Physics<Number>      &physics,
-                                   const ContactSet<Number>   &contact,
-                                   const NodalVectors<Number> &X,
-                                   const std::vector<Number>  &strain)
+  Equilibrium<Number>::Equilibrium(const Scene                           &scene,
+                                   const Physics<Number>                 &physics,
+                                   const ContactSet<Number>              &contact,
+                                   const NodalVectors<Number>            &X,
+                                   const std::vector<PointState<Number>> &points)
       : scene(scene)
       , physics(physics)
       , contact(contact)
       , X(X)
-      , strain(strain)
+      , points(points)
       , areas(contact_areas(scene.mesh, scene.topology, contact, X)) // asks for a position of each node
   {
     Assert(physics.dies.size() == scene.dies.size(),
            dealii::ExcDimensionMismatch(physics.dies.size(), scene.dies.size()));
     Assert(contact.ramps.size() == contact.pairs.size(),
            dealii::ExcDimensionMismatch(contact.ramps.size(), contact.pairs.size()));
-    Assert(strain.size() == scene.mesh.n_cells() || (strain.empty() && !physics.material.depends_on_state()),
-           dealii::ExcDimensionMismatch(strain.size(), scene.mesh.n_cells()));
+    Assert(points.size() == scene.mesh.n_cells() || (points.empty() && !physics.material.depends_on_state()),
+           dealii::ExcDimensionMismatch(points.size(), scene.mesh.n_cells()));
   }
 
   template <typename Number>
   PointState<Number> Equilibrium<Number>::state(const CellIndex c) const
   {
-    return strain.empty() ? PointState<Number>{} : PointState<Number>{strain[c]};
+    return points.empty() ? PointState<Number>{} : points[c];
   }
 } // namespace retroforge

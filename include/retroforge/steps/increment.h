@@ -21,6 +21,9 @@ namespace retroforge
     {
     }
 
+    /// Tells whether reverse() reads more of the state at the start than its positions.
+    static bool reads_history(const Process<double> &process);
+
     /// Takes the state to the end of an increment whose mechanics is solved.
     void advance(const SolvedIncrement &solved, WorkpieceState<3, double> &state) const;
 
@@ -32,7 +35,7 @@ namespace retroforge
                  WorkpieceState<3, Dual> &state);
 
     /// Takes costates from the end of a recorded increment to its start.
-    /// @param state   at the start; its strain is read where laws depend on it
+    /// @param state   at the start; all but its positions may be missing unless reads_history()
     /// @param source  what objectives take from each stage
     void reverse(const Process<double>           &process,
                  const WorkpieceState<3, double> &state,

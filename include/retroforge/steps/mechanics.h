@@ -5,6 +5,7 @@
 #include <retroforge/core/rank_sum.h>
 #include <retroforge/record/increment_record.h>
 #include <retroforge/solver/newton.h>
+#include <retroforge/steps/point_states.h>
 #include <retroforge/steps/process.h>
 #include <retroforge/steps/scheme.h>
 #include <retroforge/steps/workpiece_state.h>
@@ -52,8 +53,8 @@ namespace retroforge
     Physics<Number>    physics;
     Number             dt; ///< [s]
     ContactSet<Number> contact;
-    /// Of each cell, where laws depend on it; else empty.
-    std::vector<Number> strain;
+    /// State of the metal in each cell, where laws depend on it; else empty.
+    std::vector<PointState<Number>> points;
 
     IncrementStart(const Scene                     &scene,
                    const Process<Number>           &process,
@@ -127,8 +128,8 @@ namespace retroforge
 
     /// Reverse of forward, for several scalars at once: they share the matrix and its preconditioner, and
     /// each has a solve per stage of its own. The costates' positions are those of X_{i+1} on entry, of X_i
-    /// on exit; to the costate of the strain at the start it adds what laws that depend on it take.
-    /// @param state  at the start of the increment; its strain is read where laws depend on it
+    /// on exit; to the costate at the start they add what laws that depend on it take.
+    /// @param state  at the start of the increment; all but its positions is read where laws depend on it
     /// @param source  of each stage: objectives, and the steps that follow mechanics
     void reverse(const Process<double>           &process,
                  const WorkpieceState<3, double> &state,

@@ -6,6 +6,8 @@
 #include <retroforge/solver/equilibrium.h>
 #include <retroforge/steps/press_motion.h>
 
+#include <algorithm>
+
 namespace retroforge
 {
   /// One increment's place, fixed by decision: in an operation, from `stroke` on by `step` [mm]. The times
@@ -32,13 +34,19 @@ namespace retroforge
     /// follows a billet whose height has changed.
     Number              path_scale = Number(1.);
     PressMotion<Number> motion;
+    /// How far it goes in the nominal design [mm]. A run divides it into increments by decision: nothing is
+    /// differentiated by it.
+    Number stroke = Number(0.);
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[dies, leading_die, path_scale, motion] = self;
-      return std::tie(dies, leading_die, path_scale, motion);
+      auto &[dies, leading_die, path_scale, motion, stroke] = self;
+      return std::tie(dies, leading_die, path_scale, motion, stroke);
     }
+
+    /// Returns whether a die stands in the press.
+    bool has(const unsigned int die) const { return std::find(dies.begin(), dies.end(), die) != dies.end(); }
   };
 
   /// Everything about the process that a design can change: the material, the dies of all operations, and the
@@ -75,6 +83,15 @@ namespace retroforge
 
     /// Returns the time that an increment takes:  scale * path(stroke, step) / speed  [s].
     Number duration(const StrokeStep &at) const;
+
+    /// Returns the end of the last operation.
+    StrokeStep end() const;
+
+    /// Returns the strokes of all operations up to one of an operation [mm].
+    Number whole_stroke(double stroke, unsigned int operation) const;
+
+    /// Returns the time from the start of the first operation to a stroke of an operation [s].
+    Number whole_time(double stroke, unsigned int operation) const;
 
     /// Returns laws and dies when the leading die has gone `stroke` [mm] in an operation. Their velocities
     /// are those of a press at constant speed.

@@ -16,17 +16,19 @@ namespace retroforge
     double                      time;
   };
 
-  /// The time loop: increments of equal stroke, halved while an element would invert or a node would cross
-  /// too much of an edge, on meshes that are remade when they must. In a replay what was recorded is obeyed
-  /// instead.
+  /// The time loop through the operations of a process: increments of equal stroke, halved while an element
+  /// would invert or a node would cross too much of an edge, on meshes that are remade when they must. In a
+  /// replay what was recorded is obeyed instead.
   class Forging
   {
   public:
     using Observer     = std::function<void(const IncrementEvent &)>;
     using RecordAccess = std::function<const IncrementRecord &(unsigned int)>;
 
+    /// @param end  where the run goes: that of the process, or where other numerics begin to hold
     Forging(const ForgingModel    &model,
             const PressParameters &press,
+            const StrokeStep      &end,
             const Remesher        &remesher,
             Timings               &timings);
 
@@ -38,10 +40,10 @@ namespace retroforge
     /// record need not
     static void change_numerics(std::optional<std::string> parameters, ForgingState &state);
 
-    /// Whether the stroke is not done yet.
+    /// Returns whether increments are left before the end.
     bool is_left(const ForgingState &state) const;
 
-    /// Goes on from `state` to the end of the stroke, and decides everything anew.
+    /// Goes on from `state` to the end, through all operations on the way, and decides everything anew.
     void run(const Process<double> &process, ForgingState &state, const Observer &observer) const;
 
     /// Where a run stood after n recorded increments, to the bit: nothing is solved.
@@ -62,6 +64,13 @@ namespace retroforge
     void change_mesh(const RemeshRecord &remesh, ForgingState &state) const;
 
   private:
+    /// Takes the state to the start of an operation, unless it is in it: other dies, which have not met the
+    /// workpiece, and whole increments again.
+    void enter(unsigned int operation, ForgingState &state) const;
+
+    /// Returns how far the operation of the state goes, by the end at most [mm].
+    double last_stroke(const Process<double> &process, const ForgingState &state) const;
+
     /// Solves an increment of record.step, and returns why it is rejected, if it is.
     /// @param guess  out: what was found, for a shorter increment
     std::optional<StepRejection> attempt(const Process<double> &process,
@@ -82,10 +91,10 @@ namespace retroforge
     /// Stroke of an increment that is not cut [mm].
     double nominal_step() const { return model_.step.contact.step; }
 
-    const ForgingModel    &model_;
-    const PressParameters &press_;
-    const Remesher        &remesher_;
-    Timings               &timings_;
-    const IncrementLimits  limits_;
+    const ForgingModel   &model_;
+    const StrokeStep      end_;
+    const Remesher       &remesher_;
+    Timings              &timings_;
+    const IncrementLimits limits_;
   };
 } // namespace retroforge

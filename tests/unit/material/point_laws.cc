@@ -60,20 +60,20 @@ namespace
   /// A corner stage of hardening metal.
   struct HardenedStage
   {
-    CornerStage         corner;
-    std::vector<double> strain;
+    CornerStage                     corner;
+    std::vector<PointState<double>> points;
 
     HardenedStage(Random &random, const ElementPair pair)
-        : corner(random, 2., pair, {{2, 3, 2}}), strain(random.scalars(corner.scene.mesh.n_cells()))
+        : corner(random, 2., pair, {{2, 3, 2}}), points(corner.scene.mesh.n_cells())
     {
-      for (double &q : strain)
-        q = 0.5 + 0.5 * q;
+      for (PointState<double> &point : points)
+        point.strain = 0.5 + 0.5 * random.scalar();
       corner.physics.material = metal_of(corner.physics.material.law);
     }
 
     Equilibrium<double> stage() const
     {
-      return {corner.scene, corner.physics, corner.contact, corner.X, strain};
+      return {corner.scene, corner.physics, corner.contact, corner.X, points};
     }
   };
 
@@ -99,7 +99,7 @@ namespace
     const CornerStage        &corner         = hardened.corner;
     const auto               &discretization = corner.scene.discretization;
     const Equilibrium<double> stage          = hardened.stage();
-    const std::vector<double> strain_dot     = random.scalars(hardened.strain.size());
+    const std::vector<double> strain_dot     = random.scalars(hardened.points.size());
     std::vector<double>       numbers_dot;
     Physics<Dual>             physics = converted<Dual>(corner.physics);
     for_each_number(
@@ -108,18 +108,18 @@ namespace
         x = along(x.val(), numbers_dot.back());
       },
       physics.material);
-    std::vector<Dual>  strain;
-    NodalVectors<Dual> X;
-    Field<Dual>        W(discretization);
+    std::vector<PointState<Dual>> points;
+    NodalVectors<Dual>            X;
+    Field<Dual>                   W(discretization);
     for (std::size_t c = 0; c < strain_dot.size(); ++c)
-      strain.push_back(along(hardened.strain[c], strain_dot[c]));
+      points.push_back({along(hardened.points[c].strain, strain_dot[c])});
     convert(corner.X, X);
     for (unsigned int place = 0; place < W.V.size(); ++place)
       convert(corner.W.V.at_place(place), W.V.at_place(place));
     for (unsigned int place = 0; place < W.P.size(); ++place)
       W.P.at_place(place) = corner.W.P.at_place(place);
     const ContactSet<Dual>  contact = contact_of(corner, physics, X);
-    const Equilibrium<Dual> moved(corner.scene, physics, contact, X, strain);
+    const Equilibrium<Dual> moved(corner.scene, physics, contact, X, points);
 
     const Field<double> lambda  = corner.random_field(random);
     const Field<Dual>   r       = moved.residual(W, corner.active);
@@ -141,8 +141,8 @@ namespace
       double sum  = 0.;
       auto   next = numbers_dot.begin();
       for_each_number([&](const double &x) { sum += x * *next++; }, bar.material);
-      for (std::size_t c = 0; c < bar.strain.size(); ++c)
-        sum += bar.strain[c] * strain_dot[c];
+      for (std::size_t c = 0; c < bar.points.size(); ++c)
+        sum += bar.points[c].strain * strain_dot[c];
       return discretization.sum(sum);
     };
     errors.compare("residual, transposed",
@@ -174,12 +174,13 @@ namespace
     Field<double>             at     = corner.W;
     const Field<double>       w      = corner.random_field(random);
     solve_bubbles(stage, at);
-    Physics<Dual>      physics = converted<Dual>(corner.physics);
-    std::vector<Dual>  strain(hardened.strain.begin(), hardened.strain.end());
-    NodalVectors<Dual> X;
+    Physics<Dual>                 physics = converted<Dual>(corner.physics);
+    std::vector<PointState<Dual>> points;
+    NodalVectors<Dual>            X;
+    convert(hardened.points, points);
     convert(corner.X, X);
     const auto              contact = contact_of(corner, physics, X);
-    const Equilibrium<Dual> moved(corner.scene, physics, contact, X, strain);
+    const Equilibrium<Dual> moved(corner.scene, physics, contact, X, points);
     Field<Dual>             W(spaces);
     for (unsigned int place = 0; place < W.V.size(); ++place)
       for (unsigned int i = 0; i < 3; ++i)

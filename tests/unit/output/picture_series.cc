@@ -33,12 +33,14 @@ void add_first(PictureSeries &series)
 void by_hand()
 {
   PictureSeries series(list_file);
-  std::cout << "nothing is written before: " << !std::filesystem::exists(list_file) << series.empty() << std::endl;
+  std::cout << "nothing is written before: " << !std::filesystem::exists(list_file) << series.empty()
+            << std::endl;
   add_billet(series);
   std::filesystem::create_hard_link(list_file, link_to_it);
   std::cout << read_file(list_file);
   add_first(series);
-  std::cout << read_file(list_file) << "in its place: " << (read_file(link_to_it) == read_file(list_file)) << std::endl;
+  std::cout << read_file(list_file) << "in its place: " << (read_file(link_to_it) == read_file(list_file))
+            << std::endl;
   series.add(0.5, {"fields_000002.vtu", "die_lower.vtu"});
   series.add(0.5, {"failed.vtu"});
   std::cout << read_file(list_file);
