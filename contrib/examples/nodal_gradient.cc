@@ -21,18 +21,18 @@ int main(int argc, char *argv[])
     Timings    timings;
     const Case made(
       CommandLine::parse(argc, argv), timings, MPI_COMM_WORLD); // mesh, dies, process, objectives
-    ForwardRun trial(made, made.process, made.X_0, ForwardRun::Keep::increments);
-    trial.check();
-    trial.forge([](const IncrementEvent &event) { std::cerr << "stroke " << event.state.stroke << " mm\n"; });
-    const std::vector<double> values = made.combine(trial.values());
-    const AdjointSweep        sweep  = trial.sweep(made.combinations); // one backward pass for all of them
+    ForwardRun run(made, made.process, made.X_0, ForwardRun::Keep::increments, timings);
+    run.check();
+    run.forge([](const IncrementEvent &event) { std::cerr << "stroke " << event.state.stroke << " mm\n"; });
+    const std::vector<double> values = made.combine(run.values());
+    const AdjointSweep        sweep  = run.sweep(made.combinations); // one backward pass for all of them
 
     std::cout.precision(17);
     for (std::size_t j = 0; j < values.size(); ++j)
     {
       std::cout << made.combinations[j].name << ' ' << values[j] << '\n';
-      const NodalVectors<double> &by_nodes = sweep.of[j].X_0; // d objective / d initial position of each node
-      const std::vector<double> by_parameters = made.design.pull_back(made.mu, by_nodes, sweep.of[j].process);
+      const NodalVectors<double> &by_nodes = sweep.gradients[j].X_0; // d objective / d initial position of each node
+      const std::vector<double> by_parameters = made.design.pull_back(made.mu, by_nodes, sweep.gradients[j].process);
       for (std::size_t i = 0; i < by_parameters.size(); ++i)
         std::cout << "  by " << made.design.parameters()[i].name << ' ' << by_parameters[i] << '\n';
       double wider = 0.;

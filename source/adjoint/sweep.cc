@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/adjoint/sweep.h>
-#include <retroforge/discretization/strain_history.h>
-#include <retroforge/transfer/cell_transfer.h>
+#include <retroforge/steps/change_of_mesh.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -10,36 +9,21 @@ namespace retroforge
 {
   namespace
   {
-    bool is_first(MPI_Comm comm)
-    {
-      return dealii::Utilities::MPI::this_mpi_process(comm) == 0;
-    }
-
     void add(const double weight, const NodalVectors<double> &from, NodalVectors<double> &to)
     {
       for (std::size_t k = 0; k < to.size(); ++k)
         to[k] += weight * from[k];
     }
 
-    /// Derivatives of an objective of the end, complete but for the process.
-    FinalBar
-    reverse_at_end(const RecordedForging &run, const ForgingState &end, const FinalObjective &objective)
+    /// Derivatives of objective o, one of the end.
+    FinalBar reverse_at_end(const RecordedForging &run, const ForgingState &end, const std::size_t o)
     {
-      const MPI_Comm comm      = run.model.comm;
-      const auto     dies      = run.process.at_stroke(end.stroke).dies;
-      const auto     view      = final_view(objective, end.leg->scene, end.X, end.strain, dies);
-      const auto     integrals = sum_over_ranks(objective.integrals(view), comm);
-      const auto     d         = objective.target_die();
-      FinalBar bar(end.leg->scene, d == invalid_index ? 0 : run.model.dies[d].surface()->vertices().size());
-      objective.reverse_integrals(view, objective.reverse_value(integrals), bar);
-      MPI_Allreduce(MPI_IN_PLACE, bar.X.data()->begin_raw(), 3 * bar.X.size(), MPI_DOUBLE, MPI_SUM, comm);
-      bar.q = sum_over_ranks(std::move(bar.q), comm);
-      return bar;
-    }
-
-    bool is_zero(const std::vector<double> &x)
-    {
-      return std::all_of(x.begin(), x.end(), [](const double entry) { return entry == 0.; });
+      const FinalObjective &objective = *run.objectives[o].at_end;
+      const FinalDecisions &decisions = run.traced.decisions[o];
+      const auto            dies      = run.process.at_stroke(end.stroke, end.operation).dies;
+      const auto view = final_view(objective, end.epoch->scene, end.workpiece.X, end.workpiece.strain, dies);
+      const auto integrals = objective.integrals(view, decisions).complete();
+      return objective.derivatives(view, decisions, objective.reverse_value(integrals, decisions)).complete();
     }
 
     /// The costates of the workpiece at the end of the run.
@@ -47,25 +31,22 @@ namespace retroforge
                                         const ForgingState             &end,
                                         const std::vector<Combination> &combinations)
     {
-      std::vector<Costate> costates(
-        combinations.size(),
-        {NodalVectors<double>(end.X.size()), {}, no_process_derivatives(run.model.dies)});
+      std::vector<Costate> costates(combinations.size(),
+                                    {zero_costate<3>(end.workpiece.X.size(), end.workpiece.strain.size()),
+                                     {no_process_derivatives(run.process, run.model.dies), run.model.comm}});
       for (std::size_t o = 0; o < run.objectives.size(); ++o)
       {
         if (!run.objectives[o].at_end)
           continue;
-        const FinalBar bar        = reverse_at_end(run, end, *run.objectives[o].at_end);
-        const bool     has_strain = !is_zero(bar.q);
+        const FinalBar bar = reverse_at_end(run, end, o);
         for (std::size_t j = 0; j < costates.size(); ++j)
         {
           const double weight = combinations[j].weights[o];
           if (weight == 0.)
             continue;
-          add(weight, bar.X, costates[j].X);
-          if (has_strain)
-            costates[j].strain.resize(bar.q.size(), 0.);
-          for (std::size_t c = 0; c < costates[j].strain.size(); ++c)
-            costates[j].strain[c] += weight * bar.q[c];
+          add(weight, bar.X, costates[j].workpiece.X);
+          for (std::size_t c = 0; c < bar.q.size(); ++c)
+            costates[j].workpiece.strain[c] += weight * bar.q[c];
           PhysicsBar physics_bar(run.model.dies);
           if (const auto d = run.objectives[o].at_end->target_die(); d != invalid_index)
             add(weight, bar.target, physics_bar.dies[d].vertices);
@@ -74,21 +55,22 @@ namespace retroforge
             physics_bar.dies[d].displacement = weight * bar.dies[d].displacement;
             add(weight, bar.dies[d].vertices, physics_bar.dies[d].vertices);
           }
-          reverse_at_stroke(run.process, {end.stroke, 0.}, 0., physics_bar, costates[j].process);
+          costates[j].process.add_once([&](Process<double> &part) {
+            reverse_over(run.process, {end.stroke, 0., end.operation}, 0., physics_bar, part);
+          });
         }
       }
       return costates;
     }
 
     /// What objectives of the path give to increment i.
-    StageSource source_of(const RecordedForging               &run,
-                          const std::vector<PathRows<double>> &rows,
-                          const std::vector<PathRows<double>> &rows_bar,
-                          const std::vector<Combination>      &combinations,
-                          const unsigned int                   i)
+    AdjointSource source_of(const RecordedForging               &run,
+                            const std::vector<PathRows<double>> &rows_bar,
+                            const std::vector<Combination>      &combinations,
+                            const unsigned int                   i)
     {
-      return [&run, &rows, &rows_bar, &combinations, i](
-               const std::size_t j, const StageView<double> &view, StageBar &bar) {
+      return [&run, &rows_bar, &combinations, i](
+               const std::size_t j, const EquilibriumView<double> &view, EquilibriumBar &bar) {
         for (std::size_t o = 0; o < run.objectives.size(); ++o)
         {
           const double weight = combinations[j].weights[o] * view.weight;
@@ -98,47 +80,39 @@ namespace retroforge
           for (double &w : weights)
             w *= weight;
           run.objectives[o].path->reverse_integrals(view, weights, bar);
-          if (is_first(run.model.comm))
-            bar.physics.dt += weight * dt_bar(rows[o][i], rows_bar[o][i]);
         }
       };
     }
 
-    /// The strain at the start of increment i, where laws depend on it; else empty.
-    std::vector<double> strain_at_start(const ForgingState &end, const unsigned int i)
+    /// What they take from the times of the increment, which all ranks know.
+    void reverse_times(const RecordedForging               &run,
+                       const std::vector<PathRows<double>> &rows_bar,
+                       const Combination                   &combination,
+                       const unsigned int                   i,
+                       const IncrementRecord               &record,
+                       Costate                             &costate)
     {
-      return end.strains.empty() ? std::vector<double>() : end.strains[i];
-    }
-
-    /// From the new mesh back to the old: X' = J X + c, and the strain.
-    void reverse_change_mesh(const RemeshRecord        &remesh,
-                             const TetMesh             &old_mesh,
-                             const std::vector<double> &strain_before,
-                             Costate                   &costate)
-    {
-      costate.X = remesh.transfer.apply_transpose(costate.X);
-      if (costate.strain.empty())
-        return;
-      std::vector<double> strain(old_mesh.n_cells(), 0.);
-      reverse_transfer_cells(old_mesh,
-                             remesh.X_before,
-                             remesh.transfer,
-                             remesh.mesh,
-                             strain_before,
-                             std::move(costate.strain),
-                             strain,
-                             costate.X);
-      costate.strain = std::move(strain);
+      PhysicsBar bar(run.model.dies);
+      for (std::size_t o = 0; o < run.objectives.size(); ++o)
+        if (run.objectives[o].path)
+        {
+          bar.dt += combination.weights[o] * rows_bar[o][i].dt;
+          bar.time += combination.weights[o] * rows_bar[o][i].time;
+        }
+      if (bar.dt != 0. || bar.time != 0.)
+        costate.process.add_once(
+          [&](Process<double> &part) { reverse_over(run.process, place(record), 0., bar, part); });
     }
   } // namespace
 
-  AdjointSweep adjoint_sweep(const RecordedForging               &run,
-                             const std::vector<PathRows<double>> &rows,
-                             const ForgingState                  &end,
-                             const std::vector<Combination>      &combinations)
+  AdjointSweep adjoint_sweep(const RecordedForging          &run,
+                             const ForgingState             &end,
+                             const std::vector<Combination> &combinations)
   {
+    const std::vector<PathRows<double>> &rows = run.traced.rows;
     AssertDimension(end.increments, run.n);
     AssertDimension(rows.size(), run.objectives.size());
+    AssertDimension(run.traced.decisions.size(), run.objectives.size());
     Assert(std::all_of(combinations.begin(),
                        combinations.end(),
                        [&](const Combination &of) { return of.weights.size() == run.objectives.size(); }),
@@ -150,42 +124,42 @@ namespace retroforge
         AssertDimension(rows[o].size(), end.increments);
         rows_bar[o] = run.objectives[o].path->reverse_value(rows[o]);
       }
-    std::vector<Costate>      costates = start_costates(run, end, combinations);
-    NodalVectors<double>      X        = end.X;
-    std::vector<unsigned int> remeshed = end.remeshed;
-    std::shared_ptr<Leg>      leg      = end.leg;
-    AdjointSweep              sweep;
-    leg->increment.forget();
+    std::vector<Costate>       costates = start_costates(run, end, combinations);
+    WorkpieceState<3, double>  state    = end.workpiece; // at the end, then at the start of each increment
+    std::vector<unsigned int>  remeshed = end.remeshed;
+    std::shared_ptr<MeshEpoch> epoch    = end.epoch;
+    AdjointSweep               sweep;
+    epoch->increment.mechanics.forget();
     for (unsigned int i = end.increments; i-- > 0;)
     {
-      const IncrementRecord &record = run.source(i);
-      const unsigned int     before = leg->system.n_solves;
-      X                             = leg->increment.retreat(run.process, X, record);
-      leg->increment.reverse(run.process,
-                             X,
-                             strain_at_start(end, i),
-                             record,
-                             source_of(run, rows, rows_bar, combinations, i),
-                             costates);
-      sweep.linear_solves += leg->system.n_solves - before;
+      const IncrementRecord     &record = run.record(i);
+      const unsigned int         before = epoch->system.n_solves;
+      const NodalVectors<double> X      = epoch->increment.mechanics.retreat(run.process, state.X, record);
+      if (!end.starts.empty())
+        state = end.starts[i];
+      state.X = X;
+      epoch->increment.reverse(
+        run.process, state, record, source_of(run, rows_bar, combinations, i), costates);
+      for (std::size_t j = 0; j < costates.size(); ++j)
+        reverse_times(run, rows_bar, combinations[j], i, record, costates[j]);
+      sweep.linear_solves += epoch->system.n_solves - before;
       if (record.remesh)
       {
         const auto remesh = record.remesh;
         remeshed.pop_back();
-        leg = remeshed.empty()
-                ? run.first
-                : std::make_shared<Leg>(run.source(remeshed.back()).remesh->mesh, run.model, run.timings);
-        leg->increment.forget();
-        X = remesh->X_before;
+        epoch =
+          remeshed.empty()
+            ? run.first
+            : std::make_shared<MeshEpoch>(run.record(remeshed.back()).remesh->mesh, run.model, run.timings);
+        epoch->increment.mechanics.forget();
+        state   = end.left_behind[remeshed.size()];
+        state.X = remesh->X_before;
         for (Costate &costate : costates)
-          reverse_change_mesh(*remesh, leg->scene.mesh, end.strains_before[remeshed.size()], costate);
+          costate.workpiece = reverse_change_mesh(epoch->scene.mesh, *remesh, state, costate.workpiece);
       }
     }
     for (Costate &costate : costates)
-    {
-      sum_over_ranks(costate.process, run.model.comm);
-      sweep.of.push_back({std::move(costate.X), std::move(costate.process)});
-    }
+      sweep.gradients.push_back({std::move(costate.workpiece.X), costate.process.complete()});
     return sweep;
   }
 
@@ -194,34 +168,32 @@ namespace retroforge
   {
     AssertDimension(X.size(), run.first->scene.mesh.n_nodes());
     AssertDimension(process.dies.size(), run.model.dies.size());
-    std::shared_ptr<Leg>        leg = run.first;
+    std::shared_ptr<MeshEpoch>  epoch = run.first;
     std::vector<PathRows<Dual>> rows(run.objectives.size());
-    std::vector<Dual>           strain(leg->scene.mesh.n_cells(), Dual(0.));
-    double                      end = 0.;
+    auto                        state = initial_state<3>(std::move(X), epoch->scene.mesh.n_cells());
+    StrokeStep                  end{0., 0.};
     for (unsigned int i = 0; i < run.n; ++i)
     {
-      const IncrementRecord &record = run.source(i);
+      const IncrementRecord &record = run.record(i);
       if (record.remesh)
       {
-        const RemeshRecord &remesh = *record.remesh;
-        strain                     = transfer_cells(leg->scene.mesh, X, remesh.transfer, remesh.mesh, strain);
-        X                          = remesh.transfer.positions(X);
-        leg                        = std::make_shared<Leg>(record.remesh->mesh, run.model, run.timings);
+        state = change_mesh(epoch->scene.mesh, *record.remesh, state);
+        epoch = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model, run.timings);
       }
-      end = record.stroke + record.step;
+      end = place(record);
       for (auto &of_objective : rows)
         of_objective.push_back(row_of(record, process));
-      X =
-        leg->increment.tangent(process, X, strain, record, [&](const StageView<Dual> &view, const Dual &dt) {
+      epoch->increment.tangent(
+        process,
+        record,
+        [&](const EquilibriumView<Dual> &view, const Dual &) {
           for (std::size_t o = 0; o < run.objectives.size(); ++o)
             if (run.objectives[o].path)
               add_integrals(*run.objectives[o].path, view, rows[o].back());
-          strain = accumulate_strain(
-            leg->scene.discretization, view.stage.X, view.W, Dual(view.weight * dt), strain);
-        });
-      complete_entries(leg->scene.discretization.cells(), strain.data(), 1);
+        },
+        state);
     }
-    const auto        dies = process.at_stroke(end).dies;
+    const auto        dies = process.at_stroke(end.stroke + end.step, end.operation).dies;
     std::vector<Dual> values;
     for (std::size_t o = 0; o < run.objectives.size(); ++o)
       if (run.objectives[o].path)
@@ -229,8 +201,9 @@ namespace retroforge
       else
       {
         const FinalObjective &objective = *run.objectives[o].at_end;
-        const auto            view      = final_view(objective, leg->scene, X, strain, dies);
-        values.push_back(objective.value(sum_over_ranks(objective.integrals(view), run.model.comm)));
+        const auto            view      = final_view(objective, epoch->scene, state.X, state.strain, dies);
+        const FinalDecisions &decisions = run.traced.decisions[o];
+        values.push_back(objective.value(objective.integrals(view, decisions).complete(), decisions));
       }
     return values;
   }

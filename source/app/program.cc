@@ -33,13 +33,13 @@ namespace retroforge
 
     int run_command(const CommandLine &command, const std::vector<std::string> &environment)
     {
-      if (command.command == "scan")
+      if (command.command == Command::scan)
         return Scan(command, environment, MPI_COMM_WORLD).run();
-      if (command.command == "optimize")
+      if (command.command == Command::optimize)
         return Optimize(command, MPI_COMM_WORLD).run();
-      if (command.command == "scene")
+      if (command.command == Command::scene)
         return SceneView(command, MPI_COMM_WORLD).run();
-      if (command.command == "check")
+      if (command.command == Command::check)
         return DerivativeCheck(command, MPI_COMM_WORLD).run();
       return Simulation(command, MPI_COMM_WORLD).run();
     }

@@ -25,7 +25,7 @@ namespace retroforge
     CutSolid solid_of(const BilletParameters &p)
     {
       CutSolid solid;
-      solid.is_cylinder = p.shape == "cylinder";
+      solid.is_cylinder = p.shape == BilletParameters::Shape::cylinder;
       solid.base_centre = p.base_centre;
       solid.size        = p.size;
       solid.radius      = p.whole_width() / 2;
@@ -33,7 +33,7 @@ namespace retroforge
       solid.cuts        = p.symmetry_cuts();
       if (p.is_revolved())
       {
-        solid.section           = p.shape == "ring" ? p.ring.section() : p.profile.section();
+        solid.section = p.shape == BilletParameters::Shape::ring ? p.ring.section() : p.profile.section();
         solid.section_angle     = p.is_sector() ? p.sector_angle : 360;
         solid.n_cuts_of_section = p.sector_planes().size();
       }
@@ -202,8 +202,8 @@ namespace retroforge
 
     TetMesh make_on_one_rank(const BilletParameters &p)
     {
-      TetMesh           mesh  = p.shape == "file" ? read_file(p) : mesh_solid(p);
-      const std::string where = p.shape == "file" ? p.file_name : "Billet";
+      TetMesh           mesh  = p.is_from_file() ? read_file(p) : mesh_solid(p);
+      const std::string where = p.is_from_file() ? p.file_name : "Billet";
       check_mesh(mesh, where);
       move(mesh, p);
       check_place(mesh);
@@ -226,16 +226,16 @@ namespace retroforge
 
   double whole_volume(const BilletParameters &p)
   {
-    return p.shape == "box"        ? p.size[0] * p.size[1] * p.size[2]
-           : p.shape == "cylinder" ? M_PI * p.radius * p.radius * p.height
-           : p.shape == "ring"     ? volume_of_revolution(p.ring.section())
-           : p.shape == "profile"  ? volume_of_revolution(p.profile.section())
-                                   : 0.;
+    return p.shape == BilletParameters::Shape::box        ? p.size[0] * p.size[1] * p.size[2]
+           : p.shape == BilletParameters::Shape::cylinder ? M_PI * p.radius * p.radius * p.height
+           : p.shape == BilletParameters::Shape::ring     ? volume_of_revolution(p.ring.section())
+           : p.shape == BilletParameters::Shape::profile  ? volume_of_revolution(p.profile.section())
+                                                          : 0.;
   }
 
   void snap_to_shape(const BilletParameters &parameters, TetMesh &mesh)
   {
-    if (parameters.shape == "file")
+    if (parameters.is_from_file())
       return;
     const std::vector<PatchShape> known = shapes_of(solid_of(parameters));
     std::vector<PatchShape>       shapes;
@@ -254,6 +254,6 @@ namespace retroforge
 
   double expected_cells(const BilletParameters &p)
   {
-    return p.shape == "file" ? 0. : expected_cells(whole_volume(p), p.element_size);
+    return p.is_from_file() ? 0. : expected_cells(whole_volume(p), p.element_size);
   }
 } // namespace retroforge

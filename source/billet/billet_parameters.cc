@@ -4,6 +4,7 @@
 
 #include <retroforge/billet/billet_parameters.h>
 #include <retroforge/billet/fineness.h>
+#include <retroforge/core/enum_setting.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/setting_tags.h>
 
@@ -13,6 +14,14 @@ namespace retroforge
 {
   namespace
   {
+    using Shape = BilletParameters::Shape;
+
+    const EnumWords<Shape> shape_words = {{"box", Shape::box},
+                                          {"cylinder", Shape::cylinder},
+                                          {"ring", Shape::ring},
+                                          {"profile", Shape::profile},
+                                          {"file", Shape::file}};
+
     void check_positive(const std::string &name, const double value)
     {
       if (!(value > 0) || !std::isfinite(value))
@@ -24,19 +33,19 @@ namespace retroforge
 
     void check_profile(const BilletParameters &p)
     {
-      if (p.shape == "ring")
+      if (p.shape == Shape::ring)
         if (const std::string complaint = p.ring.complaint(p.ring.mu); !complaint.empty())
           throw Error("Billet",
                       complaint,
                       "no portion of the ring's contour may vanish, and radii and heights are positive",
                       "see the sketch of the ring in doc/theory/billet_shapes.md");
-      if (p.shape == "profile")
+      if (p.shape == Shape::profile)
         if (const std::string complaint = p.profile.complaint(p.profile.control_points); !complaint.empty())
           throw Error("Billet/control points",
                       complaint,
                       "the contour runs upwards around the inner line, and each ray from there meets it once",
                       "write for example `20, 0; 26, 15; 26, 30; 20, 45'");
-      if (p.shape == "profile" && p.profile.control_points.front()[1] != 0.)
+      if (p.shape == Shape::profile && p.profile.control_points.front()[1] != 0.)
         throw Error("Billet/control points",
                     "the first has z = " + as_text(p.profile.control_points.front()[1]),
                     "z counts from the base, where the contour begins",
@@ -78,14 +87,14 @@ namespace retroforge
 
     void check_symmetry(const BilletParameters &p)
     {
-      if (p.shape == "file" && (!p.symmetry_planes.empty() || p.is_sector()))
+      if (p.is_from_file() && (!p.symmetry_planes.empty() || p.is_sector()))
         throw Error("Billet/symmetry planes",
                     "the shape is `file', and symmetry planes or a sector angle are given",
                     "a mesh from a file is not cut",
                     "name its planes in `symmetry patches'");
-      if (p.shape != "cylinder" && !p.is_revolved() && p.is_sector())
+      if (p.shape != Shape::cylinder && !p.is_revolved() && p.is_sector())
         throw Error("Billet/sector angle",
-                    "is " + as_text(p.sector_angle) + ", and the shape is `" + p.shape + "'",
+                    "is " + as_text(p.sector_angle) + ", and the shape is `" + p.shape_word() + "'",
                     "only bodies of revolution have sectors",
                     "set it to 0, or use symmetry planes");
       if (p.is_sector() && !(p.sector_angle > 0 && p.sector_angle <= 180))
@@ -122,22 +131,27 @@ namespace retroforge
     }
   } // namespace
 
+  std::string BilletParameters::shape_word() const
+  {
+    return word_of(shape, shape_words);
+  }
+
   double BilletParameters::whole_height() const
   {
-    return shape == "box"        ? size[2]
-           : shape == "cylinder" ? height
-           : shape == "ring"     ? ring.mu[0]
-           : shape == "profile"  ? profile.height()
-                                 : 0.;
+    return shape == Shape::box        ? size[2]
+           : shape == Shape::cylinder ? height
+           : shape == Shape::ring     ? ring.mu[0]
+           : shape == Shape::profile  ? profile.height()
+                                      : 0.;
   }
 
   double BilletParameters::whole_width() const
   {
-    return shape == "cylinder"  ? 2 * radius
-           : shape == "ring"    ? 2 * ring.mu[3]
-           : shape == "profile" ? profile.width()
-           : shape == "box"     ? size[0]
-                                : 0.;
+    return shape == Shape::cylinder  ? 2 * radius
+           : shape == Shape::ring    ? 2 * ring.mu[3]
+           : shape == Shape::profile ? profile.width()
+           : shape == Shape::box     ? size[0]
+                                     : 0.;
   }
 
   bool BilletParameters::is_sector() const
@@ -168,13 +182,14 @@ namespace retroforge
   {
     using namespace dealii::Patterns;
     prm.enter_subsection("Billet");
-    prm.add_parameter(
+    add_enum(
+      prm,
       "shape",
       shape,
+      shape_words,
       "What the billet is: a box, a cylinder, a ring (its section has seven portions, see mu1 to mu4), a "
       "profile (a body of revolution whose contour is a B-spline), all standing along z, or a mesh from a "
-      "file. Units: none.",
-      Selection("box|cylinder|ring|profile|file"));
+      "file. Units: none.");
     prm.add_parameter(
       "base centre",
       base_centre,
@@ -274,15 +289,10 @@ namespace retroforge
 
   void BilletParameters::check() const
   {
-    if (shape != "box" && shape != "cylinder" && !is_revolved() && shape != "file")
-      throw Error("Billet/shape",
-                  "is `" + shape + "'",
-                  "it must be box, cylinder, ring, profile or file",
-                  "choose one of them");
-    if (shape == "box")
+    if (shape == Shape::box)
       for (unsigned int d = 0; d < 3; ++d)
         check_positive("size", size[d]);
-    if (shape == "cylinder")
+    if (shape == Shape::cylinder)
     {
       check_positive("radius", radius);
       check_positive("height", height);
@@ -290,16 +300,16 @@ namespace retroforge
     if (is_revolved())
       check_profile(*this);
     check_symmetry(*this);
-    if (shape != "file")
+    if (!is_from_file())
     {
       check_positive("element size", element_size);
       check_fineness(*this);
     }
-    if (shape == "file" && file_name.empty())
+    if (is_from_file() && file_name.empty())
       throw Error("Billet/file name", "is empty", "the shape `file' needs a mesh", "name a .msh file");
-    if (shape != "file" && !symmetry_patches.empty())
+    if (!is_from_file() && !symmetry_patches.empty())
       throw Error("Billet/symmetry patches",
-                  "are given, and the shape is `" + shape + "'",
+                  "are given, and the shape is `" + shape_word() + "'",
                   "symmetry patches are for meshes from a file",
                   "use symmetry planes");
     rotations.check("Billet");

@@ -14,18 +14,12 @@ namespace retroforge
   namespace
   {
     using Cell = std::array<NodeIndex, 4>;
-    using Edge = std::array<NodeIndex, 2>;
-
-    Edge edge(const NodeIndex a, const NodeIndex b)
-    {
-      return {{std::min(a, b), std::max(a, b)}};
-    }
 
     /// The boundary of cells, and the patch of each of its faces.
     struct Boundary
     {
       std::map<CellIndex, std::vector<FaceKey>> faces; ///< of the cells that have some
-      std::set<Edge>                            edges;
+      std::set<EdgeKey>                         edges;
       std::map<FaceKey, unsigned int>           patch;
 
       explicit Boundary(const TetMesh &mesh)
@@ -34,19 +28,19 @@ namespace retroforge
         {
           faces[face.cell].push_back(face.key);
           for (unsigned int i = 0; i < 3; ++i)
-            edges.insert(edge(face.nodes[i], face.nodes[(i + 1) % 3]));
+            edges.insert(edge_key(face.nodes[i], face.nodes[(i + 1) % 3]));
         }
         for (const BoundaryFace &face : mesh.faces)
           patch[face_key(face.nodes)] = face.patch;
       }
     };
 
-    /// What two faces that share an edge do not share.
-    Edge other_diagonal(const FaceKey &a, const FaceKey &b)
+    /// Returns the two nodes that faces with a common edge do not share.
+    EdgeKey other_diagonal(const FaceKey &a, const FaceKey &b)
     {
       std::vector<NodeIndex> nodes;
       std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(nodes));
-      return edge(nodes.at(0), nodes.at(1));
+      return edge_key(nodes.at(0), nodes.at(1));
     }
 
     bool may_go(const TetMesh &mesh, const Boundary &boundary, const std::vector<FaceKey> &faces)

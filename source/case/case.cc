@@ -79,14 +79,15 @@ namespace retroforge
 
     bool takes_derivatives(const CommandLine &command)
     {
-      const std::string &word = command.command;
-      return word == "gradient" || word == "check" || word == "scan" || word == "optimize";
+      const auto chosen = command.command;
+      return chosen == Command::gradient || chosen == Command::check || chosen == Command::scan ||
+             chosen == Command::optimize;
     }
 
     /// "check" solves all systems as well as they can be, or differences would measure the solvers.
     Parameters as_solved(Parameters parameters, const CommandLine &command)
     {
-      if (command.command == "check")
+      if (command.command == Command::check)
       {
         parameters.newton.tolerance  = std::min(parameters.newton.tolerance, 1e-12);
         parameters.adjoint.tolerance = std::min(parameters.adjoint.tolerance, 1e-14);
@@ -149,12 +150,11 @@ namespace retroforge
                parameters.dies,
                nominal,
                parameters.open_contact(size()),
-               first,
-               parameters.press.stroke)
+               first)
       , mu(design.at(parameters.design.at))
       , process(design.process(mu))
       , X_0(design.positions(mu))
-      , model{parameters.discretization.choice(),
+      , model{parameters.discretization.choice,
               make_dies(parameters, process),
               parameters.step_model(),
               parameters.newton,

@@ -106,15 +106,16 @@ namespace retroforge
     for (const Die &die : forging_case.model.dies)
       add(notes_on_holes(die));
     if (const double size = forging_case.parameters.remeshing.element_size;
-        size > 0. && forging_case.parameters.remeshing.when != "never")
+        size > 0. && forging_case.parameters.remeshing.enabled())
       add(note_on_fineness(
         "Remeshing/element size", size, expected_cells(std::pow(forging_case.size().side, 3), size)));
-    if (forging_case.process.stretch != 1.)
-      notes.push_back("die " + forging_case.parameters.dies[forging_case.process.leading_die].name +
-                      " follows the billet: its path is " +
-                      as_text(forging_case.process.stretch * forging_case.parameters.press.stroke) +
-                      " mm long; strokes are given as the nominal design's, " +
-                      as_text(forging_case.parameters.press.stroke) + " mm");
+    if (forging_case.process.operations.front().path_scale != 1.)
+      notes.push_back(
+        "die " + forging_case.parameters.dies[forging_case.process.operations.front().leading_die].name +
+        " follows the billet: its path is " +
+        as_text(forging_case.process.operations.front().path_scale * forging_case.parameters.press.stroke) +
+        " mm long; strokes are given as the nominal design's, " +
+        as_text(forging_case.parameters.press.stroke) + " mm");
     return notes;
   }
 

@@ -14,9 +14,7 @@ namespace retroforge
     constexpr double least_slip = 1e-20;
   } // namespace
 
-  void Parameters::add_parameters(dealii::ParameterHandler       &prm,
-                                  const std::vector<std::string> &die_names,
-                                  const std::vector<std::string> &objective_names)
+  void Parameters::add_parameters(dealii::ParameterHandler &prm, const NamesOf &names_of)
   {
     billet.add_parameters(prm);
     prm.enter_subsection("Dies");
@@ -27,7 +25,7 @@ namespace retroforge
     prm.leave_subsection();
     tag(prm, "Dies", SettingRole::scene);
     dies.clear();
-    for (const std::string &name : die_names)
+    for (const std::string &name : names_of("Die", "Dies/names", ""))
       dies.emplace_back(name);
     for (DieParameters &die : dies)
       die.add_parameters(prm);
@@ -40,7 +38,7 @@ namespace retroforge
     remeshing.add_parameters(prm);
     adjoint.add_parameters(prm);
     objectives.all.clear();
-    for (const std::string &name : objective_names)
+    for (const std::string &name : names_of("Objective", "Objectives/names", "energy"))
       objectives.all.emplace_back(name);
     objectives.add_parameters(prm);
     design.add_parameters(prm);
@@ -55,7 +53,8 @@ namespace retroforge
     static const SettingTags all = [] {
       TaggedHandler prm;
       Parameters    parameters;
-      parameters.add_parameters(prm, {"*"}, {"*"});
+      parameters.add_parameters(
+        prm, [](const auto &, const auto &, const auto &) { return std::vector<std::string>{"*"}; });
       return prm.tags;
     }();
     return all;
@@ -65,7 +64,10 @@ namespace retroforge
   {
     dealii::ParameterHandler prm;
     Parameters               parameters;
-    parameters.add_parameters(prm, {"lower", "upper"}, {"energy"});
+    parameters.add_parameters(
+      prm, [](const std::string &kind, const std::string &, const std::string &by_default) {
+        return dealii::Utilities::split_string_list(kind == "Die" ? "lower, upper" : by_default);
+      });
     set_parameters(prm,
                    parameter_lines_of(R"(subsection Dies
   set names = lower, upper
@@ -101,6 +103,7 @@ end
   void Parameters::check_all()
   {
     billet.check();
+    discretization.check();
     contact.check();
     remeshing.check();
     scan.check();

@@ -8,7 +8,6 @@
 #include <cctype>
 #include <filesystem>
 #include <sstream>
-#include <tuple>
 
 namespace retroforge
 {
@@ -28,8 +27,7 @@ namespace retroforge
                     "rename it and its section");
     }
 
-    /// The names that a parameter lists. Those of dies and objectives must be known before their sections can
-    /// be declared.
+    /// The names that a parameter lists. They must be known before their sections can be declared.
     std::vector<std::string> names_in(const std::map<std::string, std::string> &values,
                                       const std::string                        &where,
                                       const std::string                        &by_default)
@@ -52,11 +50,12 @@ namespace retroforge
       return all;
     }
 
-    std::vector<std::string> objective_names(const std::map<std::string, std::string> &values)
+    /// A name without a section that sets its type is one of a type.
+    void check_objective_names(const std::map<std::string, std::string> &values,
+                               const std::vector<std::string>           &names)
     {
       const std::string              where = "Objectives/names";
-      const std::vector<std::string> names = names_in(values, where, "energy"),
-                                     types = ObjectiveParameters::types();
+      const std::vector<std::string> types = ObjectiveParameters::types();
       for (const std::string &name : names)
         if (std::find(types.begin(), types.end(), name) == types.end() &&
             values.count("Objective " + name + "/type") == 0)
@@ -68,8 +67,14 @@ namespace retroforge
                       meant.empty() ? "name one of them, or set the type in that section"
                                     : "did you mean '" + meant + "'?");
         }
-      return names;
     }
+
+    /// Names of sections of one kind, and the list they are from.
+    struct NamedSections
+    {
+      std::string              kind, list;
+      std::vector<std::string> names;
+    };
 
     /// Sections `Die NAME' or `Objective NAME' of files whose name is not in the list: left there for a
     /// time. One that may be meant by a name of the list that has no section is none of them, but misspelt.
@@ -169,14 +174,18 @@ namespace retroforge
   Parameters
   Parameters::of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo)
   {
-    const auto               values     = parameter_values(lines);
-    const auto               dies       = names_in(values, "Dies/names", "");
-    const auto               objectives = objective_names(values);
-    Parameters               parameters;
-    dealii::ParameterHandler prm;
-    parameters.add_parameters(prm, dies, objectives);
-    for (const auto &[kind, list, names] : {std::make_tuple("Die", "Dies/names", dies),
-                                            std::make_tuple("Objective", "Objectives/names", objectives)})
+    const auto                 values = parameter_values(lines);
+    Parameters                 parameters;
+    dealii::ParameterHandler   prm;
+    std::vector<NamedSections> named;
+    parameters.add_parameters(
+      prm, [&](const std::string &kind, const std::string &list, const std::string &by_default) {
+        named.push_back({kind, list, names_in(values, list, by_default)});
+        if (kind == "Objective")
+          check_objective_names(values, named.back().names);
+        return named.back().names;
+      });
+    for (const auto &[kind, list, names] : named)
       for (const std::string &section : unlisted_sections(lines, kind, names))
       {
         lines = without_section(std::move(lines), section);

@@ -14,7 +14,7 @@ namespace retroforge
   BilletSize Parameters::size_of(const TetMesh &mesh) const
   {
     const double side = std::cbrt(volume(mesh.cells, mesh.X));
-    if (billet.shape != "file")
+    if (!billet.is_from_file())
       return {side, billet.whole_height()};
     const Vec3 &velocity = dies[leading_die()].velocity;
     const Vec3  way      = velocity / velocity.norm();
@@ -109,17 +109,26 @@ namespace retroforge
 
   OpenContact Parameters::open_contact(const BilletSize &size) const
   {
-    return {size.height, contact.penetration, contact.penalty, contact.slip_fraction};
+    return {size.height,
+            contact.penetration,
+            contact.penalty > 0. ? std::optional(contact.penalty) : std::nullopt,
+            contact.slip_fraction};
   }
 
   Process<double> Parameters::process(const BilletSize &size) const
   {
     Process<double> process;
-    process.dies        = initial_states();
-    process.leading_die = leading_die();
-    const double speed  = closing_speed(process.dies);
-    process.material    = material.metal(speed / size.height);
-    process.contact     = open_contact(size).law(process.material.law, speed);
+    process.dies = initial_states();
+    process.operations.resize(1);
+    Operation<double> &operation = process.operations.front();
+    operation.leading_die        = leading_die();
+    operation.motion             = press.motion();
+    operation.stroke             = press.stroke;
+    for (unsigned int d = 0; d < process.dies.size(); ++d)
+      operation.dies.push_back(d);
+    const double speed = closing_speed(process.dies);
+    process.material   = material.metal(speed / size.height);
+    process.contact    = open_contact(size).law(process.material.law, speed);
     return process;
   }
 
@@ -168,7 +177,7 @@ namespace retroforge
   {
     if (remeshing.element_size > 0.)
       return remeshing.element_size;
-    if (billet.shape != "file")
+    if (!billet.is_from_file())
       return billet.element_size;
     double sum = 0.;
     for (const auto &cell : mesh.cells)

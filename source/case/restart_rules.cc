@@ -78,21 +78,24 @@ namespace retroforge
       : directory_(directory)
   {
     const RecordReader record(directory);
-    header       = record.header();
-    inputs       = record.inputs();
-    n_increments = record.n_increments();
-    stroke       = record.stroke();
-    changes      = changed_numerics(inputs.back().parameters, parameters);
+    header                         = record.header();
+    inputs                         = record.inputs();
+    n_increments                   = record.n_increments();
+    const auto [operation, stroke] = record.end();
+    changes                        = changed_numerics(inputs.back().parameters, parameters);
     std::string list;
     for (const ChangedSetting &setting : changed_settings(header.parameters, parameters, SettingRole::scene))
       list += (list.empty() ? "" : ", ") + setting.path + " is '" + setting.now + "' and was '" +
               setting.before + "'";
-    // The stretch of its path, and so all times, would be other ones.
+    // The stretch of its path, and so all times, would be other ones; or it is done.
+    const std::string why = a_die_follows(values_of(parameters)) ? " with a die that follows the billet"
+                            : operation > 0                      ? " and is done"
+                                                                 : "";
     for (const ChangedSetting &setting : changes)
-      if (setting.path == "Press/stroke" && a_die_follows(values_of(parameters)))
+      if (setting.path == "Press/stroke" && !why.empty())
         list += (list.empty() ? "" : ", ") + setting.path + " is '" + setting.now + "' and was '" +
-                setting.before + "' with a die that follows the billet";
-    if (stroke > press_stroke * (1. + 1e-9))
+                setting.before + "'" + why;
+    if (operation == 0 && stroke > press_stroke * (1. + 1e-9))
       list += (list.empty() ? "" : ", ") + std::string("Press/stroke is ") + as_text(press_stroke) +
               " mm and the record has come to " + as_text(stroke) + " mm";
     if (!list.empty())

@@ -38,7 +38,7 @@ namespace retroforge
     std::string how_to_scale(const Parameters &parameters, const DieParameters &die)
     {
       const bool of_file = die.shape.name == "stl";
-      return parameters.billet.shape == "file"
+      return parameters.billet.is_from_file()
                ? std::string("; set `scale' of the billet") + (of_file ? " or of the die" : "") +
                    ": a mesh in metres needs 1000 where lengths are in mm"
              : of_file ? "; set the die's `scale', or correct the billet's measures"
@@ -94,11 +94,11 @@ namespace retroforge
     {
       const double least = 0.1 * parameters.edge_length(scene.mesh);
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
-        if (const double depth = parameters.dies[d].shape->depth_of_contact();
-            scene.dies[d].surface() && depth > 0. && depth < least)
+        if (const auto depth = parameters.dies[d].shape->depth_of_contact();
+            scene.dies[d].surface() && depth && *depth < least)
           throw Error(
             "Die " + parameters.dies[d].name + "/depth of contact",
-            "is " + as_text(depth) + " mm",
+            "is " + as_text(*depth) + " mm",
             "nodes deeper are lost to the die, so it must be a tenth of the element size at least, " +
               as_text(least) + " mm",
             "leave it out, which takes a tenth of the die's extent");
@@ -174,7 +174,7 @@ namespace retroforge
                                          const DieApproach          &approach,
                                          const NodalVectors<double> &X)
     {
-      const unsigned int lead  = process.leading_die;
+      const unsigned int lead  = process.operations.front().leading_die;
       const std::string  where = "Die " + scene.dies[lead].name, size = as_text(extent(X)),
                         rule = "a die that moves must reach the billet within the stroke";
       if (approach.moves_away)
@@ -257,12 +257,12 @@ namespace retroforge
       for (const Plane &plane : symmetry_planes(scene.mesh))
         if (std::abs(velocity * plane.normal) > 1e-6 * velocity.norm())
           return;
-      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      for (const unsigned int d : process.operations.front().dies)
         if (const Vec3 beside = process.dies[d].velocity - velocity; beside.norm() > 0.)
           if (comes_against(scene,
                             d,
                             process,
-                            beside * process.time(parameters.press.stroke),
+                            beside * process.nominal_time(parameters.press.stroke),
                             process.dies[d].friction == 0.,
                             X))
             return;
@@ -292,7 +292,7 @@ namespace retroforge
           check_held(parameters, scene, process, d, X);
           return;
         }
-      throw_out_of_reach(parameters, scene, process, approaches[process.leading_die], X);
+      throw_out_of_reach(parameters, scene, process, approaches[process.operations.front().leading_die], X);
     }
 
     /// A plane that the workpiece cannot cross, at the end of the stroke.
@@ -306,7 +306,7 @@ namespace retroforge
     {
       std::vector<Wall> walls;
       const auto        dies = process.at_stroke(parameters.press.stroke).dies;
-      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      for (const unsigned int d : process.operations.front().dies)
         if (!scene.dies[d].surface())
           walls.push_back({"die " + scene.dies[d].name,
                            parameters.dies[d].point + dies[d].displacement,
@@ -362,11 +362,11 @@ namespace retroforge
                         const Process<double>      &process,
                         const NodalVectors<double> &X)
     {
-      const auto   faces_billet = beside(X, process.dies[process.leading_die].velocity);
+      const auto   faces_billet = beside(X, process.leading_velocity());
       const auto   first = process.at_stroke(0.).dies, dies = process.at_stroke(parameters.press.stroke).dies;
       const double allowed = touching_distance(scene, X);
-      for (unsigned int a = 0; a < dies.size(); ++a)
-        for (unsigned int b = 0; b < dies.size(); ++b)
+      for (const unsigned int a : process.operations.front().dies)
+        for (const unsigned int b : process.operations.front().dies)
           if (const TriangleSurface *surface = scene.dies[a].surface();
               a != b && surface && (dies[a].velocity - dies[b].velocity).norm() > 0.)
           {
@@ -393,7 +393,7 @@ namespace retroforge
 
   Vec3 path(const Parameters &parameters, const Process<double> &process, const unsigned int d)
   {
-    return process.dies[d].velocity * process.time(parameters.press.stroke);
+    return process.dies[d].velocity * process.nominal_time(parameters.press.stroke);
   }
 
   std::string in_brackets(const Vec3 &x)
@@ -408,14 +408,14 @@ namespace retroforge
   {
     const double             near  = touching_distance(scene, X);
     const MetalSurface       metal = billet_surface(parameters.billet, scene.mesh, X, 0.2 * near);
-    std::vector<DieApproach> approaches;
-    for (unsigned int d = 0; d < scene.dies.size(); ++d)
-      approaches.push_back(find_approach(scene.dies[d],
-                                         process.dies[d].displacement,
-                                         process.dies[d].velocity,
-                                         parameters.dies[d].facing,
-                                         metal,
-                                         near));
+    std::vector<DieApproach> approaches(scene.dies.size());
+    for (const unsigned int d : process.operations.front().dies)
+      approaches[d] = find_approach(scene.dies[d],
+                                    process.dies[d].displacement,
+                                    process.dies[d].velocity,
+                                    parameters.dies[d].facing,
+                                    metal,
+                                    near);
     return approaches;
   }
 

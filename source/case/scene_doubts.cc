@@ -3,6 +3,7 @@
 #include <retroforge/case/scene_checks.h>
 #include <retroforge/case/scene_doubts.h>
 #include <retroforge/geometry/facet_curvature.h>
+#include <retroforge/geometry/vector_algebra.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,7 @@ namespace retroforge
                      std::vector<std::string>   &warnings)
     {
       const double near = touching_distance(scene, X);
-      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      for (const unsigned int d : process.operations.front().dies)
       {
         const Vec3 &displacement = process.dies[d].displacement;
         double      bulge        = 0.;
@@ -62,8 +63,7 @@ namespace retroforge
       for (unsigned int e = 0; e < 3; ++e)
         if (const unsigned int other = surface.neighbour(f, e).facet; other != invalid_index)
         {
-          const Vec3   a = normal(f), b = normal(other);
-          const double angle = std::atan2(cross_product_3d(a, b).norm(), a * b) * 180. / M_PI;
+          const double angle = angle_between(normal(f), normal(other)) * 180. / M_PI;
           if (angle <= feature_angle)
             largest = std::max(largest, angle);
         }
@@ -109,7 +109,7 @@ namespace retroforge
                    std::vector<std::string> &warnings)
     {
       const double most = 0.5 * parameters.edge_length(scene.mesh);
-      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      for (const unsigned int d : process.operations.front().dies)
         for (const Patch &patch : scene.mesh.patches)
           if (const TriangleSurface *surface = scene.dies[d].surface(); surface && patch.symmetry)
           {
@@ -144,7 +144,7 @@ namespace retroforge
     bool refines_to(const Parameters &parameters, const double width, const double edge)
     {
       const RemesherParameters &remeshing = parameters.remeshing;
-      return remeshing.when != "never" && remeshing.sizes != "uniform" &&
+      return remeshing.enabled() && remeshing.sizes != RemesherParameters::Sizes::uniform &&
              remeshing.smallest_size * edge <= width;
     }
 
@@ -153,9 +153,9 @@ namespace retroforge
     {
       const RemesherParameters &remeshing = parameters.remeshing;
       std::string               text;
-      if (remeshing.sizes == "uniform")
+      if (remeshing.sizes == RemesherParameters::Sizes::uniform)
         return text;
-      if (remeshing.when == "never")
+      if (!remeshing.enabled())
         text += ", or Remeshing/when = quality";
       if (remeshing.smallest_size * edge > width)
         text += (text.empty() ? ", or " : " and ") + std::string("Remeshing/smallest size = ") +
@@ -173,17 +173,18 @@ namespace retroforge
     {
       const MetalSurface metal = metal_surface(scene.mesh, X);
       const double       edge = parameters.edge_length(scene.mesh), near = touching_distance(scene, X);
-      const Vec3        &lead = process.dies[process.leading_die].velocity;
-      for (unsigned int d = 0; d < scene.dies.size(); ++d)
+      const Vec3        &lead = process.leading_velocity();
+      for (const unsigned int d : process.operations.front().dies)
       {
         if (!scene.dies[d].surface())
           continue;
         // Metal is pressed against a die that stands.
         const bool   moves = process.dies[d].velocity.norm() > 0.;
         const Vec3   way   = moves ? process.dies[d].velocity : Vec3(-lead);
-        const double most  = path(parameters, process, moves ? d : process.leading_die).norm();
-        const auto   met   = moves ? approaches[d].meeting
-                                   : first_meeting(scene.dies[d], process.dies[d].displacement, way, metal, near);
+        const double most =
+          path(parameters, process, moves ? d : process.operations.front().leading_die).norm();
+        const auto met = moves ? approaches[d].meeting
+                               : first_meeting(scene.dies[d], process.dies[d].displacement, way, metal, near);
         if (!met || !(met->travel < most))
           continue;
         const double travel = met->travel + std::min(most - met->travel, 0.5 * edge);
@@ -193,7 +194,7 @@ namespace retroforge
           warnings.push_back("Die " + scene.dies[d].name + " is " + as_text(unseen->width) +
                              " mm wide where it comes into the billet at " + in_brackets(unseen->place) +
                              ", between nodes: contact does not see it; set " +
-                             (parameters.billet.shape == "file" ? "Remeshing" : "Billet") +
+                             (parameters.billet.is_from_file() ? "Remeshing" : "Billet") +
                              "/element size = " + as_text(rounded_down(unseen->width)) +
                              how_to_refine(parameters, unseen->width, edge));
       }

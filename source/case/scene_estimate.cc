@@ -51,7 +51,7 @@ namespace retroforge
       double extent() const { return (high - low).norm(); }
       /// By which the billet gets shorter.
       double               closing() const { return std::max(0., path - gaps); }
-      const Die           &leading() const { return scene.dies[process.leading_die]; }
+      const Die           &leading() const { return scene.dies[process.operations.front().leading_die]; }
       std::string          name(const unsigned int d) const { return "Die " + scene.dies[d].name; }
       const DieParameters &given(const unsigned int d) const { return parameters.dies[d]; }
     };
@@ -89,7 +89,7 @@ namespace retroforge
     Vec3 pressing_direction(const View &view)
     {
       constexpr double   least    = 1e-2; // cosine of the angle between the two
-      const unsigned int lead     = view.process.leading_die;
+      const unsigned int lead     = view.process.operations.front().leading_die;
       const Vec3        &velocity = view.process.dies[lead].velocity;
       const Vec3         normal   = facing(view, lead);
       const bool is_rough = view.given(lead).shape.name == "stl" && moves_as_it_faces(velocity, normal);
@@ -131,10 +131,10 @@ namespace retroforge
         return met ? met->travel : std::numeric_limits<double>::max();
       };
       double against = std::numeric_limits<double>::max();
-      for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
-        if (d != view.process.leading_die)
+      for (const unsigned int d : view.process.operations.front().dies)
+        if (d != view.process.operations.front().leading_die)
           against = std::min(against, gap(d, -view.way));
-      const double ahead = gap(view.process.leading_die, view.way);
+      const double ahead = gap(view.process.operations.front().leading_die, view.way);
       return (ahead < std::numeric_limits<double>::max() ? ahead : 0.) +
              (is_halved(view) || against == std::numeric_limits<double>::max() ? 0. : against);
     }
@@ -148,7 +148,7 @@ namespace retroforge
       std::tie(view.low, view.high) = bounding_box(X);
       view.way                      = pressing_direction(view);
       view.speed                    = closing_speed_along(process.dies, view.way);
-      view.path                     = process.time(parameters.press.stroke) * view.speed;
+      view.path                     = process.nominal_time(parameters.press.stroke) * view.speed;
       view.volume                   = volume(scene.mesh.cells, X);
       view.gaps                     = gaps_of(view);
       return view;
@@ -204,11 +204,12 @@ namespace retroforge
         return std::min(most, rim_friction(die, process.material.law, rate, radius));
       };
       double other = 0.;
-      for (unsigned int d = 0; d < process.dies.size() && !is_halved(view); ++d)
-        if (d != process.leading_die)
-          other = std::max(other, tau(process.dies[d]));
-      const double friction =
-        (tau(process.dies[process.leading_die]) + other) * radius / ((process.material.law.m + 3.) * height);
+      if (!is_halved(view))
+        for (const unsigned int d : process.operations.front().dies)
+          if (d != process.operations.front().leading_die)
+            other = std::max(other, tau(process.dies[d]));
+      const double friction = (tau(process.dies[process.operations.front().leading_die]) + other) * radius /
+                              ((process.material.law.m + 3.) * height);
       return dealii::numbers::PI * radius * radius * (stress + friction);
     }
 
@@ -218,7 +219,7 @@ namespace retroforge
     {
       const BilletParameters &billet = view.parameters.billet;
       if (const double extent = view.extent(); !(extent >= least_extent && extent <= largest_extent))
-        warnings.push_back((billet.shape == "file" ? "Billet/scale" : "Billet") +
+        warnings.push_back((billet.is_from_file() ? "Billet/scale" : "Billet") +
                            std::string(": the billet's extent is ") + as_text(extent) +
                            " mm; lengths are in mm: is it in metres?");
       const Vec3   size     = view.high - view.low;
@@ -229,9 +230,9 @@ namespace retroforge
             setting + " = " + as_text(element_size) + ": the billet is " + as_text(smallest) +
             " mm across where it is thinnest, less than an element; several are wanted there");
       };
-      if (billet.shape != "file")
+      if (!billet.is_from_file())
         coarse("Billet/element size", billet.element_size);
-      if (view.parameters.remeshing.when != "never")
+      if (view.parameters.remeshing.enabled())
         coarse("Remeshing/element size", view.parameters.remeshing.element_size);
       for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
         if (const TriangleSurface *surface = view.scene.dies[d].surface())
@@ -253,9 +254,9 @@ namespace retroforge
       const Parameters &given = view.parameters;
       if (estimate.speed > largest_speed || estimate.strain_rate < least_rate ||
           estimate.strain_rate > largest_rate)
-        warnings.push_back(view.name(view.process.leading_die) + "/velocity: the dies close at " +
-                           as_text(estimate.speed) + " mm/s, which strains the billet at " +
-                           as_text(estimate.strain_rate) +
+        warnings.push_back(view.name(view.process.operations.front().leading_die) +
+                           "/velocity: the dies close at " + as_text(estimate.speed) +
+                           " mm/s, which strains the billet at " + as_text(estimate.strain_rate) +
                            " /s; forging has 0.01 to 3000 /s, and velocities are in mm/s: 0.2 m/s are 200");
       if (view.closing() < least_path * estimate.height)
         warnings.push_back("Press/stroke = " + as_text(given.press.stroke) + ": the dies close by " +

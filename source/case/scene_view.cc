@@ -113,8 +113,7 @@ namespace retroforge
       return;
     describe_billet();
     attempt([&]() {
-      const Scene scene(
-        *parts_->mesh, parts_->parameters.discretization.choice(), parts_->dies, MPI_COMM_SELF);
+      const Scene scene(*parts_->mesh, parts_->parameters.discretization.choice, parts_->dies, MPI_COMM_SELF);
       describe_approaches(scene);
       if (made)
         estimate(scene);
@@ -134,7 +133,7 @@ namespace retroforge
 
   void SceneView::lead(Parts &parts)
   {
-    const unsigned int die = parts.process.leading_die;
+    const unsigned int die = parts.process.operations.front().leading_die;
     parts.leading_die      = parts.parameters.dies[die].name;
     parts.seconds          = parts.process.time(parts.parameters.press.stroke);
     parts.path             = parts.seconds * parts.process.dies[die].velocity;
@@ -190,8 +189,8 @@ namespace retroforge
       const BilletParameters &billet = parameters.billet;
       const bool              nominal =
         parameters.design.meshed_at.empty() && std::equal(X.begin(), X.end(), mesh.X.begin());
-      return billet.shape == "file" || !nominal ? SceneSummary::unknown
-                                                : whole_volume(billet) / n_copies(billet.symmetry_cuts());
+      return billet.is_from_file() || !nominal ? SceneSummary::unknown
+                                               : whole_volume(billet) / n_copies(billet.symmetry_cuts());
     }
 
     /// @param is_meant  of a face, whether it counts
@@ -218,6 +217,9 @@ namespace retroforge
                });
       });
     }
+
+    /// A die that covers less of the billet is a thin tool, or stands where it is not meant.
+    constexpr double least_covered = 0.05;
 
     /// Planes on whose inner side all vertices of a die stand.
     std::vector<std::string>
@@ -247,7 +249,7 @@ namespace retroforge
     const NodalVectors<double> &X    = parts_->X;
     const Topology              topology(mesh);
     SceneSummary::Billet        billet;
-    billet.shape          = parts_->parameters.billet.shape;
+    billet.shape          = parts_->parameters.billet.shape_word();
     billet.extents        = bounding_box(X);
     billet.n_nodes        = mesh.n_nodes();
     billet.n_cells        = mesh.n_cells();
@@ -303,9 +305,10 @@ namespace retroforge
 
   void SceneView::describe_approaches(const Scene &scene)
   {
-    const double touching   = touching_distance(scene, parts_->X);
-    const double seconds    = parts_->seconds;
-    const auto   approaches = find_approaches(parts_->parameters, scene, parts_->process, parts_->X);
+    const double       touching   = touching_distance(scene, parts_->X);
+    const double       seconds    = parts_->seconds;
+    const auto         approaches = find_approaches(parts_->parameters, scene, parts_->process, parts_->X);
+    const MetalSurface metal      = metal_surface(scene.mesh, parts_->X);
     for (unsigned int d = 0; d < approaches.size(); ++d)
     {
       const DieApproach &approach  = approaches[d];
@@ -323,6 +326,13 @@ namespace retroforge
         described.contact_area =
           contact_area(scene, parts_->dies[d], parts_->process.dies[d].displacement, parts_->X);
       const double speed = described.velocity.norm();
+      const Vec3   way   = speed > 0. ? described.velocity : -parts_->path; // metal is pressed against it
+      if (scene.dies[d].surface() && way.norm() > 0.)
+        described.covered = covered_part(scene.dies[d], parts_->process.dies[d].displacement, way, metal);
+      if (described.covered > 0. && described.covered < least_covered)
+        warn({"Die " + described.name + "/point: the die covers " +
+              as_text(std::round(1000. * described.covered) / 10.) +
+              " % of the billet's side that faces it: is it where it should be, and of the right size?"});
       if (!described.overlap && approach.meeting && approach.meeting->travel <= speed * seconds + touching)
       {
         described.first_touch     = {approach.meeting->travel, approach.meeting->place};

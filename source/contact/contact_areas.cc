@@ -33,7 +33,7 @@ namespace retroforge
 
   namespace
   {
-    /// Of a face's area, what counts for a point of it.
+    /// Returns the share of a face's area that belongs to a point of it.
     template <typename Number>
     double part_of_face(const ContactSet<Number> &contact, const unsigned int p)
     {

@@ -23,7 +23,7 @@ namespace retroforge
 
   namespace
   {
-    /// Of each pair, as far as it is this rank's to project: the gap and the normal.
+    /// Returns gap and normal of each pair that is this rank's to project.
     template <typename Number>
     std::vector<Projection<Number>> projections_of(const ContactView<Number>      &view,
                                                    const std::vector<ContactPair> &pairs,

@@ -29,7 +29,7 @@ namespace retroforge
 
   namespace
   {
-    /// Where a die bulges into an edge by more than this part of its length, as seen from its ends.
+    /// Least bulge of a die into an edge that counts, as a part of the edge's length, as seen from its ends.
     constexpr double least_bulge = 1e-6;
 
     /// One of the points looked at, as it sees a die.
@@ -40,7 +40,8 @@ namespace retroforge
       double       delta;
     };
 
-    /// What points 0 … n - 1 see of die d within reach, ascending. Each rank looks at its share of them.
+    /// Returns the features of die d that points 0 … n - 1 see within reach, ascending. Each rank looks at
+    /// its share of them.
     /// @param position  of a point
     template <typename Position>
     std::vector<Seen> seen_by(const ContactView<double> &view,
@@ -120,6 +121,8 @@ namespace retroforge
     };
     for (unsigned int d = 0; d < view.dies.size(); ++d)
     {
+      if (view.states[d].in_press == 0)
+        continue;
       const auto add = [&](const ContactPoint &point, const Seen &seen) {
         if (seen.delta <= reach)
           pairs.push_back({point, d, seen.delta <= ramp.width, seen.feature});

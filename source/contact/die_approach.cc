@@ -30,7 +30,7 @@ namespace retroforge
       std::array<Vec3, 2> across_;
     };
 
-    /// Of triangles in a frame: what part of their normal is along the way must be more than this.
+    /// Least part of a triangle's normal along the way, for the triangle to count.
     constexpr double least_inclination = 1e-7;
 
     /// +1: it looks along the way, -1: back, 0: along neither.
@@ -98,18 +98,28 @@ namespace retroforge
       std::array<Vec3, 9> x_;
     };
 
+    /// Areas far from the origin have no digits.
+    Corners seen_from(const Vec3 &origin, Corners y)
+    {
+      for (Vec3 &corner : y)
+        corner -= origin;
+      return y;
+    }
+
+    /// What of a face of the metal lies over a facet of a die, both near the origin.
+    Shadow shadow_on(const Corners &metal, const Corners &die)
+    {
+      Shadow shadow(metal);
+      for (unsigned int c = 0; c < 3 && shadow.size() > 2; ++c)
+        shadow.cut(die[c], die[(c + 1) % 3]); // the die looks along the way: its corners turn left
+      return shadow;
+    }
+
     Clearance clearance(const Corners &of_metal, const Corners &of_die)
     {
-      const Vec3 origin = of_metal[0]; // areas far from it have no digits
-      Corners    m = of_metal, d = of_die;
-      for (unsigned int c = 0; c < 3; ++c)
-      {
-        m[c] -= origin;
-        d[c] -= origin;
-      }
-      Shadow shadow(m);
-      for (unsigned int c = 0; c < 3 && shadow.size() > 2; ++c)
-        shadow.cut(d[c], d[(c + 1) % 3]); // the die looks along the way: its corners turn left
+      const Vec3       origin = of_metal[0];
+      const Corners    m = seen_from(origin, of_metal), d = seen_from(origin, of_die);
+      const Shadow     shadow = shadow_on(m, d);
       Clearance        found;
       constexpr double least_area = 1e-10; // of squared lengths: less than that only lie side by side
       if (shadow.size() < 3 || !(shadow.area() > least_area * (m[1] - m[0]).norm_square()))
@@ -140,7 +150,7 @@ namespace retroforge
           if (const Corners y = frame(facet_corners(surface, f, displacement)); looks_along(y) > 0)
           {
             facets.push_back(y);
-            boxes.push_back(box_of(y));
+            boxes.emplace_back(y);
           }
         tree = BoxTree(boxes);
       }
@@ -170,7 +180,7 @@ namespace retroforge
         const Corners y = frame(metal.corners(t));
         if (looks_along(y) >= 0)
           continue;
-        const BoundingBox box = box_of(y);
+        const BoundingBox box(y);
         die.tree.minimise(
           [&](const unsigned int branch) {
             const BoundingBox &facets = die.tree.box(branch);
@@ -189,7 +199,7 @@ namespace retroforge
       return best.travel < infinite ? std::optional<Meeting>(best) : std::nullopt;
     }
 
-    /// Of a plane: its normal into the die, along a way.
+    /// Returns the component of a plane's normal into the die along a way.
     double slope_of_plane(const Die &plane, const Vec3 &way)
     {
       return plane.project(Vec3(), Vec3(), DieFeature()).n * way / way.norm();
@@ -268,6 +278,32 @@ namespace retroforge
     return last ? std::max(0., -last->travel) : 0.;
   }
 
+  double covered_part(const Die &die, const Vec3 &displacement, const Vec3 &way, const MetalSurface &metal)
+  {
+    if (!die.surface())
+      return slope_of_plane(die, way) < -least_inclination ? 1. : 0.;
+    const Frame         frame(way);
+    const LookingFacets facets(*die.surface(), displacement, frame);
+    double              covered = 0., all = 0.;
+    for (unsigned int t = 0; t < metal.triangles().size(); ++t)
+    {
+      const Corners y = frame(metal.corners(t));
+      if (looks_along(y) >= 0)
+        continue;
+      const Corners m    = seen_from(y[0], y);
+      const double  area = Shadow(m).area();
+      BoundingBox   column(y);
+      column.lower[2] = -infinite;
+      column.upper[2] = infinite;
+      double over     = 0.;
+      for (const unsigned int f : facets.tree.intersecting(column))
+        over += shadow_on(m, seen_from(y[0], facets.facets[f])).area();
+      covered += std::min(over, area);
+      all += area;
+    }
+    return all > 0. ? covered / all : 0.;
+  }
+
   namespace
   {
     /// Closest points of the segments from a along u and from b along v, as parts of these.
@@ -335,8 +371,8 @@ namespace retroforge
     Vec3                   place;
     for (unsigned int f = 0; f < surface.n_facets(); ++f)
     {
-      const Corners     x   = facet_corners(surface, f, displacement);
-      const BoundingBox box = box_of(x);
+      const Corners     x = facet_corners(surface, f, displacement);
+      const BoundingBox box(x);
       metal.tree().minimise(
         [&](const unsigned int branch) { return square_distance(box, metal.tree().box(branch)); },
         [&](const unsigned int t) {

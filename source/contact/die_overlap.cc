@@ -12,7 +12,7 @@ namespace retroforge
 {
   namespace
   {
-    /// Of places that are equally deep the first, whatever their rounding.
+    /// Keeps the deepest place; of equally deep ones the first, whatever their rounding.
     void keep_deepest(const double depth, const Vec3 &place, const bool is_of_die, Overlap &overlap)
     {
       if (depth > (1. + 1e-9) * overlap.depth)
@@ -51,8 +51,8 @@ namespace retroforge
         use(DiePoint{x, foot, left});
     }
 
-    /// Where the segment a, b goes through faces of the metal: parts of its length, ascending, its ends among
-    /// them; alone with them where it goes through none.
+    /// Returns the points where the segment a, b crosses faces of the metal: parts of its length, ascending,
+    /// its ends included.
     std::vector<double> crossings(const MetalSurface &metal, const Vec3 &a, const Vec3 &b)
     {
       std::vector<double> at = {0., 1.};
@@ -92,7 +92,7 @@ namespace retroforge
       for (unsigned int f = first; f < last; ++f)
       {
         const Corners p = facet_corners(surface, f, displacement);
-        if (!box_of(p).intersects(metal.box()))
+        if (!BoundingBox(p).intersects(metal.box()))
           continue;
         for (unsigned int e = 0; e < 3; ++e)
         {

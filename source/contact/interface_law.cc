@@ -1,68 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/contact/norton_friction.h>
-#include <retroforge/core/error.h>
-#include <retroforge/core/nearest_name.h>
-
-#include <deque>
+#include <retroforge/core/registry.h>
 
 namespace retroforge
 {
   namespace
   {
-    struct NamedLaw
+    Registry<InterfaceLaw> &interface_laws()
     {
-      std::string                         name;
-      std::unique_ptr<const InterfaceLaw> law;
-    };
-
-    /// The laws there are, by the names that parameter files have for them.
-    std::deque<NamedLaw> &interface_laws()
-    {
-      static std::deque<NamedLaw> laws = [] {
-        std::deque<NamedLaw> made;
-        made.push_back({"Norton", std::make_unique<NortonFriction>()});
-        return made;
-      }();
+      static Registry<InterfaceLaw> laws("law of friction", "Norton", std::make_unique<NortonFriction>());
       return laws;
-    }
-
-    std::vector<std::string> names_of_laws()
-    {
-      std::vector<std::string> names;
-      for (const NamedLaw &known : interface_laws())
-        names.push_back(known.name);
-      return names;
     }
   } // namespace
 
   const InterfaceLaw &interface_law(const unsigned int i)
   {
-    AssertIndexRange(i, interface_laws().size());
-    return *interface_laws()[i].law;
+    return interface_laws()[i];
   }
 
   unsigned int find_interface_law(const std::string &name, const std::string &where)
   {
-    const std::vector<std::string> names = names_of_laws();
-    const auto                     found = std::find(names.begin(), names.end(), name);
-    if (found == names.end())
-    {
-      const std::string near = nearest_name(name, names, tolerated_edits(name));
-      throw Error(where,
-                  "'" + name + "' is no law of friction",
-                  "there are: " + join(names),
-                  near.empty() ? "name one of these" : "did you mean '" + near + "'?");
-    }
-    return found - names.begin();
+    return interface_laws().find(name, where);
   }
 
   void add_interface_law(const std::string &name, std::unique_ptr<const InterfaceLaw> law)
   {
-    Assert(law != nullptr, dealii::ExcMessage("no law"));
-    for (const std::string &known : names_of_laws())
-      AssertThrow(known != name, dealii::ExcMessage("there is a law of friction of this name"));
-    interface_laws().push_back({name, std::move(law)});
+    interface_laws().add(name, std::move(law));
   }
 
   DieState<double> initial_state(const DieParameters &die)

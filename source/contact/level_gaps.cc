@@ -9,14 +9,14 @@ namespace retroforge
     /// Bulges over the edge's length up to which a die counts as smooth, and from which on as sharp.
     constexpr double smooth_bulge = 0.06, sharp_bulge = 0.15;
 
-    /// Of an edge, as a weight beside those that touch: an offset sets in smoothly where a first edge
+    /// Constant weight beside those of the edges that touch: an offset sets in smoothly where a first edge
     /// touches.
     constexpr double first_touch = 0.25;
 
     /// c_m, by the polynomial of the friction ramp.
     const FrictionRamp smoothness{sharp_bulge - smooth_bulge, false};
 
-    /// What an edge's middle and ends say of the die under it.
+    /// The bulge of the die under an edge, from its middle and ends.
     template <typename Number>
     struct Bulge
     {

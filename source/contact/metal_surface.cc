@@ -39,7 +39,7 @@ namespace retroforge
 
     double angle_at(const Vec3 &x, const Vec3 &a, const Vec3 &b)
     {
-      return std::atan2(cross(a - x, b - x).norm(), (a - x) * (b - x));
+      return angle_between(a - x, b - x);
     }
 
     /// Points and triangles of faces whose edges are cut into n parts; points of an edge are shared.
@@ -108,7 +108,7 @@ namespace retroforge
       return {cut.X, {}, cut.faces, mesh.patches, {}, {}};
     }
 
-    /// Where points go when they are put on the billet's shape.
+    /// Returns the displacements of points when they are put on the billet's shape.
     NodalVectors<double> lifts(const BilletParameters &billet, const TetMesh &cut)
     {
       TetMesh snapped = cut;
@@ -164,7 +164,7 @@ namespace retroforge
         continue;
       const Vec3  &a = face_normals_[sides[0]], &b = face_normals_[sides[1]];
       const Vec3   middle        = 0.5 * (vertices_[ends.first] + vertices_[ends.second]);
-      const double angle         = std::atan2(cross(a, b).norm(), a * b);
+      const double angle         = angle_between(a, b);
       const auto   x             = corners(sides[1]);
       const bool   turns_inwards = ((x[0] + x[1] + x[2]) / 3. - middle) * a > 0.;
       if (turns_inwards && angle < largest_hollow_angle * M_PI / 180.)

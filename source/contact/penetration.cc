@@ -44,7 +44,7 @@ namespace retroforge
       return deepest;
     }
 
-    /// Of the ranks' findings, in their order.
+    /// Returns the deepest of the ranks' findings, in their order.
     Penetration deepest_of_ranks(const Penetration &mine, MPI_Comm comm)
     {
       using Numbers = std::array<double, 4>;
@@ -73,12 +73,12 @@ namespace retroforge
     for (std::size_t i = begin; i < end; ++i)
       for (unsigned int d = 0; d < dies.size(); ++d)
         if (const double depth = dies[d].depth_of(points[i].x, states[d].displacement, points[i].within);
-            depth > deepest.depth)
+            depth > deepest.depth && states[d].in_press != 0)
           deepest = {depth, points[i].x, d};
     const MetalSurface metal = metal_surface(mesh, X);
     for (unsigned int d = 0; d < dies.size(); ++d)
       if (const Overlap overlap = find_die_in_metal(dies[d], states[d].displacement, metal, comm);
-          overlap.depth > deepest.depth)
+          overlap.depth > deepest.depth && states[d].in_press != 0)
         deepest = {overlap.depth, overlap.place, d};
     return deepest_of_ranks(deepest, comm);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/command_line.h>
+#include <retroforge/core/enum_setting.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
 
@@ -24,6 +25,13 @@ namespace retroforge
                                                     "--print-parameters",
                                                     "--version",
                                                     "--help"};
+
+    const EnumWords<Command> command_words = {{"simulate", Command::simulate},
+                                              {"gradient", Command::gradient},
+                                              {"check", Command::check},
+                                              {"scan", Command::scan},
+                                              {"optimize", Command::optimize},
+                                              {"scene", Command::scene}};
 
     const std::string where = "command line";
     const std::string usage = "retroforge --help shows the usage";
@@ -148,17 +156,18 @@ namespace retroforge
 
     void take_operand(CommandLine &line, const std::string &word)
     {
-      if (line.command.empty())
+      if (!line.command)
       {
         const std::vector<std::string> &commands = known_commands();
-        if (std::find(commands.begin(), commands.end(), word) == commands.end())
+        const auto                      known    = std::find(commands.begin(), commands.end(), word);
+        if (known == commands.end())
           throw Error(where,
                       "unknown command '" + word + "'",
                       "the commands are " + join(commands),
                       std::filesystem::path(word).extension() == ".prm"
                         ? "put one before the case: retroforge simulate " + word
                         : did_you_mean(word, commands));
-        line.command = word;
+        line.command = command_words[known - commands.begin()].second;
       }
       else if (line.case_file.empty())
         line.case_file = word;
@@ -171,20 +180,20 @@ namespace retroforge
 
     void check_complete(const CommandLine &line)
     {
-      if (line.command.empty())
+      if (!line.command)
         throw Error(where, "there is no command", "the commands are " + join(known_commands()), usage);
       if (line.case_file.empty())
         throw Error(where,
                     "there is no case file",
-                    "'" + line.command + "' needs a parameter file",
-                    "write retroforge " + line.command +
+                    "'" + word_of(*line.command) + "' needs a parameter file",
+                    "write retroforge " + word_of(*line.command) +
                       " CASE.prm; retroforge --print-parameters writes a template");
-      if (line.check && line.command != "optimize")
+      if (line.check && line.command != Command::optimize)
         throw Error(where,
-                    "holds --check with '" + line.command + "'",
+                    "holds --check with '" + word_of(*line.command) + "'",
                     "it is an option of optimize; gradients of a case are checked by the command check",
                     "leave it out, or write retroforge check " + line.case_file);
-      if (line.resume && line.command == "scene")
+      if (line.resume && line.command == Command::scene)
         throw Error(where,
                     "holds --resume with 'scene'",
                     "a scene is looked at anew each time",
@@ -199,9 +208,18 @@ namespace retroforge
 
   const std::vector<std::string> &known_commands()
   {
-    static const std::vector<std::string> commands = {
-      "simulate", "gradient", "check", "scan", "optimize", "scene"};
+    static const std::vector<std::string> commands = [] {
+      std::vector<std::string> words;
+      for (const auto &[word, command] : command_words)
+        words.push_back(word);
+      return words;
+    }();
     return commands;
+  }
+
+  std::string word_of(const Command command)
+  {
+    return word_of(command, command_words);
   }
 
   CommandLine CommandLine::parse(const int argc, const char *const *argv)
@@ -222,7 +240,7 @@ namespace retroforge
     // A scene that was looked at is no reason to refuse the run after it.
     if (line.output_directory.empty() && !line.case_file.empty())
       line.output_directory = std::filesystem::path(line.case_file).stem().string() +
-                              (line.command == "scene" ? "-scene" : "-results");
+                              (line.command == Command::scene ? "-scene" : "-results");
     return line;
   }
 

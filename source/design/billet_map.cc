@@ -4,6 +4,7 @@
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/design/billet_map.h>
 #include <retroforge/element/mini_element.h>
+#include <retroforge/geometry/vector_algebra.h>
 #include <retroforge/mesh/mesh_quality.h>
 
 #include <sstream>
@@ -66,14 +67,6 @@ namespace retroforge
           gradient[cell[a]] += geometry.volume * geometry.g[a];
       }
       return gradient;
-    }
-
-    double dot(const NodalVectors<double> &a, const NodalVectors<double> &b)
-    {
-      double sum = 0.;
-      for (std::size_t k = 0; k < a.size(); ++k)
-        sum += a[k] * b[k];
-      return sum;
     }
 
     template <typename Number>

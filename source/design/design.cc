@@ -55,15 +55,13 @@ namespace retroforge
                  const std::vector<DieParameters> &dies,
                  const Process<double>            &nominal_process,
                  const OpenContact                &contact,
-                 const FirstMesh                  &first,
-                 const double                      stroke)
+                 const FirstMesh                  &first)
       : dies_(dies)
       , process_(nominal_process)
       , contact_(contact)
-      , stroke_(stroke)
       , billet_map_(billet, first)
       , nominal_X_(billet_map_.nominal_positions())
-      , width_(billet.shape == "file" ? extent_in_x(nominal_X_) : billet.whole_width())
+      , width_(billet.is_from_file() ? extent_in_x(nominal_X_) : billet.whole_width())
   {
     for (const DieParameters &die : dies_)
     {
@@ -280,8 +278,10 @@ namespace retroforge
         for (unsigned int i = 0; i < 3; ++i)
           process.dies[d].displacement[i] += facing[i] * shift;
         // Along its facing it goes stroke v·facing/|v|, and now -shift more.
-        if (d == process_.leading_die)
-          process.stretch -= shift / (stroke_ * (dies_[d].velocity * facing) / dies_[d].velocity.norm());
+        for (auto &operation : process.operations)
+          if (d == operation.leading_die)
+            operation.path_scale -=
+              shift / (operation.stroke * (dies_[d].velocity * facing) / dies_[d].velocity.norm());
       }
   }
 

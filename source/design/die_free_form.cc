@@ -16,7 +16,7 @@ namespace retroforge
     constexpr double on_plane    = 1e-6; ///< a distance from a plane, in the die's extent
     constexpr double on_surface  = 1e-2; ///< how near an image lies to the surface, in the die's extent
 
-    /// Those that map the die onto itself: it moves in them, and faces along them.
+    /// Returns the mirrors that map the die onto itself: it moves in them, and faces along them.
     std::vector<Plane> mirrors_of(const DieParameters &die, const std::vector<Plane> &symmetry)
     {
       std::vector<Plane> mirrors;
@@ -166,7 +166,7 @@ namespace retroforge
       return moving;
     }
 
-    /// Of each vertex.
+    /// Returns the direction in which each vertex moves.
     NodalVectors<double> directions(const TriangleSurface &surface,
                                     const DieParameters   &die,
                                     const bool             along_normals,
@@ -224,7 +224,8 @@ namespace retroforge
     const Sector        sector(std::move(mirrors), on_plane * surface.diagonal());
     const MovingSurface moving = moving_surface(surface, *form, sector);
     check_number(section_, form->modes, moving);
-    const NodalVectors<double> e = directions(surface, die, form->along == "normal", sector);
+    const NodalVectors<double> e =
+      directions(surface, die, form->along == DieFreeFormParameters::Along::normal, sector);
     for (const std::vector<double> &mode : surface_modes(moving, form->modes, form->length))
     {
       moves_.push_back(e);

@@ -21,11 +21,11 @@ namespace retroforge
     {
       const NodalVectors<double> own      = in_own_axes(billet, X);
       const auto                 rotation = billet.rotations.matrix();
-      BilletShapes               shapes   = billet.shape == "box"        ? box_shapes(billet, own)
-                                            : billet.shape == "cylinder" ? cylinder_shapes(billet, own)
-                                            : billet.shape == "ring"     ? ring_shapes(billet, own)
-                                            : billet.shape == "profile"  ? profile_shapes(billet, own)
-                                                                         : BilletShapes();
+      BilletShapes shapes = billet.shape == BilletParameters::Shape::box        ? box_shapes(billet, own)
+                            : billet.shape == BilletParameters::Shape::cylinder ? cylinder_shapes(billet, own)
+                            : billet.shape == BilletParameters::Shape::ring     ? ring_shapes(billet, own)
+                            : billet.shape == BilletParameters::Shape::profile  ? profile_shapes(billet, own)
+                                                                                : BilletShapes();
       for (ShapeParameter &parameter : shapes.parameters)
         for (Vec3 &d : parameter.direction)
           d = rotation * d;

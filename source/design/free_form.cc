@@ -39,7 +39,7 @@ namespace retroforge
                       "name some of these");
     }
 
-    /// What a free form knows of the billet's boundary.
+    /// The part of the billet's boundary that a free form moves.
     class MovingPatches
     {
     public:

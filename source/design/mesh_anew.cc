@@ -16,7 +16,8 @@ namespace retroforge
   {
     const std::string prefix = "billet/", where = "Design/meshed at";
 
-    /// Of the parameters that keep the planes of symmetry, and of the one that holds the volume.
+    /// Returns the names of the parameters that keep the planes of symmetry, and of the one that holds the
+    /// volume.
     std::vector<std::string> names_of(const BilletParameters &billet, const BilletMap &map)
     {
       std::vector<std::string> names;
@@ -47,7 +48,7 @@ namespace retroforge
 
   bool has_measures(const BilletParameters &billet)
   {
-    return billet.shape != "file" && billet.free_form.modes == 0;
+    return !billet.is_from_file() && billet.free_form.modes == 0;
   }
 
   std::vector<double>
@@ -128,7 +129,7 @@ namespace retroforge
       return sum / 6.;
     }
 
-    /// Those of the cells as made, where the cells are now.
+    /// Returns the sizes of the cells as made, at the present positions of the cells.
     OptimalSizes sizes_as_made(const TetMesh &mesh, const NodalVectors<double> &X)
     {
       OptimalSizes sizes;
@@ -142,7 +143,7 @@ namespace retroforge
       return sizes;
     }
 
-    /// Of a uniform mesh with as many cells.
+    /// Returns the edge length of a uniform mesh with as many cells.
     double uniform_size(const OptimalSizes &sizes)
     {
       double volume = 0., number = 0.;

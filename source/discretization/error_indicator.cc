@@ -17,14 +17,7 @@ namespace retroforge
         sum[k] += factor * e[k];
     }
 
-    void remove_trace(Symmetric<double> &e)
-    {
-      const double third = trace(e) / 3.;
-      for (unsigned int i = 0; i < 3; ++i)
-        e[i] -= third;
-    }
-
-    /// Of a field linear in the cell at the four points of equal weights that integrate it to degree two.
+    /// Evaluates a field linear in the cell at the four points of equal weights that integrate to degree two.
     PointRates<double> at_points(const PointRates<double> &corners)
     {
       const double       near = (5. + 3. * std::sqrt(5.)) / 20., far = (5. - std::sqrt(5.)) / 20.;
@@ -35,7 +28,7 @@ namespace retroforge
       return points;
     }
 
-    /// Of the visited cells, in their order.
+    /// Deviatoric strain rates and volumes of the visited cells, in their order.
     struct DeviatoricRates
     {
       std::vector<PointRates<double>> at_corners;
@@ -47,7 +40,7 @@ namespace retroforge
                                      const Field<double>        &W)
     {
       DeviatoricRates rates;
-      with_pair(discretization, [&](const auto pair) {
+      dispatch_element(discretization, [&](const auto pair) {
         for (const CellIndex c : discretization.visited_cells())
         {
           const auto geometry = cell_geometry(pair.positions(discretization, X, c));
@@ -93,11 +86,11 @@ namespace retroforge
     }
   } // namespace
 
-  std::vector<double> indicated_errors(const Discretization<3>    &discretization,
-                                       const NodalVectors<double> &X,
-                                       const Field<double>        &W,
-                                       const Material<double>     &material,
-                                       const std::vector<double>  &strain)
+  std::vector<double> indicated_errors(const Discretization<3>               &discretization,
+                                       const NodalVectors<double>            &X,
+                                       const Field<double>                   &W,
+                                       const Material<double>                &material,
+                                       const std::vector<PointState<double>> &points)
   {
     Assert(X.size() == discretization.n_vertices(),
            dealii::ExcDimensionMismatch(X.size(), discretization.n_vertices()));
@@ -110,7 +103,7 @@ namespace retroforge
       const unsigned int  i      = discretization.place_of_cell(c);
       const unsigned int *n      = discretization.pressure_places(c);
       const double        weight = 0.25 * rates.volume[i];
-      const auto          law    = material.at({strain[c]});
+      const auto          law    = material.at(points[c]);
       PointRates<double>  at_corners;
       for (unsigned int a = 0; a < 4; ++a)
         at_corners[a] = to_symmetric(at_nodes.at_place(n[a]));

@@ -6,12 +6,12 @@
 
 namespace retroforge
 {
-  template <typename Number>
-  std::vector<Number> accumulate_strain(const Discretization<3>    &discretization,
-                                        const NodalVectors<Number> &X,
-                                        const Field<Number>        &W,
-                                        const Number               &dt,
-                                        const std::vector<Number>  &q_n)
+  template <typename Number, int dim>
+  std::vector<Number> accumulate_strain(const Discretization<dim>      &discretization,
+                                        const CellVectors<dim, Number> &X,
+                                        const FlowField<dim, Number>   &W,
+                                        const Number                   &dt,
+                                        const std::vector<Number>      &q_n)
   {
     Assert(X.size() == discretization.n_vertices(),
            dealii::ExcDimensionMismatch(X.size(), discretization.n_vertices()));
@@ -19,7 +19,7 @@ namespace retroforge
            dealii::ExcDimensionMismatch(q_n.size(), discretization.cells().range().n));
     Assert(W.belongs_to(discretization), dealii::ExcMessage("the velocities are of another discretisation"));
     std::vector<Number> q = q_n;
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
         q[c] += dt * cell_strain_rate(cell_geometry(pair.positions(discretization, X, c)),
                                       pair.on_cell(discretization, W, c));
@@ -27,13 +27,14 @@ namespace retroforge
     return q;
   }
 
-  double reverse_accumulate_strain(const Discretization<3>    &discretization,
-                                   const NodalVectors<double> &X,
-                                   const Field<double>        &W,
-                                   const double                dt,
-                                   const std::vector<double>  &q_bar,
-                                   Field<double>              &W_bar,
-                                   NodalVectors<double>       &X_bar)
+  template <int dim>
+  double reverse_accumulate_strain(const Discretization<dim>      &discretization,
+                                   const CellVectors<dim, double> &X,
+                                   const FlowField<dim, double>   &W,
+                                   const double                    dt,
+                                   const std::vector<double>      &q_bar,
+                                   FlowField<dim, double>         &W_bar,
+                                   CellVectors<dim, double>       &X_bar)
   {
     Assert(X.size() == discretization.n_vertices(),
            dealii::ExcDimensionMismatch(X.size(), discretization.n_vertices()));
@@ -43,7 +44,7 @@ namespace retroforge
     Assert(W.belongs_to(discretization) && W_bar.belongs_to(discretization),
            dealii::ExcMessage("the velocities are of another discretisation"));
     double dt_bar = 0.;
-    with_pair(discretization, [&](const auto pair) {
+    dispatch_element(discretization, [&](const auto pair) {
       for (const CellIndex c : discretization.cells().owned())
       {
         if (q_bar[c] == 0.)
@@ -61,13 +62,24 @@ namespace retroforge
     return dt_bar;
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                         \
-  template std::vector<Number> accumulate_strain(const Discretization<3> &,    \
-                                                 const NodalVectors<Number> &, \
-                                                 const Field<Number> &,        \
-                                                 const Number &,               \
+#define RETROFORGE_INSTANTIATE_VALUES(dim, Number)                                 \
+  template std::vector<Number> accumulate_strain(const Discretization<dim> &,      \
+                                                 const CellVectors<dim, Number> &, \
+                                                 const FlowField<dim, Number> &,   \
+                                                 const Number &,                   \
                                                  const std::vector<Number> &);
-  RETROFORGE_INSTANTIATE(double)
-  RETROFORGE_INSTANTIATE(Dual)
+#define RETROFORGE_INSTANTIATE(dim)                                           \
+  RETROFORGE_INSTANTIATE_VALUES(dim, double)                                  \
+  RETROFORGE_INSTANTIATE_VALUES(dim, Dual)                                    \
+  template double reverse_accumulate_strain(const Discretization<dim> &,      \
+                                            const CellVectors<dim, double> &, \
+                                            const FlowField<dim, double> &,   \
+                                            double,                           \
+                                            const std::vector<double> &,      \
+                                            FlowField<dim, double> &,         \
+                                            CellVectors<dim, double> &);
+  RETROFORGE_INSTANTIATE(2)
+  RETROFORGE_INSTANTIATE(3)
 #undef RETROFORGE_INSTANTIATE
+#undef RETROFORGE_INSTANTIATE_VALUES
 } // namespace retroforge

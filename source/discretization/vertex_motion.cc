@@ -19,7 +19,7 @@ namespace retroforge
       Number D() const { return s * defect; }
     };
 
-    /// Of the surface; vertices inside keep the zeros.
+    /// Quantities at vertices of the surface; vertices inside keep zeros.
     template <typename Number>
     struct SurfaceVertex
     {
@@ -144,7 +144,7 @@ namespace retroforge
       return vertices;
     }
 
-    /// What the flux of one face and the shares of its vertices depend on.
+    /// Reverses the flux of one face and the shares of its vertices.
     /// @param free_bar, held_bar  of the vertices' parts
     double reverse_sharing(const SurfaceFace<double>                &face,
                            const std::vector<SurfaceVertex<double>> &vertices,

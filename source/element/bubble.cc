@@ -23,7 +23,7 @@ namespace retroforge
         eps_times_g(in.eps[a], in.g[a], y);
         for (unsigned int i = 0; i < 3; ++i)
           state.residual[i] += 8. * in.half[a] * y[i];
-        ask_potential_ratio(law, square(in.eps[a]), ratio);
+        evaluate_potential_ratio(law, square(in.eps[a]), ratio);
         state.value += 2. * in.half[a] * ratio;
       }
       T block[3][3], inverse[3][3];

@@ -98,13 +98,6 @@ namespace retroforge
       }
       return bar;
     }
-
-    void remove_trace(Symmetric<double> &s)
-    {
-      const double mean = trace(s) / 3.;
-      for (unsigned int k = 0; k < 3; ++k)
-        s[k] -= mean;
-    }
   } // namespace
 
   template <int dim>

@@ -200,7 +200,7 @@ namespace retroforge
       for (unsigned int q = 0; q < 4; ++q)
       {
         T factor, slope;
-        ask_law(law, square(eps[q]), factor, slope);
+        evaluate_law(law, square(eps[q]), factor, slope);
         half[q]       = 0.5 * quarter * factor;
         v.rank_one[q] = 4. * slope * half[q];
         T z[4][3];

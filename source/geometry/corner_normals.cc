@@ -23,11 +23,6 @@ namespace retroforge
       return vectors;
     }
 
-    double angle_between(const Vec3 &a, const Vec3 &b)
-    {
-      return std::atan2(cross(a, b).norm(), a * b);
-    }
-
     /// Area of the flat region each facet is part of, as a sum of the lengths of the facets' vectors.
     std::vector<double> region_areas(const TriangleSurface &surface, const std::vector<Vec3> &vectors)
     {
@@ -57,7 +52,8 @@ namespace retroforge
       }
       return area;
     }
-    /// How far a smooth surface that turns by the angle over the narrower one of two facets is from it.
+    /// Returns the distance from a facet of a smooth surface that turns by the angle over the narrower one of
+    /// two facets.
     double sagitta(const TriangleSurface   &surface,
                    const std::vector<Vec3> &vectors,
                    const unsigned int       f,

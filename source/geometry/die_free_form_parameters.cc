@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/enum_setting.h>
 #include <retroforge/core/error.h>
 #include <retroforge/geometry/die_free_form_parameters.h>
 
@@ -13,12 +14,13 @@ namespace retroforge
                       "form 1' and so on, from the smoothest on; `die NAME/free form' in Design/parameters "
                       "stands for all. 0 for none. Units: none.",
                       dealii::Patterns::Integer(0, 4000));
-    prm.add_parameter("free form along",
-                      along,
-                      "facing: vertices move along the die's facing, as the depth of a cavity does, and no "
-                      "part of it gets an undercut; normal: along the surface's normals, for walls and "
-                      "sides. Units: none.",
-                      dealii::Patterns::Selection("facing|normal"));
+    add_enum<Along>(prm,
+                    "free form along",
+                    along,
+                    {{"facing", Along::facing}, {"normal", Along::normal}},
+                    "facing: vertices move along the die's facing, as the depth of a cavity does, and no "
+                    "part of it gets an undercut; normal: along the surface's normals, for walls and "
+                    "sides. Units: none.");
     prm.add_parameter("free form length",
                       length,
                       "Moves of a die that change over less than this count more: the length of their "

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/enum_setting.h>
 #include <retroforge/core/error.h>
 #include <retroforge/geometry/die_kind.h>
 #include <retroforge/geometry/stl_file.h>
@@ -57,12 +58,13 @@ namespace retroforge
                       "Nodes deeper than this behind a surface are not in contact with it; 0 for a tenth of "
                       "its extent. Units: mm.",
                       Double(0.));
-    prm.add_parameter("surface",
+    add_enum<Surface>(prm,
+                      "surface",
                       surface_law,
+                      {{"smooth", Surface::smooth}, {"facets", Surface::facets}},
                       "smooth: facets stand for a smooth surface, normals and gaps are interpolated between "
                       "their corners; facets: they are the surface. On facets the gradient misses the die's "
-                      "curvature. Units: none.",
-                      dealii::Patterns::Selection("smooth|facets"));
+                      "curvature. Units: none.");
     prm.add_parameter("feature angle",
                       feature_angle,
                       "Edges where the facets of a smooth surface turn by more stay sharp. Units: degrees.",
@@ -97,7 +99,7 @@ namespace retroforge
     return Die(place.name,
                std::move(made),
                depth > 0. ? depth : 0.1 * diagonal,
-               {surface_law == "smooth", feature_angle, largest_sagitta});
+               {surface_law == Surface::smooth, feature_angle, largest_sagitta});
   }
 
   void StlDie::add_parameters(dealii::ParameterHandler &prm)

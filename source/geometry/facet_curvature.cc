@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/geometry/facet_curvature.h>
+#include <retroforge/geometry/vector_algebra.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +30,7 @@ namespace retroforge
 
     double turn(const TriangleSurface &surface, const unsigned int facet, const unsigned int other)
     {
-      const Vec3 n = normal(surface, facet), m = normal(surface, other);
-      return std::atan2(cross_product_3d(n, m).norm(), n * m);
+      return angle_between(normal(surface, facet), normal(surface, other));
     }
   } // namespace
 

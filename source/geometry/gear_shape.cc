@@ -27,8 +27,8 @@ namespace retroforge
         c = shape.reference * (n.x * cos(half) + n.y * sin(half)) + o;
       }
 
-      /// Where along the flank the rounding begins whose centre is `off` it and at `distance` from the axis;
-      /// the square is below zero when there is none.
+      /// Returns the square of the position along the flank at which the rounding begins whose centre is
+      /// `off` it and at `distance` from the axis; negative when there is none.
       Number along_squared(const Number &distance, const Number &off) const
       {
         return distance * distance - (c + off) * (c + off);

@@ -21,7 +21,7 @@ namespace retroforge
   {
     constexpr std::size_t header_bytes = 80, facet_bytes = 50;
     constexpr double      merge_distance = 1e-6; ///< of the diagonal
-    /// What is farther apart at the rim was not one vertex: as a rule, and at most, of the diagonal.
+    /// Distances within which vertices at the rim count as one: as a rule, and at most, over the diagonal.
     constexpr double seam = 1e-5, widest_seam = 1e-4;
     /// Within these bounds no product of lengths overflows, and corners are told apart.
     constexpr double largest_coordinate = 1e30, smallest_size = 1e-30, farthest_off = 1e6;
@@ -92,7 +92,7 @@ namespace retroforge
           ++position_;
       }
 
-      /// The same, but "endsolid" for "end solid".
+      /// Reads a keyword as word() does, but "endsolid" for "end solid".
       std::string keyword()
       {
         const std::string word = next();
@@ -126,7 +126,7 @@ namespace retroforge
         return x;
       }
 
-      /// The same, or what programs write that found none.
+      /// Reads a normal, or what programs write that found none.
       Vec3 normal()
       {
         Vec3 x;

@@ -100,7 +100,7 @@ namespace retroforge
       return leave_out(facets, has_equal_corners);
     }
 
-    /// The same corners in the same order, from whichever on.
+    /// Removes all but the first of facets with the same corners in the same order, from whichever on.
     unsigned int leave_out_doubles(Facets &facets)
     {
       std::set<Triangle> known;
@@ -213,8 +213,8 @@ namespace retroforge
       return (t[0] == a && t[1] == b) || (t[1] == a && t[2] == b) || (t[2] == a && t[0] == b);
     }
 
-    /// Whether each facet shows another side than the first one of its piece; nothing where a piece has no
-    /// two sides, or edges of more than two facets.
+    /// Returns whether each facet shows another side than the first one of its piece; empty where a piece has
+    /// no two sides, or edges of more than two facets.
     /// @param pieces  the piece of each facet
     std::vector<bool> turned_facets(const Facets &facets, std::vector<unsigned int> &pieces)
     {

@@ -16,7 +16,7 @@ namespace retroforge
   {
     constexpr unsigned int steps = 3;
 
-    /// Of the spectrum that is damped.
+    /// Largest over smallest eigenvalue of the spectrum that is damped.
     constexpr float largest_over_smallest = 10.;
 
     /// The power method comes from below, and beyond the spectrum the iteration would diverge.

@@ -15,13 +15,13 @@ namespace retroforge
 {
   namespace
   {
-    /// What MUMPS answers: INFOG(1), which is negative where it failed, and INFOG(2).  See its manual.
-    struct Answer
+    /// Status of MUMPS: INFOG(1), which is negative where it failed, and INFOG(2).  See its manual.
+    struct MumpsStatus
     {
-      int status, detail;
+      int code, detail;
 
-      bool lacks_workspace() const { return status == -8 || status == -9; }
-      bool lacks_memory() const { return status == -13 || status == -7 || status == -5; }
+      bool lacks_workspace() const { return code == -8 || code == -9; }
+      bool lacks_memory() const { return code == -13 || code == -7 || code == -5; }
     };
 
     /// Amesos prints the failures of MUMPS, which are ours to tell.
@@ -41,10 +41,10 @@ namespace retroforge
       std::streambuf *buffer_;
     };
 
-    Answer solve_once(const Epetra_LinearProblem &problem,
-                      const Transposition         transposition,
-                      const int                   spare,
-                      MPI_Comm                    comm)
+    MumpsStatus solve_once(const Epetra_LinearProblem &problem,
+                           const Transposition         transposition,
+                           const int                   spare,
+                           MPI_Comm                    comm)
     {
       const SilentErrors silent;
       Amesos_Mumps       mumps(problem);
@@ -52,21 +52,21 @@ namespace retroforge
       mumps.SetICNTL(14, spare);
       if (mumps.SymbolicFactorization() == 0 && mumps.NumericFactorization() == 0)
         mumps.Solve();
-      Answer answer{mumps.GetINFOG()[0], mumps.GetINFOG()[1]};
-      MPI_Bcast(&answer, 2, MPI_INT, 0, comm);
-      return answer;
+      MumpsStatus status{mumps.GetINFOG()[0], mumps.GetINFOG()[1]};
+      MPI_Bcast(&status, 2, MPI_INT, 0, comm);
+      return status;
     }
 
-    [[noreturn]] void throw_failure(const Answer &answer)
+    [[noreturn]] void throw_failure(const MumpsStatus &status)
     {
-      if (answer.lacks_workspace() || answer.lacks_memory())
+      if (status.lacks_workspace() || status.lacks_memory())
         throw Error("Linear solver",
-                    "MUMPS has not enough memory (INFOG(1) = " + std::to_string(answer.status) + ")",
+                    "MUMPS has not enough memory (INFOG(1) = " + std::to_string(status.code) + ")",
                     "the factors of a direct solve must fit into memory",
                     "use a coarser mesh or more ranks on more machines, or Linear solver/method = ilu");
       throw NoLinearSolution("Linear solver",
-                             "finds no solution (MUMPS: INFOG(1) = " + std::to_string(answer.status) +
-                               ", INFOG(2) = " + std::to_string(answer.detail) + ")",
+                             "finds no solution (MUMPS: INFOG(1) = " + std::to_string(status.code) +
+                               ", INFOG(2) = " + std::to_string(status.detail) + ")",
                              "a linear system must be regular, its numbers within the range of doubles",
                              "use values of the usual size: penalties and friction above all");
     }
@@ -89,11 +89,11 @@ namespace retroforge
     constexpr int              most = 2000;
     for (unsigned int calls = 1;; ++calls, spare = std::max(100, 3 * spare))
     {
-      const Answer answer = solve_once(problem, transposition, spare, A.get_mpi_communicator());
-      if (answer.status >= 0 && is_finite(x))
+      const MumpsStatus status = solve_once(problem, transposition, spare, A.get_mpi_communicator());
+      if (status.code >= 0 && is_finite(x))
         return calls;
-      if (!answer.lacks_workspace() || spare > most)
-        throw_failure(answer);
+      if (!status.lacks_workspace() || spare > most)
+        throw_failure(status);
     }
   }
 

@@ -15,6 +15,8 @@ namespace retroforge
     const int n_rows = A.trilinos_matrix().NumMyRows();
     Assert(n_rows % 3 == 0 && A.trilinos_matrix().NumMyNonzeros() % 9 == 0,
            dealii::ExcMessage("rows and columns come in threes"));
+    begin.reserve(n_rows / 3 + 1);
+    columns.reserve(A.trilinos_matrix().NumMyNonzeros() / 9);
     for (int row = 0; row < n_rows; row += 3)
     {
       for (int e = first[row]; e < first[row + 1]; e += 3)

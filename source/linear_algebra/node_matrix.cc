@@ -26,6 +26,8 @@ namespace retroforge
         if (!columns.owns(b))
           others.insert(b);
     column_nodes_.insert(column_nodes_.end(), others.begin(), others.end());
+    of_row_.begin.reserve(neighbours.begin.size());
+    of_row_.entries.reserve(neighbours.entries.size());
     for (unsigned int a = rows.begin; a < rows.end; ++a)
     {
       for (const unsigned int b : neighbours[a - rows.begin])
@@ -56,8 +58,8 @@ namespace retroforge
 
   namespace
   {
-    /// Of the degrees of freedom of nodes in the order given. Left to itself, Trilinos orders the columns of
-    /// each matrix that another rank owns in its own way.
+    /// Returns the map of the degrees of freedom of nodes in the order given. Left to itself, Trilinos orders
+    /// the columns of each matrix that another rank owns in its own way.
     Epetra_Map map_of(const std::vector<unsigned int> &nodes,
                       const unsigned int               n_nodes,
                       const unsigned int               width,

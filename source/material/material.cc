@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/core/error.h>
-#include <retroforge/core/nearest_name.h>
+#include <retroforge/core/registry.h>
 #include <retroforge/material/material.h>
-
-#include <algorithm>
-#include <deque>
 
 namespace retroforge
 {
@@ -23,29 +19,11 @@ namespace retroforge
       }
     };
 
-    struct NamedType
+    Registry<MaterialType> &material_types()
     {
-      std::string                         name;
-      std::unique_ptr<const MaterialType> type;
-    };
-
-    /// The sorts there are, by the names that parameter files have for them.
-    std::deque<NamedType> &material_types()
-    {
-      static std::deque<NamedType> types = [] {
-        std::deque<NamedType> made;
-        made.push_back({"Norton-Hoff", std::make_unique<NortonHoffMetal>()});
-        return made;
-      }();
+      static Registry<MaterialType> types(
+        "law of the metal", "Norton-Hoff", std::make_unique<NortonHoffMetal>());
       return types;
-    }
-
-    std::vector<std::string> names_of_types()
-    {
-      std::vector<std::string> names;
-      for (const NamedType &known : material_types())
-        names.push_back(known.name);
-      return names;
     }
 
     constexpr unsigned int norton_hoff = 0;
@@ -53,31 +31,17 @@ namespace retroforge
 
   const MaterialType &material_type(const unsigned int i)
   {
-    AssertIndexRange(i, material_types().size());
-    return *material_types()[i].type;
+    return material_types()[i];
   }
 
   unsigned int find_material_type(const std::string &name, const std::string &where)
   {
-    const std::vector<std::string> names = names_of_types();
-    const auto                     found = std::find(names.begin(), names.end(), name);
-    if (found == names.end())
-    {
-      const std::string near = nearest_name(name, names, tolerated_edits(name));
-      throw Error(where,
-                  "'" + name + "' is no law of the metal",
-                  "there are: " + join(names),
-                  near.empty() ? "name one of these" : "did you mean '" + near + "'?");
-    }
-    return found - names.begin();
+    return material_types().find(name, where);
   }
 
   void add_material_type(const std::string &name, std::unique_ptr<const MaterialType> type)
   {
-    Assert(type != nullptr, dealii::ExcMessage("no sort of metal"));
-    for (const std::string &known : names_of_types())
-      AssertThrow(known != name, dealii::ExcMessage("there is a law of the metal of this name"));
-    material_types().push_back({name, std::move(type)});
+    material_types().add(name, std::move(type));
   }
 
   template <typename Number>

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/core/error.h>
-#include <retroforge/core/nearest_name.h>
+#include <retroforge/core/number_checks.h>
 #include <retroforge/core/setting_tags.h>
-#include <retroforge/core/text.h>
 #include <retroforge/material/material_parameters.h>
 
 #include <algorithm>
@@ -44,38 +42,13 @@ namespace retroforge
     tag(prm, "Material", SettingRole::scene);
   }
 
-  namespace
-  {
-    void check_numbers(const std::string &law, const Material<double> &metal)
-    {
-      const std::string             where = "Material/further numbers";
-      const std::vector<NumberInfo> info  = material_type(metal.type).info();
-      std::vector<std::string>      names;
-      for (const NumberInfo &number : info)
-        names.push_back(number.name + (number.unit.empty() ? "" : " [" + number.unit + "]"));
-      if (info.size() != metal.numbers.size())
-        throw Error(where,
-                    "there are " + std::to_string(metal.numbers.size()) + " numbers",
-                    names.empty() ? "the law '" + law + "' has none"
-                                  : "the law '" + law + "' has these: " + join(names),
-                    names.empty() ? "leave it empty" : "write one value for each, separated by commas");
-      for (std::size_t i = 0; i < info.size(); ++i)
-        if (const double x = metal.numbers[i];
-            !(x > 0. || (x == 0. && info[i].may_vanish)) || x > info[i].largest)
-          throw Error(where,
-                      info[i].name + " = " + as_text(x),
-                      info[i].name + (info[i].may_vanish ? " is not negative" : " is positive") +
-                        (std::isfinite(info[i].largest) ? ", at most " + as_text(info[i].largest) : ""),
-                      "give it such a value");
-    }
-  } // namespace
-
   Material<double> MaterialParameters::metal(const double rate) const
   {
     Material<double> metal(law);
     metal.type    = find_material_type(type, "Material/law");
     metal.numbers = numbers;
-    check_numbers(type, metal);
+    check_numbers(
+      metal.numbers, material_type(metal.type).info(), "Material/further numbers", "the law '" + type + "'");
     if (law.e0 == 0.)
       metal.law.e0 = std::min(1e-3, 1e-2 * rate);
     return metal;

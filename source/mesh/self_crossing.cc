@@ -19,14 +19,6 @@ namespace retroforge
       return {{X[face.nodes[0]], X[face.nodes[1]], X[face.nodes[2]]}};
     }
 
-    BoundingBox box_of(const Triangle &x)
-    {
-      BoundingBox box(x[0]);
-      box.include(x[1]);
-      box.include(x[2]);
-      return box;
-    }
-
     // Whether the segment passes through the inside of the triangle: its ends lie on either side, and the
     // volumes it spans with the three edges have one sign.
     bool crosses(const Vec3 &a, const Vec3 &b, const Triangle &x)
@@ -70,7 +62,7 @@ namespace retroforge
     AssertDimension(X.size(), mesh.n_nodes());
     std::vector<BoundingBox> boxes;
     for (const auto &face : mesh.faces)
-      boxes.push_back(box_of(triangle(face, X)));
+      boxes.emplace_back(triangle(face, X));
     const BoxTree             tree(boxes);
     std::vector<SelfCrossing> found;
     for (const auto &face : mesh.faces)
@@ -79,9 +71,7 @@ namespace retroforge
         const NodeIndex a = face.nodes[i], b = face.nodes[(i + 1) % 3];
         if (a > b) // the face on the other side has this edge as (b, a)
           continue;
-        BoundingBox box(X[a]);
-        box.include(X[b]);
-        for (const unsigned int f : tree.intersecting(box))
+        for (const unsigned int f : tree.intersecting(BoundingBox(std::array<Vec3, 2>{{X[a], X[b]}})))
         {
           const auto &other = mesh.faces[f];
           if (!has_node(other, a) && !has_node(other, b) && crosses(X[a], X[b], triangle(other, X)))

@@ -10,9 +10,9 @@ namespace retroforge
 {
   namespace
   {
-    /// Is pair p one of the die's, and of a node of this rank?
+    /// Returns whether pair p is one of the die's, at a node of this rank.
     template <typename Number>
-    bool is_mine(const StageView<Number> &view, const unsigned int p, const unsigned int die)
+    bool is_mine(const EquilibriumView<Number> &view, const unsigned int p, const unsigned int die)
     {
       const ContactPair &pair = view.stage.contact.pairs[p];
       return pair.die == die && pair.point.is_node() &&
@@ -21,9 +21,9 @@ namespace retroforge
 
     constexpr unsigned int none = invalid_index;
 
-    /// The pair of each node that is in reach of the die.
+    /// Returns for each node its pair with the die, invalid_index where it has none.
     template <typename Number>
-    std::vector<unsigned int> pairs_of_nodes(const StageView<Number> &view, const unsigned int die)
+    std::vector<unsigned int> pairs_of_nodes(const EquilibriumView<Number> &view, const unsigned int die)
     {
       std::vector<unsigned int> pairs(view.stage.scene.mesh.n_nodes(), none);
       for (unsigned int p = 0; p < view.stage.contact.pairs.size(); ++p)
@@ -32,25 +32,28 @@ namespace retroforge
       return pairs;
     }
 
-    /// Does pair p press one of the die's nodes of this rank?
+    /// Returns whether pair p is one of the die's, and its force counts for the pressure at a node of this
+    /// rank. Shares of a force go to the nodes that the point lies between, whichever rank has its velocity.
     template <typename Number>
-    bool is_seen(const StageView<Number> &view, const unsigned int p, const unsigned int die)
+    bool counts(const EquilibriumView<Number> &view, const unsigned int p, const unsigned int die)
     {
-      const ContactPair &pair = view.stage.contact.pairs[p];
-      return pair.die == die && view.stage.scene.discretization.sees(pair.point.nodes);
+      const ContactPair &pair           = view.stage.contact.pairs[p];
+      const auto        &discretization = view.stage.scene.discretization;
+      return pair.die == die && (discretization.owns(pair.point.nodes[0]) ||
+                                 (!pair.point.is_node() && discretization.owns(pair.point.nodes[1])));
     }
 
-    /// Of each pair of a node of this rank: its force and its half of those of the edges at it, over a third
-    /// of the surface there [MPa].
+    /// Returns for each pair of a node of this rank: its force and half of those of the edges at it, over a
+    /// third of the surface there [MPa].
     template <typename Number>
-    std::vector<Number> nodal_pressures(const StageView<Number> &view, const unsigned int die)
+    std::vector<Number> nodal_pressures(const EquilibriumView<Number> &view, const unsigned int die)
     {
-      const Stage<Number>            &stage  = view.stage;
+      const Equilibrium<Number>      &stage  = view.stage;
       const std::vector<unsigned int> of     = pairs_of_nodes(view, die);
       const double                    larger = surface_over_S(stage.contact);
       std::vector<Number>             pressure(stage.contact.pairs.size(), Number(0.));
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-        if (const ContactPair &pair = stage.contact.pairs[p]; is_seen(view, p, die))
+        if (const ContactPair &pair = stage.contact.pairs[p]; counts(view, p, die))
         {
           const Number force =
             normal_force(stage.contact_node(p, view.W, view.active), stage.physics.contact);
@@ -77,23 +80,13 @@ namespace retroforge
                   "use the pressure expected, or the consistency K");
   }
 
-  double ContactPressure::largest(const StageView<double> &view) const
-  {
-    double     largest  = 0.;
-    const auto pressure = nodal_pressures(view, die_);
-    for (unsigned int p = 0; p < view.stage.contact.pairs.size(); ++p)
-      if (is_mine(view, p, die_))
-        largest = std::max(largest, pressure[p]);
-    return largest;
-  }
-
   template <typename Number>
-  std::vector<Number> ContactPressure::compute_integrals(const StageView<Number> &view) const
+  std::vector<Number> ContactPressure::compute_integrals(const EquilibriumView<Number> &view) const
   {
-    const Stage<Number> &stage    = view.stage;
-    const auto           pressure = nodal_pressures(view, die_);
-    const double         larger   = surface_over_S(stage.contact);
-    std::vector<Number>  sums(2, Number(0.));
+    const Equilibrium<Number> &stage    = view.stage;
+    const auto                 pressure = nodal_pressures(view, die_);
+    const double               larger   = surface_over_S(stage.contact);
+    std::vector<Number>        sums(2, Number(0.));
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_mine(view, p, die_))
       {
@@ -104,16 +97,16 @@ namespace retroforge
     return sums;
   }
 
-  void ContactPressure::reverse_integrals(const StageView<double>   &view,
-                                          const std::vector<double> &weights,
-                                          StageBar                  &bar) const
+  void ContactPressure::reverse_integrals(const EquilibriumView<double> &view,
+                                          const std::vector<double>     &weights,
+                                          EquilibriumBar                &bar) const
   {
-    const Stage<double> &stage    = view.stage;
-    const auto           pressure = nodal_pressures(view, die_);
-    const auto           of       = pairs_of_nodes(view, die_);
-    const double         larger   = surface_over_S(stage.contact);
-    ContactPullback      pullback(view, bar);
-    std::vector<double>  force_bar(pressure.size(), 0.); ///< of the force on the node of a pair
+    const Equilibrium<double> &stage    = view.stage;
+    const auto                 pressure = nodal_pressures(view, die_);
+    const auto                 of       = pairs_of_nodes(view, die_);
+    const double               larger   = surface_over_S(stage.contact);
+    ContactPullback            pullback(view, bar);
+    std::vector<double>        force_bar(pressure.size(), 0.); ///< of the force on the node of a pair
     for (unsigned int p = 0; p < pressure.size(); ++p)
       if (is_mine(view, p, die_))
       {
@@ -127,7 +120,7 @@ namespace retroforge
           force_bar[p] = weights[0] * exponent_ * whole / pressure[p];
       }
     for (unsigned int p = 0; p < pressure.size(); ++p)
-      if (const ContactPair &pair = stage.contact.pairs[p]; is_seen(view, p, die_))
+      if (const ContactPair &pair = stage.contact.pairs[p]; counts(view, p, die_))
       {
         double of_point = 0.;
         for (unsigned int i = 0; i < pair.point.n_nodes(); ++i)
@@ -141,8 +134,8 @@ namespace retroforge
     pullback.finish();
   }
 
-  template std::vector<double> ContactPressure::compute_integrals(const StageView<double> &) const;
-  template std::vector<Dual>   ContactPressure::compute_integrals(const StageView<Dual> &) const;
+  template std::vector<double> ContactPressure::compute_integrals(const EquilibriumView<double> &) const;
+  template std::vector<Dual>   ContactPressure::compute_integrals(const EquilibriumView<Dual> &) const;
 
   namespace
   {

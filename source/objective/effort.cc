@@ -13,7 +13,7 @@ namespace retroforge
   namespace
   {
     template <typename Number>
-    Number speed(const StageView<Number> &view, const unsigned int die)
+    Number speed(const EquilibriumView<Number> &view, const unsigned int die)
     {
       using std::sqrt;
       const Vector3<Number> &v  = view.stage.physics.dies[die].velocity;
@@ -27,7 +27,7 @@ namespace retroforge
     }
 
     template <typename Number>
-    Number total_power(const StageView<Number> &view)
+    Number total_power(const EquilibriumView<Number> &view)
     {
       const auto [deformation, friction] = view.stage.power(view.W, view.active);
       return deformation + friction;
@@ -35,10 +35,10 @@ namespace retroforge
 
     /// f·v_die, f the die's force on the workpiece [mJ/s].
     template <typename Number>
-    Number power_of_die(const StageView<Number> &view, const unsigned int die)
+    Number power_of_die(const EquilibriumView<Number> &view, const unsigned int die)
     {
-      const Stage<Number> &stage = view.stage;
-      Number               power(0.);
+      const Equilibrium<Number> &stage = view.stage;
+      Number                     power(0.);
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
         if (stage.contact.pairs[p].die == die &&
             stage.scene.discretization.owns(stage.contact.pairs[p].point.nodes[0]))
@@ -49,14 +49,14 @@ namespace retroforge
       return power;
     }
 
-    void reverse_power_of_die(const StageView<double> &view,
-                              const unsigned int       die,
-                              const double             weight,
-                              StageBar                &bar)
+    void reverse_power_of_die(const EquilibriumView<double> &view,
+                              const unsigned int             die,
+                              const double                   weight,
+                              EquilibriumBar                &bar)
     {
-      const Stage<double> &stage = view.stage;
-      const Vec3          &v     = stage.physics.dies[die].velocity;
-      ContactPullback      pullback(view, bar);
+      const Equilibrium<double> &stage = view.stage;
+      const Vec3                &v     = stage.physics.dies[die].velocity;
+      ContactPullback            pullback(view, bar);
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
         if (stage.contact.pairs[p].die == die &&
             stage.scene.discretization.owns(stage.contact.pairs[p].point.nodes[0]))
@@ -101,12 +101,12 @@ namespace retroforge
   }
 
   template <typename Number>
-  Number Effort::operator()(const StageView<Number> &view) const
+  Number Effort::operator()(const EquilibriumView<Number> &view) const
   {
     return (by_ == By::power ? total_power(view) : power_of_die(view, die_)) / speed(view, die_);
   }
 
-  void Effort::reverse(const StageView<double> &view, const double weight, StageBar &bar) const
+  void Effort::reverse(const EquilibriumView<double> &view, const double weight, EquilibriumBar &bar) const
   {
     const double v = speed(view, die_);
     if (by_ == By::power)
@@ -122,15 +122,15 @@ namespace retroforge
     window.check("Mean effort");
   }
 
-  void MeanEffort::reverse_integrals(const StageView<double>   &view,
-                                     const std::vector<double> &weights,
-                                     StageBar                  &bar) const
+  void MeanEffort::reverse_integrals(const EquilibriumView<double> &view,
+                                     const std::vector<double>     &weights,
+                                     EquilibriumBar                &bar) const
   {
     effort_.reverse(view, weights[0], bar);
   }
 
   template <typename Number>
-  std::vector<Number> MeanEffort::compute_integrals(const StageView<Number> &view) const
+  std::vector<Number> MeanEffort::compute_integrals(const EquilibriumView<Number> &view) const
   {
     return {effort_(view)};
   }
@@ -169,15 +169,15 @@ namespace retroforge
     return largest;
   }
 
-  void MaximumEffort::reverse_integrals(const StageView<double>   &view,
-                                        const std::vector<double> &weights,
-                                        StageBar                  &bar) const
+  void MaximumEffort::reverse_integrals(const EquilibriumView<double> &view,
+                                        const std::vector<double>     &weights,
+                                        EquilibriumBar                &bar) const
   {
     effort_.reverse(view, weights[0], bar);
   }
 
   template <typename Number>
-  std::vector<Number> MaximumEffort::compute_integrals(const StageView<Number> &view) const
+  std::vector<Number> MaximumEffort::compute_integrals(const EquilibriumView<Number> &view) const
   {
     return {effort_(view)};
   }
@@ -198,14 +198,14 @@ namespace retroforge
     return maximum_.combine(sums[0], sums[1], scale);
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                                            \
-  template Number PathWindow::overlap(const PathRow<Number> &) const;                             \
-  template Number Effort::     operator()(const StageView<Number> &) const;                       \
-  template std::vector<Number> MeanEffort::compute_integrals(const StageView<Number> &) const;    \
-  template std::vector<Number> MeanEffort::terms(const PathRow<Number> &, double) const;          \
-  template Number              MeanEffort::combine(const std::vector<Number> &, double) const;    \
-  template std::vector<Number> MaximumEffort::compute_integrals(const StageView<Number> &) const; \
-  template std::vector<Number> MaximumEffort::terms(const PathRow<Number> &, double) const;       \
+#define RETROFORGE_INSTANTIATE(Number)                                                                  \
+  template Number PathWindow::overlap(const PathRow<Number> &) const;                                   \
+  template Number Effort::     operator()(const EquilibriumView<Number> &) const;                       \
+  template std::vector<Number> MeanEffort::compute_integrals(const EquilibriumView<Number> &) const;    \
+  template std::vector<Number> MeanEffort::terms(const PathRow<Number> &, double) const;                \
+  template Number              MeanEffort::combine(const std::vector<Number> &, double) const;          \
+  template std::vector<Number> MaximumEffort::compute_integrals(const EquilibriumView<Number> &) const; \
+  template std::vector<Number> MaximumEffort::terms(const PathRow<Number> &, double) const;             \
   template Number              MaximumEffort::combine(const std::vector<Number> &, double) const;
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)

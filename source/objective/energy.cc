@@ -5,14 +5,14 @@
 namespace retroforge
 {
   template <typename Number>
-  std::vector<Number> EnergyObjective::compute_integrals(const StageView<Number> &view) const
+  std::vector<Number> EnergyObjective::compute_integrals(const EquilibriumView<Number> &view) const
   {
     const auto [deformation, friction] = view.stage.power(view.W, view.active);
     return {deformation, friction};
   }
 
-  template std::vector<double> EnergyObjective::compute_integrals(const StageView<double> &) const;
-  template std::vector<Dual>   EnergyObjective::compute_integrals(const StageView<Dual> &) const;
+  template std::vector<double> EnergyObjective::compute_integrals(const EquilibriumView<double> &) const;
+  template std::vector<Dual>   EnergyObjective::compute_integrals(const EquilibriumView<Dual> &) const;
 
   std::pair<double, double> EnergyObjective::split(const PathRows<double> &rows)
   {
@@ -25,9 +25,9 @@ namespace retroforge
     return energy;
   }
 
-  void EnergyObjective::reverse_integrals(const StageView<double>   &view,
-                                          const std::vector<double> &weights,
-                                          StageBar                  &bar) const
+  void EnergyObjective::reverse_integrals(const EquilibriumView<double> &view,
+                                          const std::vector<double>     &weights,
+                                          EquilibriumBar                &bar) const
   {
     reverse_power(view, weights[0], weights[1], bar);
   }

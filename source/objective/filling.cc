@@ -23,21 +23,21 @@ namespace retroforge
                   "use 0, or a thousandth of an element's edge");
   }
 
-  void FillingObjective::decide(const FinalView<double> &view)
+  FillingObjective::Decisions FillingObjective::compute_decisions(const FinalView<double> &view) const
   {
-    decisions_              = {};
-    decisions_.by_workpiece = target_.seen_by_workpiece(view);
-    decisions_.workpiece    = WorkpieceSurface(view);
+    Decisions decisions;
+    decisions.by_workpiece = target_.seen_by_workpiece(view);
+    decisions.workpiece    = WorkpieceSurface(view);
     if (free_)
-      free_->decide(view);
-    const ClosestFeature       closest(decisions_.workpiece.shape());
+      decisions.near = free_->decide(view);
+    const ClosestFeature       closest(decisions.workpiece.shape());
     const NodalVectors<double> vertices = target_.vertices(view);
     const Sector               sector(view.scene.mesh);
     const Vec3                 shift = target_.displacement(view);
     for (const Triangle &triangle : target_.shape().triangles())
       if (sector.contains(shift +
                           (vertices[triangle[0]] + vertices[triangle[1]] + vertices[triangle[2]]) / 3.))
-        decisions_.target.push_back(triangle);
+        decisions.target.push_back(triangle);
     const auto [begin, end] = share_of_rank(vertices.size(), view.scene.discretization.comm());
     for (unsigned int l = begin; l < end; ++l)
     {
@@ -45,8 +45,9 @@ namespace retroforge
       if (!sector.contains(x) || (target_.region() && !is_inside(*target_.region(), x)))
         continue;
       if (const DieFeature feature = closest(x); feature.found())
-        decisions_.by_target.push_back({l, feature});
+        decisions.by_target.push_back({l, feature});
     }
+    return decisions;
   }
 
   template <typename Number>
@@ -66,32 +67,34 @@ namespace retroforge
   }
 
   template <typename Number>
-  std::vector<Number> FillingObjective::compute_integrals(const FinalView<Number> &view) const
+  std::vector<Number> FillingObjective::compute_integrals(const FinalView<Number> &view,
+                                                          const Decisions         &decisions) const
   {
     std::vector<Number> sums(2, Number(0.));
     auto                S = lumped_areas(surface_triangles(view.scene.mesh), view.X);
     if (free_)
     {
-      const std::vector<Number> parts = free_->parts(view);
+      const std::vector<Number> parts = free_->parts(view, decisions.near);
       for (std::size_t k = 0; k < S.size(); ++k)
         S[k] *= parts[k];
     }
-    for (const SeenFeature &seen : decisions_.by_workpiece)
+    for (const SeenFeature &seen : decisions.by_workpiece)
       sums[0] += rounded(target_.distance(view, view.X[seen.point], seen.feature)) * S[seen.point];
     const auto vertices  = target_.vertices(view);
-    const auto workpiece = decisions_.workpiece.vertices(view);
-    const auto S_target  = lumped_areas(decisions_.target, vertices);
-    for (const SeenFeature &seen : decisions_.by_target)
+    const auto workpiece = decisions.workpiece.vertices(view);
+    const auto S_target  = lumped_areas(decisions.target, vertices);
+    for (const SeenFeature &seen : decisions.by_target)
     {
       const Vector3<Number> x = vertices[seen.point] + target_.displacement(view);
       const auto            projection =
-        project_on_feature(decisions_.workpiece.shape(), workpiece, seen.feature, x, Vector3<Number>());
+        project_on_feature(decisions.workpiece.shape(), workpiece, seen.feature, x, Vector3<Number>());
       sums[1] += rounded(projection.delta) * S_target[seen.point];
     }
     return sums;
   }
 
   void FillingObjective::reverse_by_workpiece(const FinalView<double> &view,
+                                              const Decisions         &decisions,
                                               const double             weight,
                                               FinalBar                &bar) const
   {
@@ -99,8 +102,8 @@ namespace retroforge
     const auto            S         = lumped_areas(triangles, view.X);
     const TriangleSurface moved     = target_.moved(view);
     std::vector<double>   S_bar(S.size(), 0.), parts_bar(S.size(), 0.);
-    const auto            parts = free_ ? free_->parts(view) : std::vector<double>(S.size(), 1.);
-    for (const SeenFeature &seen : decisions_.by_workpiece)
+    const auto parts = free_ ? free_->parts(view, decisions.near) : std::vector<double>(S.size(), 1.);
+    for (const SeenFeature &seen : decisions.by_workpiece)
     {
       const double delta = target_.distance(view, view.X[seen.point], seen.feature);
       S_bar[seen.point] += weight * rounded(delta) * parts[seen.point];
@@ -115,18 +118,20 @@ namespace retroforge
     }
     reverse_lumped_areas(triangles, view.X, S_bar, bar.X);
     if (free_)
-      free_->reverse(view, parts_bar, bar);
+      free_->reverse(view, decisions.near, parts_bar, bar);
   }
 
-  void
-  FillingObjective::reverse_by_target(const FinalView<double> &view, const double weight, FinalBar &bar) const
+  void FillingObjective::reverse_by_target(const FinalView<double> &view,
+                                           const Decisions         &decisions,
+                                           const double             weight,
+                                           FinalBar                &bar) const
   {
     const auto            vertices  = target_.vertices(view);
-    const auto            S         = lumped_areas(decisions_.target, vertices);
-    const TriangleSurface workpiece = decisions_.workpiece.moved(view);
+    const auto            S         = lumped_areas(decisions.target, vertices);
+    const TriangleSurface workpiece = decisions.workpiece.moved(view);
     NodalVectors<double>  workpiece_bar(workpiece.vertices().size()), vertices_bar(vertices.size());
     std::vector<double>   S_bar(S.size(), 0.);
-    for (const SeenFeature &seen : decisions_.by_target)
+    for (const SeenFeature &seen : decisions.by_target)
     {
       const Vec3   x     = vertices[seen.point] + target_.displacement(view);
       const double delta = project_on_feature(workpiece, workpiece.vertices(), seen.feature, x, Vec3()).delta;
@@ -144,24 +149,27 @@ namespace retroforge
       vertices_bar[seen.point] += x_bar;
       target_.add_displacement_bar(x_bar, bar);
     }
-    decisions_.workpiece.add(workpiece_bar, bar);
+    decisions.workpiece.add(workpiece_bar, bar);
     if (bar.target.size() != vertices.size())
       return;
-    reverse_lumped_areas(decisions_.target, vertices, S_bar, vertices_bar);
+    reverse_lumped_areas(decisions.target, vertices, S_bar, vertices_bar);
     for (std::size_t v = 0; v < vertices.size(); ++v)
       bar.target[v] += vertices_bar[v];
   }
 
   void FillingObjective::reverse_integrals(const FinalView<double>   &view,
+                                           const Decisions           &decisions,
                                            const std::vector<double> &weights,
                                            FinalBar                  &bar) const
   {
-    reverse_by_workpiece(view, weights[0], bar);
-    reverse_by_target(view, weights[1], bar);
+    reverse_by_workpiece(view, decisions, weights[0], bar);
+    reverse_by_target(view, decisions, weights[1], bar);
   }
 
-  template std::vector<double> FillingObjective::compute_integrals(const FinalView<double> &) const;
-  template std::vector<Dual>   FillingObjective::compute_integrals(const FinalView<Dual> &) const;
+  template std::vector<double> FillingObjective::compute_integrals(const FinalView<double> &,
+                                                                   const Decisions &) const;
+  template std::vector<Dual>   FillingObjective::compute_integrals(const FinalView<Dual> &,
+                                                                 const Decisions &) const;
 
   namespace
   {

@@ -15,20 +15,22 @@ namespace retroforge
   namespace
   {
     template <typename Number>
-    Number strain_rate(const StageView<Number> &view, const CellIndex c)
+    Number strain_rate(const EquilibriumView<Number> &view, const CellIndex c)
     {
       const Scene &scene = view.stage.scene;
-      return with_pair(scene.discretization, [&](const auto pair) -> Number {
+      return dispatch_element(scene.discretization, [&](const auto pair) -> Number {
         return cell_strain_rate(cell_geometry(pair.positions(scene.discretization, view.stage.X, c)),
                                 pair.on_cell(scene.discretization, view.W, c));
       });
     }
 
-    void
-    reverse_strain_rate(const StageView<double> &view, const CellIndex c, const double weight, StageBar &bar)
+    void reverse_strain_rate(const EquilibriumView<double> &view,
+                             const CellIndex                c,
+                             const double                   weight,
+                             EquilibriumBar                &bar)
     {
       const Scene &scene = view.stage.scene;
-      with_pair(scene.discretization, [&](const auto pair) {
+      dispatch_element(scene.discretization, [&](const auto pair) {
         auto w_bar = pair.no_values();
         auto X_bar = pair.no_positions();
         reverse_cell_strain_rate(cell_geometry(pair.positions(scene.discretization, view.stage.X, c)),
@@ -84,7 +86,8 @@ namespace retroforge
 
     /// (die, pair) of each node, by die.
     template <typename Number>
-    std::vector<std::vector<std::pair<unsigned int, unsigned int>>> pairs_of_nodes(const Stage<Number> &stage)
+    std::vector<std::vector<std::pair<unsigned int, unsigned int>>>
+    pairs_of_nodes(const Equilibrium<Number> &stage)
     {
       std::vector<std::vector<std::pair<unsigned int, unsigned int>>> pairs(stage.scene.mesh.n_nodes());
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
@@ -120,7 +123,8 @@ namespace retroforge
 
     /// The faces of this rank's cells, in the order of the mesh.
     template <typename Number>
-    std::vector<FreeFace> free_faces(const StageView<Number> &view, const std::optional<SmoothRegion> &region)
+    std::vector<FreeFace> free_faces(const EquilibriumView<Number>     &view,
+                                     const std::optional<SmoothRegion> &region)
     {
       const Scene          &scene = view.stage.scene;
       const auto            pairs = pairs_of_nodes(view.stage);
@@ -156,11 +160,11 @@ namespace retroforge
   }
 
   template <typename Number>
-  std::vector<Number> FoldIntegrals::operator()(const StageView<Number> &view) const
+  std::vector<Number> FoldIntegrals::operator()(const EquilibriumView<Number> &view) const
   {
-    const Stage<Number>     &stage          = view.stage;
-    const Discretization<3> &discretization = stage.scene.discretization;
-    std::vector<Number>      sums(3, Number(0.));
+    const Equilibrium<Number> &stage          = view.stage;
+    const Discretization<3>   &discretization = stage.scene.discretization;
+    std::vector<Number>        sums(3, Number(0.));
     for (const FreeFace &free : free_faces(view, region_))
     {
       const Number area = free_part(stage.contact, free) * weight_of(region_, free.face, stage.X) *
@@ -173,12 +177,12 @@ namespace retroforge
     return sums;
   }
 
-  void FoldIntegrals::reverse(const StageView<double>   &view,
-                              const std::vector<double> &weights,
-                              StageBar                  &bar) const
+  void FoldIntegrals::reverse(const EquilibriumView<double> &view,
+                              const std::vector<double>     &weights,
+                              EquilibriumBar                &bar) const
   {
-    const Stage<double>     &stage          = view.stage;
-    const Discretization<3> &discretization = stage.scene.discretization;
+    const Equilibrium<double> &stage          = view.stage;
+    const Discretization<3>   &discretization = stage.scene.discretization;
     for (const FreeFace &free : free_faces(view, region_))
     {
       const double part = free_part(stage.contact, free), e = strain_rate(view, free.cell);
@@ -206,8 +210,8 @@ namespace retroforge
     return unit.str();
   }
 
-  template std::vector<double> FoldIntegrals::operator()(const StageView<double> &) const;
-  template std::vector<Dual> FoldIntegrals::operator()(const StageView<Dual> &) const;
+  template std::vector<double> FoldIntegrals::operator()(const EquilibriumView<double> &) const;
+  template std::vector<Dual> FoldIntegrals::operator()(const EquilibriumView<Dual> &) const;
 
   namespace
   {

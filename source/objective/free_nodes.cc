@@ -6,7 +6,7 @@ namespace retroforge
 {
   namespace
   {
-    /// Of the vertices alone: those of quadratic velocities lie on straight edges between them.
+    /// Vertices alone: the middles of quadratic velocities lie on straight edges between them.
     template <typename Number>
     ContactView<Number> contact_view(const FinalView<Number> &view)
     {
@@ -33,26 +33,28 @@ namespace retroforge
     }
   } // namespace
 
-  void FreeNodes::decide(const FinalView<double> &view)
+  FreeNodes::Decisions FreeNodes::decide(const FinalView<double> &view) const
   {
-    near_ = find_contact_pairs(contact_view(view), ramp_, ramp_.width, true);
+    return find_contact_pairs(contact_view(view), ramp_, ramp_.width, true);
   }
 
   template <typename Number>
-  std::vector<Number> FreeNodes::parts(const FinalView<Number> &view) const
+  std::vector<Number> FreeNodes::parts(const FinalView<Number> &view, const Decisions &near) const
   {
-    return products(view, contact_of(view, near_, ramp_));
+    return products(view, contact_of(view, near, ramp_));
   }
 
-  void
-  FreeNodes::reverse(const FinalView<double> &view, const std::vector<double> &parts_bar, FinalBar &bar) const
+  void FreeNodes::reverse(const FinalView<double>   &view,
+                          const Decisions           &near,
+                          const std::vector<double> &parts_bar,
+                          FinalBar                  &bar) const
   {
-    const auto                                     contact = contact_of(view, near_, ramp_);
-    ContactSetBar                                  contact_bar(near_.size());
+    const auto                                     contact = contact_of(view, near, ramp_);
+    ContactSetBar                                  contact_bar(near.size());
     std::map<NodeIndex, std::vector<unsigned int>> pairs_of; // several dies may touch a node
-    for (unsigned int p = 0; p < near_.size(); ++p)
-      if (near_[p].point.is_node())
-        pairs_of[near_[p].point.nodes[0]].push_back(p);
+    for (unsigned int p = 0; p < near.size(); ++p)
+      if (near[p].point.is_node())
+        pairs_of[near[p].point.nodes[0]].push_back(p);
     for (const auto &[k, pairs] : pairs_of)
       for (const unsigned int p : pairs)
       {
@@ -64,6 +66,6 @@ namespace retroforge
     reverse_contact_set(contact_view(view), contact, ramp_, contact_bar, bar.X, bar.dies);
   }
 
-  template std::vector<double> FreeNodes::parts(const FinalView<double> &) const;
-  template std::vector<Dual>   FreeNodes::parts(const FinalView<Dual> &) const;
+  template std::vector<double> FreeNodes::parts(const FinalView<double> &, const Decisions &) const;
+  template std::vector<Dual>   FreeNodes::parts(const FinalView<Dual> &, const Decisions &) const;
 } // namespace retroforge

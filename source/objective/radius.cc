@@ -36,7 +36,7 @@ namespace retroforge
     return chosen;
   }
 
-  void RadiusObjective::decide(const FinalView<double> &view)
+  RadiusObjective::Decisions RadiusObjective::compute_decisions(const FinalView<double> &view) const
   {
     const TetMesh &mesh = view.scene.mesh;
     const auto     S    = lumped_areas(triangles(mesh), view.X);
@@ -46,7 +46,7 @@ namespace retroforge
       sum += S[k] * from_axis(view.X[k]).norm();
       total += S[k];
     }
-    reference_ = sum / total;
+    return {sum / total};
   }
 
   template <typename Number>
@@ -65,7 +65,8 @@ namespace retroforge
   }
 
   template <typename Number>
-  std::vector<Number> RadiusObjective::compute_integrals(const FinalView<Number> &view) const
+  std::vector<Number> RadiusObjective::compute_integrals(const FinalView<Number> &view,
+                                                         const Decisions         &decisions) const
   {
     using std::sqrt;
     std::vector<Number>      sums(3, Number(0.));
@@ -76,7 +77,7 @@ namespace retroforge
       {
         const Vector3<Number> d  = from_axis(view.X[k]);
         const Number          d2 = d * d;
-        const Number          x  = (value_of(d2) > 0. ? Number(sqrt(d2)) : Number(0.)) - reference_;
+        const Number          x  = (value_of(d2) > 0. ? Number(sqrt(d2)) : Number(0.)) - decisions.reference;
         sums[0] += S[k];
         sums[1] += S[k] * x;
         sums[2] += S[k] * x * x;
@@ -85,6 +86,7 @@ namespace retroforge
   }
 
   void RadiusObjective::reverse_integrals(const FinalView<double>   &view,
+                                          const Decisions           &decisions,
                                           const std::vector<double> &weights,
                                           FinalBar                  &bar) const
   {
@@ -96,7 +98,7 @@ namespace retroforge
       if (S[k] > 0.)
       {
         const Vec3   d = from_axis(view.X[k]);
-        const double x = d.norm() - reference_;
+        const double x = d.norm() - decisions.reference;
         S_bar[k]       = weights[0] + weights[1] * x + weights[2] * x * x;
         if (d.norm() > 0.)
           bar.X[k] += S[k] * (weights[1] + 2. * weights[2] * x) / d.norm() * d;
@@ -104,8 +106,10 @@ namespace retroforge
     reverse_lumped_areas(faces, view.X, S_bar, bar.X);
   }
 
-  template std::vector<double> RadiusObjective::compute_integrals(const FinalView<double> &) const;
-  template std::vector<Dual>   RadiusObjective::compute_integrals(const FinalView<Dual> &) const;
+  template std::vector<double> RadiusObjective::compute_integrals(const FinalView<double> &,
+                                                                  const Decisions &) const;
+  template std::vector<Dual>   RadiusObjective::compute_integrals(const FinalView<Dual> &,
+                                                                const Decisions &) const;
 
   namespace
   {

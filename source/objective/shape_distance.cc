@@ -7,11 +7,12 @@
 namespace retroforge
 {
   template <typename Number>
-  std::vector<Number> ShapeDistance::compute_integrals(const FinalView<Number> &view) const
+  std::vector<Number> ShapeDistance::compute_integrals(const FinalView<Number> &view,
+                                                       const Decisions         &seen_features) const
   {
     std::vector<Number> sums(2, Number(0.));
     const auto          S = lumped_areas(surface_triangles(view.scene.mesh), view.X);
-    for (const SeenFeature &seen : seen_)
+    for (const SeenFeature &seen : seen_features)
     {
       const Number delta = target_.distance(view, view.X[seen.point], seen.feature);
       sums[0] += S[seen.point];
@@ -21,6 +22,7 @@ namespace retroforge
   }
 
   void ShapeDistance::reverse_integrals(const FinalView<double>   &view,
+                                        const Decisions           &seen_features,
                                         const std::vector<double> &weights,
                                         FinalBar                  &bar) const
   {
@@ -28,7 +30,7 @@ namespace retroforge
     const auto            S         = lumped_areas(triangles, view.X);
     const TriangleSurface moved     = target_.moved(view);
     std::vector<double>   S_bar(S.size(), 0.);
-    for (const SeenFeature &seen : seen_)
+    for (const SeenFeature &seen : seen_features)
     {
       const double delta = target_.distance(view, view.X[seen.point], seen.feature);
       S_bar[seen.point]  = weights[0] + weights[1] * delta * delta;
@@ -43,8 +45,10 @@ namespace retroforge
     reverse_lumped_areas(triangles, view.X, S_bar, bar.X);
   }
 
-  template std::vector<double> ShapeDistance::compute_integrals(const FinalView<double> &) const;
-  template std::vector<Dual>   ShapeDistance::compute_integrals(const FinalView<Dual> &) const;
+  template std::vector<double> ShapeDistance::compute_integrals(const FinalView<double> &,
+                                                                const Decisions &) const;
+  template std::vector<Dual>   ShapeDistance::compute_integrals(const FinalView<Dual> &,
+                                                              const Decisions &) const;
 
   namespace
   {

@@ -28,20 +28,18 @@ namespace retroforge
     }
   }
 
-  std::map<std::string, double> StrainObjective::details(const std::vector<double> &) const
+  std::map<std::string, double> StrainObjective::details(const std::vector<double> &,
+                                                         const FinalDecisions &decisions) const
   {
     if (statistic_ != StrainStatistic::maximum)
       return {};
-    return {{"true maximum", true_maximum()}};
+    return {{"true maximum", std::any_cast<Decisions>(decisions).reference}};
   }
 
-  void StrainObjective::decide(const FinalView<double> &view)
+  StrainObjective::Decisions StrainObjective::compute_decisions(const FinalView<double> &view) const
   {
     if (statistic_ == StrainStatistic::maximum)
-    {
-      reference_ = view.q.empty() ? 0. : *std::max_element(view.q.begin(), view.q.end());
-      return;
-    }
+      return {view.q.empty() ? 0. : *std::max_element(view.q.begin(), view.q.end())};
     const Discretization<3> &discretization = view.scene.discretization;
     double                   strain = 0., volume = 0.;
     for (const CellIndex c : discretization.cells().owned())
@@ -49,34 +47,35 @@ namespace retroforge
       strain += cell_volume(view, c) * view.q[c];
       volume += cell_volume(view, c);
     }
-    reference_ = discretization.sum(strain) / discretization.sum(volume);
+    return {discretization.sum(strain) / discretization.sum(volume)};
   }
 
   template <typename Number>
-  std::array<Number, 2> StrainObjective::integrands(const Number &q) const
+  std::array<Number, 2> StrainObjective::integrands(const Number &q, const double reference) const
   {
     if (statistic_ == StrainStatistic::maximum)
-      return {{smooth_.term(q, Number(1.), reference_), Number(0.)}};
-    const Number x = q - reference_;
+      return {{smooth_.term(q, Number(1.), reference), Number(0.)}};
+    const Number x = q - reference;
     return {{x, Number(x * x)}};
   }
 
-  std::array<double, 2> StrainObjective::slopes(const double q) const
+  std::array<double, 2> StrainObjective::slopes(const double q, const double reference) const
   {
     if (statistic_ == StrainStatistic::maximum)
-      return {{smooth_.slope(q, reference_), 0.}};
-    return {{1., 2. * (q - reference_)}};
+      return {{smooth_.slope(q, reference), 0.}};
+    return {{1., 2. * (q - reference)}};
   }
 
   template <typename Number>
-  std::vector<Number> StrainObjective::compute_integrals(const FinalView<Number> &view) const
+  std::vector<Number> StrainObjective::compute_integrals(const FinalView<Number> &view,
+                                                         const Decisions         &decisions) const
   {
     const Discretization<3> &discretization = view.scene.discretization;
     std::vector<Number>      sums(3, Number(0.));
     for (const CellIndex c : discretization.cells().owned())
     {
       const Number volume = cell_volume(view, c);
-      const auto   f      = integrands(view.q[c]);
+      const auto   f      = integrands(view.q[c], decisions.reference);
       sums[0] += volume;
       sums[1] += volume * f[0];
       sums[2] += volume * f[1];
@@ -85,31 +84,34 @@ namespace retroforge
   }
 
   template <typename Number>
-  Number StrainObjective::combine(const std::vector<Number> &b) const
+  Number StrainObjective::combine(const std::vector<Number> &b, const Decisions &decisions) const
   {
     if (statistic_ == StrainStatistic::maximum)
-      return smooth_.combine(b[1], b[0], reference_);
+      return smooth_.combine(b[1], b[0], decisions.reference);
     const Number mean = b[1] / b[0];
-    return statistic_ == StrainStatistic::mean ? Number(reference_ + mean)
+    return statistic_ == StrainStatistic::mean ? Number(decisions.reference + mean)
                                                : Number(b[2] / b[0] - mean * mean);
   }
 
   void StrainObjective::reverse_integrals(const FinalView<double>   &view,
+                                          const Decisions           &decisions,
                                           const std::vector<double> &weights,
                                           FinalBar                  &bar) const
   {
     const Discretization<3> &discretization = view.scene.discretization;
     for (const CellIndex c : discretization.cells().owned())
     {
-      const auto f = integrands(view.q[c]), slope = slopes(view.q[c]);
+      const auto f     = integrands(view.q[c], decisions.reference),
+                 slope = slopes(view.q[c], decisions.reference);
       reverse_cell_volume(view, c, weights[0] + weights[1] * f[0] + weights[2] * f[1], bar.X);
       bar.q[c] += cell_volume(view, c) * (weights[1] * slope[0] + weights[2] * slope[1]);
     }
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                                              \
-  template std::vector<Number> StrainObjective::compute_integrals(const FinalView<Number> &) const; \
-  template Number              StrainObjective::combine(const std::vector<Number> &) const;
+#define RETROFORGE_INSTANTIATE(Number)                                                       \
+  template std::vector<Number> StrainObjective::compute_integrals(const FinalView<Number> &, \
+                                                                  const Decisions &) const;  \
+  template Number              StrainObjective::combine(const std::vector<Number> &, const Decisions &) const;
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE

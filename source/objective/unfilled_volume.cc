@@ -33,7 +33,7 @@ namespace retroforge
                   "close it, or give a region that ends at the planes of symmetry");
   }
 
-  void UnfilledVolume::lay_grid(const FinalView<double> &view)
+  UnfilledVolume::Grid UnfilledVolume::make_grid(const FinalView<double> &view) const
   {
     Box        box     = target_.region() ? *target_.region() : bounding_box(target_.vertices(view));
     const auto longest = [&] {
@@ -56,86 +56,104 @@ namespace retroforge
                     "the target lies behind a symmetry plane",
                     "only what faces the model is compared with it",
                     "move the target, or turn the plane's normal round");
-    origin_         = box.first;
     const Vec3 size = box.second - box.first;
-    width_          = layer_ * longest() / n_samples_;
+    Grid       grid{{}, box.first, {}, layer_ * longest() / n_samples_};
     for (unsigned int i = 0; i < 3; ++i)
     {
-      n_[i]       = std::max(1., std::round(n_samples_ * size[i] / longest()));
-      spacing_[i] = size[i] / n_[i];
+      grid.n[i]       = std::max(1., std::round(n_samples_ * size[i] / longest()));
+      grid.spacing[i] = size[i] / grid.n[i];
     }
+    return grid;
   }
 
-  template <typename Number>
-  Number UnfilledVolume::step(const Number &x) const
+  Vec3 UnfilledVolume::Grid::sample(const unsigned int g) const
   {
-    return 1. - FrictionRamp{width_, false}(Number(x + 0.5 * width_), false);
+    const unsigned int i[3] = {g % n[0], g / n[0] % n[1], g / n[0] / n[1]};
+    Vec3               x;
+    for (unsigned int d = 0; d < 3; ++d)
+      x[d] = origin[d] + (i[d] + 0.5) * spacing[d];
+    return x;
   }
 
-  double UnfilledVolume::slope(const double x) const
+  namespace
   {
-    return -FrictionRamp{width_, false}.derivative(x + 0.5 * width_);
-  }
+    /// H of a layer of that width.
+    template <typename Number>
+    Number smooth_step(const Number &x, const double width)
+    {
+      return 1. - FrictionRamp{width, false}(Number(x + 0.5 * width), false);
+    }
 
-  void UnfilledVolume::decide(const FinalView<double> &view)
+    double smooth_step_slope(const double x, const double width)
+    {
+      return -FrictionRamp{width, false}.derivative(x + 0.5 * width);
+    }
+  } // namespace
+
+  UnfilledVolume::Decisions UnfilledVolume::compute_decisions(const FinalView<double> &view) const
   {
-    lay_grid(view);
-    workpiece_                        = WorkpieceSurface(view);
-    const TriangleSurface      target = target_.moved(view);
-    const ClosestFeature       closest_target(target), closest_workpiece(workpiece_.shape());
-    const NodalVectors<double> vertices = workpiece_.vertices(view);
+    const Grid                 grid = make_grid(view);
+    Decisions                  decisions{grid.width, WorkpieceSurface(view), {}};
+    const TriangleSurface     &workpiece = decisions.workpiece.shape();
+    const TriangleSurface      target    = target_.moved(view);
+    const ClosestFeature       closest_target(target), closest_workpiece(workpiece);
+    const NodalVectors<double> vertices = decisions.workpiece.vertices(view);
     const Sector               sector(view.scene.mesh);
-    samples_.clear();
-    const auto [begin, end] = share_of_rank(n_[0] * n_[1] * n_[2], view.scene.discretization.comm());
+    const auto counts       = [&](const double depth) { return smooth_step(depth, grid.width) > 0.; };
+    const auto [begin, end] = share_of_rank(grid.n_samples(), view.scene.discretization.comm());
     for (unsigned int g = begin; g < end; ++g)
     {
-      const unsigned int i[3] = {g % n_[0], g / n_[0] % n_[1], g / n_[0] / n_[1]};
-      Sample             sample;
-      for (unsigned int d = 0; d < 3; ++d)
-        sample.x[d] = origin_[d] + (i[d] + 0.5) * spacing_[d];
-      sample.volume = spacing_[0] * spacing_[1] * spacing_[2] * sector.share(sample.x, spacing_);
+      Sample sample;
+      sample.x = grid.sample(g);
+      sample.volume =
+        grid.spacing[0] * grid.spacing[1] * grid.spacing[2] * sector.share(sample.x, grid.spacing);
       if (sample.volume == 0.)
         continue;
       // Behind the rim of an open surface is inside what it bounds.
       sample.target = closest_target(sample.x - target_.displacement(view));
-      if (sample.target.found() ? step(sign() * target_.distance(view, sample.x, sample.target)) == 0.
+      if (sample.target.found() ? !counts(sign() * target_.distance(view, sample.x, sample.target))
                                 : cavity_ == Cavity::in_front)
         continue;
       sample.workpiece = closest_workpiece(sample.x);
       if (sample.workpiece.found() &&
-          step(project_on_feature(workpiece_.shape(), vertices, sample.workpiece, sample.x, Vec3()).delta) >
-            0.)
-        samples_.push_back(sample);
+          counts(project_on_feature(workpiece, vertices, sample.workpiece, sample.x, Vec3()).delta))
+        decisions.samples.push_back(sample);
     }
+    return decisions;
   }
 
   template <typename Number>
-  std::vector<Number> UnfilledVolume::compute_integrals(const FinalView<Number> &view) const
+  std::vector<Number> UnfilledVolume::compute_integrals(const FinalView<Number> &view,
+                                                        const Decisions         &decisions) const
   {
-    const NodalVectors<Number> vertices = workpiece_.vertices(view);
+    const auto &[width, workpiece, samples] = decisions;
+    const NodalVectors<Number> vertices     = workpiece.vertices(view);
     Number                     sum(0.);
-    for (const Sample &sample : samples_)
+    for (const Sample &sample : samples)
     {
       Vector3<Number> x;
       for (unsigned int i = 0; i < 3; ++i)
         x[i] = Number(sample.x[i]);
       const Number u =
-        project_on_feature(workpiece_.shape(), vertices, sample.workpiece, x, Vector3<Number>()).delta;
-      const Number c =
-        sample.target.found() ? step(Number(sign() * target_.distance(view, x, sample.target))) : Number(1.);
-      sum += sample.volume * c * step(u);
+        project_on_feature(workpiece.shape(), vertices, sample.workpiece, x, Vector3<Number>()).delta;
+      const Number c = sample.target.found()
+                         ? smooth_step(Number(sign() * target_.distance(view, x, sample.target)), width)
+                         : Number(1.);
+      sum += sample.volume * c * smooth_step(u, width);
     }
     return {sum};
   }
 
   void UnfilledVolume::reverse_integrals(const FinalView<double>   &view,
+                                         const Decisions           &decisions,
                                          const std::vector<double> &weights,
                                          FinalBar                  &bar) const
   {
-    const TriangleSurface workpiece = workpiece_.moved(view), target = target_.moved(view);
+    const double          width     = decisions.width;
+    const TriangleSurface workpiece = decisions.workpiece.moved(view), target = target_.moved(view);
     NodalVectors<double>  workpiece_bar(workpiece.vertices().size());
     Vec3                  unused; // samples stand still
-    for (const Sample &sample : samples_)
+    for (const Sample &sample : decisions.samples)
     {
       const double weight = weights[0] * sample.volume;
       const double u =
@@ -144,19 +162,22 @@ namespace retroforge
       if (sample.target.found())
       {
         const double depth = sign() * target_.distance(view, sample.x, sample.target);
-        c                  = step(depth);
-        if (const double depth_bar = weight * step(u) * slope(depth); depth_bar != 0.)
+        c                  = smooth_step(depth, width);
+        if (const double depth_bar = weight * smooth_step(u, width) * smooth_step_slope(depth, width);
+            depth_bar != 0.)
           target_.reverse_distance(view, target, sample.x, sample.target, sign() * depth_bar, unused, bar);
       }
-      if (const double u_bar = weight * c * slope(u); u_bar != 0.)
+      if (const double u_bar = weight * c * smooth_step_slope(u, width); u_bar != 0.)
         reverse_project_on_feature(
           workpiece, sample.workpiece, sample.x, Vec3(), u_bar, Vec3(), unused, unused, &workpiece_bar);
     }
-    workpiece_.add(workpiece_bar, bar);
+    decisions.workpiece.add(workpiece_bar, bar);
   }
 
-  template std::vector<double> UnfilledVolume::compute_integrals(const FinalView<double> &) const;
-  template std::vector<Dual>   UnfilledVolume::compute_integrals(const FinalView<Dual> &) const;
+  template std::vector<double> UnfilledVolume::compute_integrals(const FinalView<double> &,
+                                                                 const Decisions &) const;
+  template std::vector<Dual>   UnfilledVolume::compute_integrals(const FinalView<Dual> &,
+                                                               const Decisions &) const;
 
   namespace
   {

@@ -34,20 +34,20 @@ namespace retroforge
     const auto begin = std::chrono::steady_clock::now();
     Evaluation evaluation;
     evaluation.mu = mu;
-    trial_.reset(); // two would be in memory
+    run_.reset(); // two would be in memory
     mu_ = mu;
     try
     {
       case_.design.check_values(mu);
-      trial_ = std::make_unique<ForwardRun>(
-        case_, case_.design.process(mu), case_.design.positions(mu), ForwardRun::Keep::increments);
-      trial_->check();
-      trial_->forge([&](const IncrementEvent &event) { evaluation.increments = event.state.increments; });
-      evaluation.values = of_first_rank(trial_->values(), case_.comm);
+      run_ = std::make_unique<ForwardRun>(
+        case_, case_.design.process(mu), case_.design.positions(mu), ForwardRun::Keep::increments, timings_);
+      run_->check();
+      run_->forge([&](const IncrementEvent &event) { evaluation.increments = event.state.increments; });
+      evaluation.values = of_first_rank(run_->values(), case_.comm);
     }
     catch (const Error &error)
     {
-      trial_.reset();
+      run_.reset();
       evaluation.failure = error.what();
     }
     evaluation.seconds = of_first_rank(seconds_since(begin), case_.comm);
@@ -64,8 +64,8 @@ namespace retroforge
 
   ForwardRun &CachedRun::in_memory(const Evaluation &known)
   {
-    if (trial_ && mu_ == known.mu)
-      return *trial_;
+    if (run_ && mu_ == known.mu)
+      return *run_;
     const Evaluation again = forge(known.mu);
     if (again.failed())
       throw Error("optimize",
@@ -78,14 +78,14 @@ namespace retroforge
                     ", and found other values than the journal has",
                   "a journal belongs to the program, the machine and the number of ranks that wrote it",
                   "go on there, or begin anew with --overwrite");
-    return *trial_;
+    return *run_;
   }
 
   std::vector<std::vector<double>> CachedRun::gradients(const Evaluation &known)
   {
     const AdjointSweep               sweep = in_memory(known).sweep(each_);
     std::vector<std::vector<double>> gradients;
-    for (const AdjointResult &of : sweep.of)
+    for (const AdjointResult &of : sweep.gradients)
     {
       gradients.push_back(of_first_rank(case_.design.pull_back(known.mu, of.X_0, of.process), case_.comm));
       for (const double derivative : gradients.back())

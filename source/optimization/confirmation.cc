@@ -34,7 +34,7 @@ namespace retroforge
       const std::string mode = "billet/free form ";
       for (std::size_t o = 0; o < scenarios.size(); ++o)
       {
-        if (scenarios.at(o).parameters.billet.shape == "file")
+        if (scenarios.at(o).parameters.billet.is_from_file())
           return "a billet from a file has no finer mesh";
         for (const DesignParameter &parameter : scenarios.at(o).design.parameters())
           if (parameter.name.rfind(mode, 0) == 0)

@@ -77,6 +77,7 @@ namespace retroforge
 
   void OptimizationProblem::check_start() const
   {
+    Timings timings;
     for (std::size_t o = 0; o < scenarios.size(); ++o)
     {
       const Case               &forging_case = scenarios.at(o);
@@ -86,7 +87,8 @@ namespace retroforge
       ForwardRun(forging_case,
                  forging_case.design.process(mu),
                  forging_case.design.positions(mu),
-                 ForwardRun::Keep::nothing)
+                 ForwardRun::Keep::nothing,
+                 timings)
         .check();
     }
   }

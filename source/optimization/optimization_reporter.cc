@@ -103,8 +103,7 @@ namespace retroforge
                 problem_.criteria.objective.name.c_str(),
                 varied_parameters(problem_.main).size(),
                 problem_.criteria.limits.size());
-    print_part(whole_part(problem_.main.billet,
-                          problem_.main.nominal.dies[problem_.main.nominal.leading_die].velocity));
+    print_part(whole_part(problem_.main.billet, problem_.main.nominal.leading_velocity()));
     if (problem_.criteria.objective.unit == "mixed")
       std::printf("  note: it adds objectives of different units, by their weights\n");
     if (const auto &held = problem_.space.held(); held && varies_billet(problem_.space))
@@ -266,21 +265,21 @@ namespace retroforge
     const ForwardRun *forged = there ? nullptr : problem_.evaluator.forged(mu, scenario);
     if (forged == nullptr)
       return;
-    const ForwardRun &trial = *forged;
+    const ForwardRun &run = *forged;
     if (name == "best" && scenario == 0)
     {
       results_.details.clear();
-      for (const ObjectiveTrace::Diagnostics &diagnostics : trial.diagnostics()) // by all ranks of the group
-        results_.details.push_back(diagnostics.details);
+      for (const ObjectiveTrace::Evaluation &evaluation : run.evaluations()) // by all ranks of the group
+        results_.details.push_back(evaluation.details);
     }
     if (!writes)
       return;
     if (problem_.parameters().keep_records)
-      trial.write_record(base, parameters_at(forging_case, problem_.evaluator.middle_sample(mu, scenario)));
-    write_msh(base + "_billet.msh", forging_case.billet, trial.X_0());
-    write_boundary_stl(base + "_billet.stl", forging_case.billet, trial.X_0());
-    write_boundary_stl(base + "_forged.stl", trial.end().leg->scene.mesh, trial.end().X);
-    for (const Die &die : trial.dies())
+      run.write_record(base, parameters_at(forging_case, problem_.evaluator.middle_sample(mu, scenario)));
+    write_msh(base + "_billet.msh", forging_case.billet, run.X_0());
+    write_boundary_stl(base + "_billet.stl", forging_case.billet, run.X_0());
+    write_boundary_stl(base + "_forged.stl", run.state().epoch->scene.mesh, run.state().workpiece.X);
+    for (const Die &die : run.dies())
       if (die.surface())
         write_stl(base + "_die_" + die.name + ".stl", *die.surface(), StlFormat::binary);
     write_file(base + "_design.prm", design); // when all of it is there

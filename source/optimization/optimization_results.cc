@@ -4,6 +4,7 @@
 #include <retroforge/core/text.h>
 #include <retroforge/core/version.h>
 #include <retroforge/optimization/optimization_results.h>
+#include <retroforge/output/json_number.h>
 #include <retroforge/output/safe_file.h>
 
 #include <nlohmann/json.hpp>
@@ -20,11 +21,6 @@ namespace retroforge
   {
     using Json = nlohmann::ordered_json;
     using At   = DesignSpace::At;
-
-    Json number(const double x)
-    {
-      return std::isfinite(x) ? Json(x) : Json();
-    }
 
     const char *in_words(const At at)
     {
@@ -48,15 +44,15 @@ namespace retroforge
       for (const Datum &datum : results.criteria.data)
         data.push_back({{"objective", results.objectives[datum.objective]},
                         {"unit", results.units[datum.objective]},
-                        {"measured", number(datum.value)},
-                        {"deviation", number(datum.deviation)},
-                        {"best", number(results.best.values[datum.objective])}});
+                        {"measured", json_number(datum.value)},
+                        {"deviation", json_number(datum.deviation)},
+                        {"best", json_number(results.best.values[datum.objective])}});
       for (const unsigned int j : confidence.parameters)
         names.push_back(results.space.parameters()[j].name);
       for (const double deviation : confidence.deviations)
-        deviations.push_back(number(deviation));
+        deviations.push_back(json_number(deviation));
       return {{"data", data},
-              {"misfit", number(confidence.misfit)},
+              {"misfit", json_number(confidence.misfit)},
               {"freedom", confidence.freedom},
               {"parameters", names},
               {"deviations", deviations},
@@ -119,7 +115,7 @@ namespace retroforge
     {
       Json json = Json::object();
       for (std::size_t i = 0; i < values.size(); ++i)
-        json[names[i]] = number(values[i]);
+        json[names[i]] = json_number(values[i]);
       return json;
     }
   } // namespace
@@ -274,35 +270,35 @@ namespace retroforge
     for (std::size_t j = 0; j < space.size(); ++j)
       parameters.push_back({{"name", space.parameters()[j].name},
                             {"unit", space.parameters()[j].unit},
-                            {"start", number(start.mu[j])},
-                            {"best", number(best.mu[j])},
-                            {"lower", number(space.lower()[j])},
-                            {"upper", number(space.upper()[j])},
-                            {"scale", number(space.scales()[j])},
+                            {"start", json_number(start.mu[j])},
+                            {"best", json_number(best.mu[j])},
+                            {"lower", json_number(space.lower()[j])},
+                            {"upper", json_number(space.upper()[j])},
+                            {"scale", json_number(space.scales()[j])},
                             {"at", in_words(space.at(best.mu, j))},
-                            {"gradient", number(gradient[j])}});
+                            {"gradient", json_number(gradient[j])}});
     for (std::size_t i = 0; i < criteria.limits.size(); ++i)
     {
       const Limit &limit = criteria.limits[i];
       limits.push_back({{"objective", objectives[limit.objective]},
                         {"kind", limit.at_least ? "at least" : "at most"},
-                        {"bound", number(limit.bound)},
-                        {"start", number(start.values[limit.objective])},
-                        {"best", number(best.values[limit.objective])},
-                        {"missed_by", number(missed_by(i))},
-                        {"by_relaxing", number(by_relaxing(i))}});
+                        {"bound", json_number(limit.bound)},
+                        {"start", json_number(start.values[limit.objective])},
+                        {"best", json_number(best.values[limit.objective])},
+                        {"missed_by", json_number(missed_by(i))},
+                        {"by_relaxing", json_number(by_relaxing(i))}});
     }
     Json relations = Json::array();
     for (std::size_t r = 0; r < space.relations().size(); ++r)
       relations.push_back(
         {{"relation", space.relations()[r].text},
          {"active", space.holds_as_equation(best.mu, r)},
-         {"excess", number(space.relations()[r].excess(best.mu))},
-         {"by_moving", r < by_moving_relation.size() ? number(by_moving_relation[r]) : Json()}});
+         {"excess", json_number(space.relations()[r].excess(best.mu))},
+         {"by_moving", r < by_moving_relation.size() ? json_number(by_moving_relation[r]) : Json()}});
     for (const TrialRow &row : rows)
       trials.push_back({{"decision", in_words(row.decision, row.evaluation.failed())},
-                        {"merit", number(row.merit)},
-                        {"radius", number(row.radius)},
+                        {"merit", json_number(row.merit)},
+                        {"radius", json_number(row.radius)},
                         {"mesh", row.mesh},
                         {"values", values_by_name(objectives, row.evaluation.values)},
                         {"failure", row.evaluation.failure},
@@ -313,12 +309,12 @@ namespace retroforge
       made.push_back({{"trial", mesh.row},
                       {"meshed_at", mesh.made_at},
                       {"nodes", mesh.n_nodes},
-                      {"quality_before", number(mesh.quality_before)},
-                      {"quality", number(mesh.quality_after)},
-                      {"volume_before", number(mesh.volume_before)},
-                      {"volume", number(mesh.volume_after)},
-                      {"objective_before", number(criteria.value(mesh.before))},
-                      {"objective", number(criteria.value(mesh.after))},
+                      {"quality_before", json_number(mesh.quality_before)},
+                      {"quality", json_number(mesh.quality_after)},
+                      {"volume_before", json_number(mesh.volume_before)},
+                      {"volume", json_number(mesh.volume_after)},
+                      {"objective_before", json_number(criteria.value(mesh.before))},
+                      {"objective", json_number(criteria.value(mesh.after))},
                       {"values_before", values_by_name(objectives, mesh.before)},
                       {"values", values_by_name(objectives, mesh.after)}});
     Json json = {{"schema", 1},
@@ -328,9 +324,9 @@ namespace retroforge
                  {"objective",
                   {{"name", criteria.objective.name},
                    {"unit", criteria.objective.unit},
-                   {"start", number(value(start))},
-                   {"best", number(value(best))},
-                   {"noise", number(noise)},
+                   {"start", json_number(value(start))},
+                   {"best", json_number(value(best))},
+                   {"noise", json_number(noise)},
                    {"counted_as", counted_as}}},
                  {"limits", limits},
                  {"relations", relations},
@@ -349,10 +345,10 @@ namespace retroforge
     if (const auto &held = space.held())
       json["follows"] = {{"name", held->name},
                          {"unit", held->unit},
-                         {"start", number(start.values.back())},
-                         {"best", number(best.values.back())},
-                         {"lower", number(held->lower)},
-                         {"upper", number(held->upper)}};
+                         {"start", json_number(start.values.back())},
+                         {"best", json_number(best.values.back())},
+                         {"lower", json_number(held->lower)},
+                         {"upper", json_number(held->upper)}};
     for (std::size_t o = 0; o < details.size(); ++o)
       if (!details[o].empty())
         json["details"][objectives[o]] = details[o];
@@ -362,8 +358,8 @@ namespace retroforge
       json["confirmation"] = {
         {"nodes", confirmation->n_nodes},
         {"increments", confirmation->n_increments},
-        {"start", confirmation->start.failed() ? Json() : number(value(confirmation->start))},
-        {"best", confirmation->best.failed() ? Json() : number(value(confirmation->best))},
+        {"start", confirmation->start.failed() ? Json() : json_number(value(confirmation->start))},
+        {"best", confirmation->best.failed() ? Json() : json_number(value(confirmation->best))},
         {"values_start", values_by_name(objectives, confirmation->start.values)},
         {"values", values_by_name(objectives, confirmation->best.values)},
         {"failure", confirmation->start.failure + confirmation->best.failure}};

@@ -9,7 +9,7 @@ namespace retroforge
   {
     /// Of each die and node: the force that it is pushed with [N].
     std::vector<std::vector<double>>
-    pushing_forces(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
+    pushing_forces(const Equilibrium<double> &stage, const Field<double> &W, const ActiveSet &active)
     {
       std::vector<std::vector<double>> forces(stage.scene.dies.size(),
                                               std::vector<double>(stage.scene.mesh.n_nodes(), 0.));
@@ -38,7 +38,8 @@ namespace retroforge
     }
   } // namespace
 
-  ContactFields contact_fields(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
+  ContactFields
+  contact_fields(const Equilibrium<double> &stage, const Field<double> &W, const ActiveSet &active)
   {
     const TetMesh            &mesh   = stage.scene.mesh;
     const auto                forces = pushing_forces(stage, W, active);

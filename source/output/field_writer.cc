@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/base/data_out_base.h>
-
-#include <retroforge/discretization/element_pairs.h>
 #include <retroforge/mesh/whole_part.h>
+#include <retroforge/output/cell_fields.h>
 #include <retroforge/output/contact_fields.h>
 #include <retroforge/output/die_pictures.h>
 #include <retroforge/output/field_file.h>
 #include <retroforge/output/field_writer.h>
-#include <retroforge/output/safe_file.h>
 
 #include <cstdio>
-#include <sstream>
 
 namespace retroforge
 {
@@ -21,9 +17,9 @@ namespace retroforge
     const TetMesh              &mesh;
     const MiddleNodes          *middles; ///< null where velocities are linear
     const NodalVectors<double> &X;
-    const NodalVectors<double> &position; ///< where V and P are an equilibrium
-    const NodalVectors<double> &V;        ///< of velocity nodes but bubbles, on this rank all
+    const NodalVectors<double> &V; ///< of velocity nodes but bubbles, on this rank all
     const std::vector<double>  &P;
+    const CellFields           &cells; ///< where V and P are an equilibrium
     const std::vector<double>  &strain;
     const NodalVectors<double> *displacement; ///< null: unknown
     const ContactFields        *contact;      ///< null: unknown
@@ -31,69 +27,25 @@ namespace retroforge
 
   namespace
   {
-    /// Of each cell: mean equivalent strain rate, von Mises stress, deviatoric stress.
-    struct CellFields
+    /// A flow known by its nodes, on this rank alone: bubbles follow from V and P.
+    Field<double> with_bubbles(const Discretization<3>                             &discretization,
+                               const NodalVectors<double>                          &X,
+                               const LastSolution                                  &solution,
+                               const std::function<MaterialLaw<double>(CellIndex)> &law)
     {
-      std::vector<double>          strain_rate, von_mises;
-      std::vector<SymmetricTensor> stress;
-    };
-
-    void recover_bubble(const CellGeometry<double> &geometry,
-                        const MaterialLaw<double>  &law,
-                        CellValues<double>         &w)
-    {
-      w.beta = solve_bubble(geometry, w, law);
-    }
-
-    void recover_bubble(const CellGeometry<double> &, const MaterialLaw<double> &, TaylorHoodValues<double> &)
-    {
-    }
-
-    /// Bubbles follow from V and P.
-    template <typename Values>
-    void
-    add_cell(const CellGeometry<double> &geometry, Values w, const MaterialLaw<double> &law, CellFields &to)
-    {
-      recover_bubble(geometry, law, w);
-      to.strain_rate.push_back(cell_strain_rate(geometry, w));
-      to.stress.push_back(cell_deviatoric_stress(geometry, w, law));
-      to.von_mises.push_back(von_mises(to.stress.back()));
-    }
-
-    CellFields cell_fields(const TetMesh              &mesh,
-                           const MiddleNodes          *middles,
-                           const NodalVectors<double> &X,
-                           const NodalVectors<double> &V,
-                           const std::vector<double>  &P,
-                           const Material<double>     &material,
-                           const std::vector<double>  &strain)
-    {
-      CellFields fields;
-      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
-      {
-        const auto              &nodes = mesh.cells[c];
-        const auto               law   = material.at({strain[c]});
-        Four<Vec3>               x;
-        CellValues<double>       linear;
-        TaylorHoodValues<double> quadratic;
-        for (unsigned int a = 0; a < 4; ++a)
-        {
-          x[a]        = X[nodes[a]];
-          linear.V[a] = quadratic.V[a] = V[nodes[a]];
-          linear.P[a] = quadratic.P[a] = P[nodes[a]];
-        }
-        if (middles)
-          for (unsigned int e = 0; e < 6; ++e)
-          {
-            const auto [a, b]  = tet_edge_corners[e];
-            quadratic.V[4 + e] = V[middles->between(nodes[a], nodes[b])];
-          }
-        if (middles)
-          add_cell(cell_geometry(x), quadratic, law, fields);
-        else
-          add_cell(cell_geometry(x), linear, law, fields);
-      }
-      return fields;
+      Field<double> W(discretization);
+      W.V.take(solution.V);
+      W.P.take(solution.P);
+      if (discretization.has_bubbles())
+        dispatch_element(discretization, [&](const auto pair) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(pair)>, TaylorHoodPair>)
+            for (const CellIndex c : discretization.visited_cells())
+              W.V.at_place(discretization.velocity_places(c)[discretization.n_nodes_per_cell()]) =
+                solve_bubble(cell_geometry(pair.positions(discretization, X, c)),
+                             pair.on_cell(discretization, W, c),
+                             law(c));
+        });
+      return W;
     }
 
     std::string six_digits(const unsigned int number)
@@ -122,20 +74,15 @@ namespace retroforge
       , billet_(billet)
       , X_0_(X_0)
       , displacement_(X_0.size())
+      , series_(directory + "/fields.pvd")
   {
   }
 
   void FieldWriter::write(const std::string &file, const Workpiece &workpiece) const
   {
-    const TetMesh   &mesh  = workpiece.mesh;
-    const CellFields cells = cell_fields(mesh,
-                                         workpiece.middles,
-                                         workpiece.position,
-                                         workpiece.V,
-                                         workpiece.P,
-                                         process_.material,
-                                         workpiece.strain);
-    FieldFile<3>     picture(workpiece.X, mesh.cells);
+    const TetMesh    &mesh  = workpiece.mesh;
+    const CellFields &cells = workpiece.cells;
+    FieldFile<3>      picture(workpiece.X, mesh.cells);
     picture.add_linear("pressure", "MPa", workpiece.P);
     picture.add_velocity("velocity", "mm/s", workpiece.V, workpiece.middles);
     if (workpiece.displacement)
@@ -155,37 +102,33 @@ namespace retroforge
   }
 
   std::string FieldWriter::write_die(const unsigned int          d,
-                                     const double                stroke,
+                                     const Vec3                 &displacement,
                                      const std::string          &suffix,
-                                     const NodalVectors<double> &X) const
+                                     const NodalVectors<double> &X)
   {
     const Die        &die   = model_.dies[d];
     const bool        still = die.surface() && process_.dies[d].velocity.norm() == 0.;
     const std::string file  = "die_" + die.name + "_" + (still ? six_digits(0) : suffix) + ".vtu";
-    if (!still || stroke == 0.)
+    if (!still || drawn_still_.insert(d).second)
     {
-      const TriangleSurface picture = die_picture(die, process_.at_stroke(stroke).dies[d].displacement, X);
+      const TriangleSurface picture = die_picture(die, displacement, X);
       FieldFile<2>(picture.vertices(), picture.triangles()).write(directory_ + "/" + file);
     }
     return file;
   }
 
-  void FieldWriter::add_step(const double                stroke,
+  void FieldWriter::add_step(const StrokeStep           &at,
                              const std::string          &file,
                              const std::string          &suffix,
                              const NodalVectors<double> &X)
   {
-    const double time = process_.time(stroke);
-    while (!series_.empty() && series_.back().first == time)
-      series_.pop_back();
-    series_.emplace_back(time, file);
     if (!is_first_)
       return;
-    for (unsigned int d = 0; d < model_.dies.size(); ++d)
-      series_.emplace_back(time, write_die(d, stroke, suffix, X));
-    std::ostringstream out;
-    dealii::DataOutBase::write_pvd_record(out, series_);
-    write_file(directory_ + "/fields.pvd", out.str());
+    std::vector<std::string> pictures = {file};
+    const auto               dies     = process_.at_stroke(at.stroke, at.operation).dies;
+    for (const unsigned int d : process_.operations[at.operation].dies)
+      pictures.push_back(write_die(d, dies[d].displacement, suffix, X));
+    series_.add(process_.whole_time(at.stroke, at.operation), pictures);
   }
 
   void FieldWriter::write_billet() const
@@ -194,15 +137,18 @@ namespace retroforge
     const std::vector<double>  zero(billet_.n_nodes(), 0.), strain(billet_.n_cells(), 0.);
     const NodalVectors<double> still(billet_.n_nodes()), at_rest(discretization.condensed_nodes()->n());
     const ContactFields        contact{zero, zero, still};
+    const CellFields cells = cell_fields(discretization, X_0_, Field<double>(discretization), [&](CellIndex) {
+      return process_.material.at({});
+    });
     write(fields_file(0),
-          {billet_, discretization.middles(), X_0_, X_0_, at_rest, zero, strain, &still, &contact});
+          {billet_, discretization.middles(), X_0_, at_rest, zero, cells, strain, &still, &contact});
   }
 
   void FieldWriter::add_billet()
   {
     if (is_first_)
       write_billet();
-    add_step(0., fields_file(0), six_digits(0), X_0_);
+    add_step({0., 0.}, fields_file(0), six_digits(0), X_0_);
   }
 
   void FieldWriter::follow(const IncrementEvent &event)
@@ -210,30 +156,35 @@ namespace retroforge
     if (event.record.remesh)
       displacement_ = event.record.remesh->transfer.apply(displacement_);
     for (std::size_t k = 0; k < displacement_.size(); ++k)
-      displacement_[k] += event.state.X[k] - event.X_before[k];
+      displacement_[k] += event.state.workpiece.X[k] - event.X_before[k];
     n_remeshings_ = event.state.remeshed.size();
   }
 
   void FieldWriter::add(const IncrementEvent &event)
   {
     const ForgingState &run   = event.state;
-    const Scene        &scene = run.leg->scene;
+    const Scene        &scene = run.epoch->scene;
     const SolvedStage  &last  = event.solved.last();
+    const CellFields    cells =
+      cell_fields(scene.discretization, last.X, last.W, [&](const CellIndex c) { return last.stage.law(c); });
     if (is_first_)
     {
       const ContactFields contact = contact_fields(last.stage, last.W, last.active);
       write(fields_file(run.increments),
             {scene.mesh,
              scene.discretization.middles(),
-             run.X,
-             last.X,
-             run.solution.V,
-             run.solution.P,
-             run.strain,
+             run.workpiece.X,
+             run.solution->V,
+             run.solution->P,
+             cells,
+             run.workpiece.strain,
              &displacement_,
              &contact});
     }
-    add_step(run.stroke, fields_file(run.increments), six_digits(run.increments), run.X);
+    add_step({run.stroke, 0., run.operation},
+             fields_file(run.increments),
+             six_digits(run.increments),
+             run.workpiece.X);
   }
 
   void FieldWriter::add_failed(const ForgingState &state)
@@ -243,22 +194,28 @@ namespace retroforge
     if (series_.empty())
     {
       write_billet();
-      add_step(0., fields_file(0), six_digits(0), X_0_);
+      add_step({0., 0.}, fields_file(0), six_digits(0), X_0_);
     }
-    const auto         &discretization = state.leg->scene.discretization;
-    const LastSolution  at_rest        = {NodalVectors<double>(discretization.condensed_nodes()->n()),
-                                          std::vector<double>(discretization.n_vertices(), 0.)};
-    const LastSolution &solution       = state.solution.V.empty() ? at_rest : state.solution;
+    const TetMesh              &mesh = state.epoch->scene.mesh;
+    const NodalVectors<double> &X    = state.workpiece.X;
+    const Discretization<3>     discretization(mesh, model_.discretization, MPI_COMM_SELF);
+    const LastSolution          at_rest  = {NodalVectors<double>(discretization.condensed_nodes()->n()),
+                                            std::vector<double>(discretization.n_vertices(), 0.)};
+    const LastSolution          solution = state.solution.value_or(at_rest);
+    const auto                  points   = point_states(mesh, state.workpiece);
+    const auto                  law      = [&](const CellIndex c) { return process_.material.at(points[c]); };
+    const CellFields            cells =
+      cell_fields(discretization, X, with_bubbles(discretization, X, solution, law), law);
     write("failed.vtu",
-          {state.leg->scene.mesh,
+          {mesh,
            discretization.middles(),
-           state.X,
-           state.X,
+           X,
            solution.V,
            solution.P,
-           state.strain,
+           cells,
+           state.workpiece.strain,
            displacement,
            nullptr});
-    add_step(state.stroke, "failed.vtu", "failed", state.X);
+    add_step({state.stroke, 0., state.operation}, "failed.vtu", "failed", state.workpiece.X);
   }
 } // namespace retroforge

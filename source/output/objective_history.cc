@@ -3,6 +3,7 @@
 #include <retroforge/output/objective_history.h>
 #include <retroforge/output/safe_file.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <sstream>
@@ -20,19 +21,21 @@ namespace retroforge
   {
     std::ostringstream text;
     text.precision(17);
-    if (!std::exchange(has_header_, true))
+    if (titles_.empty())
     {
       text << "stroke [mm]";
       for (const auto &[title, value] : columns)
-        text << ',' << title;
+        text << ',' << titles_.emplace_back(title);
       text << '\n';
     }
     text << stroke;
-    for (const auto &[title, value] : columns)
+    for (const std::string &title : titles_)
     {
       text << ',';
-      if (std::isfinite(value))
-        text << value;
+      const auto column = std::find_if(
+        columns.begin(), columns.end(), [&](const NamedValue &named) { return named.first == title; });
+      if (column != columns.end() && std::isfinite(column->second))
+        text << column->second;
     }
     text << '\n';
     write(text.str());

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <deal.II/base/exceptions.h>
+
 #include <retroforge/core/error.h>
 #include <retroforge/output/safe_file.h>
 
@@ -9,6 +11,9 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 namespace retroforge
 {
@@ -49,6 +54,20 @@ namespace retroforge
         error = errno;
       return error;
     }
+
+    /// All of the text, or an error number (0: all is well).
+    int write_at(const int descriptor, const off_t position, const std::string &text)
+    {
+      for (std::size_t done = 0; done < text.size();)
+      {
+        const ssize_t n = ::pwrite(descriptor, text.data() + done, text.size() - done, position + done);
+        if (n > 0)
+          done += n;
+        else if (n == 0 || errno != EINTR)
+          return n == 0 ? ENOSPC : errno;
+      }
+      return 0;
+    }
   } // namespace
 
   void throw_write_error(const std::string &file, const int error_number)
@@ -73,6 +92,23 @@ namespace retroforge
       if (error != 0)
         std::remove(written.c_str());
     }
+    if (error != 0)
+      throw_write_error(file, error);
+  }
+
+  void replace_end(const std::string &file, const std::string &old_end, const std::string &new_end)
+  {
+    Assert(new_end.size() >= old_end.size(), dealii::ExcMessage("A file does not become shorter."));
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor < 0)
+      throw_write_error(file, errno);
+    const off_t length   = ::lseek(descriptor, 0, SEEK_END);
+    const off_t position = length - static_cast<off_t>(old_end.size());
+    int         error    = position < 0 ? EINVAL : write_at(descriptor, position, new_end);
+    if (error != 0 && ::ftruncate(descriptor, length) == 0)
+      write_at(descriptor, position, old_end); // which its place is still there for
+    if (::close(descriptor) != 0 && error == 0)
+      error = errno;
     if (error != 0)
       throw_write_error(file, error);
   }

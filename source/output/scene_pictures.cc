@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/base/data_out_base.h>
-
 #include <retroforge/mesh/whole_part.h>
 #include <retroforge/output/die_pictures.h>
 #include <retroforge/output/field_file.h>
-#include <retroforge/output/safe_file.h>
+#include <retroforge/output/picture_series.h>
 #include <retroforge/output/scene_pictures.h>
-
-#include <sstream>
 
 namespace retroforge
 {
@@ -30,21 +26,19 @@ namespace retroforge
     picture.add_linear("gap", "mm", gap);
     picture.add_linear("nearest_die", "", nearest);
     picture.add_symmetry_planes(symmetry_planes(mesh));
-    add("scene_billet.vtu");
-    picture.write(directory_ + "/" + files_.back().second);
+    files_.push_back("scene_billet.vtu");
+    picture.write(directory_ + "/" + files_.back());
   }
 
   void ScenePictures::add_die(const Die &die, const Vec3 &displacement, const NodalVectors<double> &around)
   {
     const TriangleSurface picture = die_picture(die, displacement, around);
-    add("scene_die_" + die.name + ".vtu");
-    FieldFile<2>(picture.vertices(), picture.triangles()).write(directory_ + "/" + files_.back().second);
+    files_.push_back("scene_die_" + die.name + ".vtu");
+    FieldFile<2>(picture.vertices(), picture.triangles()).write(directory_ + "/" + files_.back());
   }
 
   void ScenePictures::write_list() const
   {
-    std::ostringstream out;
-    dealii::DataOutBase::write_pvd_record(out, files_);
-    write_file(directory_ + "/scene.pvd", out.str());
+    PictureSeries(directory_ + "/scene.pvd").add(0., files_);
   }
 } // namespace retroforge

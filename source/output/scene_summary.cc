@@ -68,6 +68,7 @@ namespace retroforge
                         {"leads", die.leads},
                         {"smallest_size", die.smallest_size},
                         {"gap", in_json(die.gap)},
+                        {"covered", die.covered},
                         {"touches", die.touches},
                         {"mirrored_by", die.mirrored_by}};
       if (die.touches)
@@ -201,6 +202,12 @@ namespace retroforge
         out << "; ends through " << point(die.point + die.travel) << '\n';
     }
 
+    /// "34 % of the billet's side that faces it"
+    std::string covered_side(const SceneSummary::Die &die)
+    {
+      return rounded_text(100. * die.covered, 3) + " % of the billet's side that faces it";
+    }
+
     void list(std::ostream &out, const SceneSummary::Die &die, const bool with_billet)
     {
       out << "  die " << die.name << ", " << die.shape << ", friction " << die.friction_name << " = "
@@ -214,6 +221,8 @@ namespace retroforge
             << "': the whole part has its mirror image, too, as another die\n";
       if (with_billet)
         list_place(out, die);
+      if (die.covered > 0.) // else it stands beside, as a guide
+        out << "    covers " << covered_side(die) << '\n';
       list_path(out, die, with_billet);
       if (std::isfinite(die.smallest_size))
         out << "    edges near it are wanted down to " << as_text(die.smallest_size) << " mm\n";
@@ -236,16 +245,22 @@ namespace retroforge
       out << '\n';
     }
 
-    void list(std::ostream &out, const SceneSummary::Estimate &estimate)
+    void list(std::ostream                         &out,
+              const SceneSummary::Estimate         &estimate,
+              const std::vector<SceneSummary::Die> &dies)
     {
+      constexpr double narrow = 0.5; // else it is within the factor of two
       out << "  to expect, by the " << estimate.name << "\n    dies close at " << as_text(estimate.speed)
           << " mm/s, strain rate " << rounded_text(estimate.strain_rate, 3) << " /s, flow stress "
           << rounded_text(estimate.stress, 3) << " MPa\n    force on the whole part "
           << rounded_text(estimate.first_force, 3) << " N where the dies first press, "
           << rounded_text(estimate.final_force, 3)
           << " N after the stroke:\n    to a factor of two in open upsetting; metal that a bore or a cavity "
-             "holds "
-             "together, and flash, take three times as much and more\n";
+             "holds together, and flash, take three times as much and more\n";
+      for (const SceneSummary::Die &die : dies)
+        if (die.leads && die.covered < narrow)
+          out << "    of dies that cover the billet: die " << die.name << " covers " << covered_side(die)
+              << '\n';
     }
   } // namespace
 
@@ -299,7 +314,7 @@ namespace retroforge
     if (press)
       list(out, *press);
     if (estimate)
-      list(out, *estimate);
+      list(out, *estimate, dies);
     return out.str();
   }
 } // namespace retroforge

@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/text.h>
 #include <retroforge/mesh/whole_part.h>
 #include <retroforge/output/field_file.h>
 #include <retroforge/output/sensitivity.h>
-
-#include <cctype>
 
 namespace retroforge
 {
   namespace
   {
-    /// For names of fields.
-    std::string as_identifier(std::string name)
-    {
-      for (char &c : name)
-        if (std::isalnum(static_cast<unsigned char>(c)) == 0)
-          c = '_';
-      return name;
-    }
   } // namespace
 
   void write_sensitivity(const std::string                       &directory,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/output/json_number.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/output/summary.h>
 
@@ -13,12 +14,7 @@ namespace retroforge
   {
     using Json = nlohmann::ordered_json; // keys stay in the order of the schema
 
-    Json number(const double x)
-    {
-      return std::isfinite(x) ? Json(x) : Json();
-    }
-
-    Json number(const Summary::Count &count)
+    Json json_count(const Summary::Count &count)
     {
       return count ? Json(*count) : Json();
     }
@@ -27,7 +23,7 @@ namespace retroforge
     {
       Json json = Json::object();
       for (const auto &[name, x] : numbers)
-        json[name] = number(x);
+        json[name] = json_number(x);
       return json;
     }
 
@@ -44,7 +40,7 @@ namespace retroforge
     Json as_json(const Summary::Restart &restart);
     Json as_json(const double x)
     {
-      return number(x);
+      return json_number(x);
     }
 
     template <typename T>
@@ -58,7 +54,8 @@ namespace retroforge
 
     Json as_json(const Summary::Objective &objective)
     {
-      Json json = {{"name", objective.name}, {"value", number(objective.value)}, {"unit", objective.unit}};
+      Json json = {
+        {"name", objective.name}, {"value", json_number(objective.value)}, {"unit", objective.unit}};
       add_unless_empty(json, "parts", number_map(objective.parts));
       add_unless_empty(json, "details", number_map(objective.details));
       if (std::isfinite(objective.whole))
@@ -69,9 +66,9 @@ namespace retroforge
     Json as_json(const Summary::Parameter &parameter)
     {
       Json json = {{"name", parameter.name},
-                   {"value", number(parameter.value)},
+                   {"value", json_number(parameter.value)},
                    {"unit", parameter.unit},
-                   {"scale", number(parameter.scale)}};
+                   {"scale", json_number(parameter.scale)}};
       add_unless_empty(json, "gradient", number_map(parameter.gradient));
       return json;
     }
@@ -81,24 +78,25 @@ namespace retroforge
       Json changed = Json::object();
       for (const auto &[path, values] : restart.changed)
         changed[path] = {values.first, values.second};
-      return {{"increment", restart.increment}, {"stroke", number(restart.stroke)}, {"changed", changed}};
+      return {
+        {"increment", restart.increment}, {"stroke", json_number(restart.stroke)}, {"changed", changed}};
     }
 
     Json as_json(const Summary::CheckStep &step)
     {
-      return {{"step", number(step.step)},
-              {"replayed_central", number(step.replayed_central)},
-              {"replayed_forward", number(step.replayed_forward)},
-              {"replayed_backward", number(step.replayed_backward)},
-              {"free_central", number(step.free_central)}};
+      return {{"step", json_number(step.step)},
+              {"replayed_central", json_number(step.replayed_central)},
+              {"replayed_forward", json_number(step.replayed_forward)},
+              {"replayed_backward", json_number(step.replayed_backward)},
+              {"free_central", json_number(step.free_central)}};
     }
 
     Json as_json(const Summary::Check &check)
     {
       Json json = {{"objective", check.objective},
                    {"parameter", check.parameter},
-                   {"adjoint", number(check.adjoint)},
-                   {"tangent", number(check.tangent)}};
+                   {"adjoint", json_number(check.adjoint)},
+                   {"tangent", json_number(check.tangent)}};
       add_unless_empty(json, "steps", list(check.steps));
       add_unless_empty(json, "taylor_orders", list(check.taylor_orders));
       json["verdict"] = check.verdict;
@@ -112,42 +110,44 @@ namespace retroforge
                      {"command", command},
                      {"version", version},
                      {"commit", commit},
-                     {"ranks", number(ranks)},
+                     {"ranks", json_count(ranks)},
                      {"blas", blas},
-                     {"mesh", {{"nodes", number(n_nodes)}, {"cells", number(n_cells)}}}};
-    json["whole"] = {{"copies", number(whole.copies)}, {"force_factor", number(whole.force)}};
+                     {"mesh", {{"nodes", json_count(n_nodes)}, {"cells", json_count(n_cells)}}}};
+    json["whole"] = {{"copies", json_number(whole.copies)}, {"force_factor", json_number(whole.force)}};
     add_unless_empty(json, "objectives", list(objectives));
     add_unless_empty(json, "parameters", list(parameters));
-    json["increments"]            = number(increments);
-    json["cuts"]                  = number(cuts);
-    json["remeshings"]            = number(remeshings);
-    json["newton_iterations"]     = number(newton_iterations);
-    json["krylov_iterations"]     = number(krylov_iterations);
-    json["linear_solves_forward"] = number(linear_solves_forward);
-    json["linear_solves_adjoint"] = number(linear_solves_adjoint);
-    json["volume_initial"]        = number(volume_initial);
-    json["volume_final"]          = number(volume_final);
-    json["volume_repaired"]       = number(volume_repaired);
-    json["volume_of_shape"]       = number(volume_of_shape);
+    json["increments"]            = json_count(increments);
+    json["cuts"]                  = json_count(cuts);
+    json["remeshings"]            = json_count(remeshings);
+    json["newton_iterations"]     = json_count(newton_iterations);
+    json["krylov_iterations"]     = json_count(krylov_iterations);
+    json["linear_solves_forward"] = json_count(linear_solves_forward);
+    json["linear_solves_adjoint"] = json_count(linear_solves_adjoint);
+    json["volume_initial"]        = json_number(volume_initial);
+    json["volume_final"]          = json_number(volume_final);
+    json["volume_repaired"]       = json_number(volume_repaired);
+    json["volume_of_shape"]       = json_number(volume_of_shape);
     if (!deepest.die.empty())
       json["deepest"] = {
-        {"depth", number(deepest.depth)},
-        {"over_element_size", number(deepest.relative)},
+        {"depth", json_number(deepest.depth)},
+        {"over_element_size", json_number(deepest.relative)},
         {"die", deepest.die},
-        {"stroke", number(deepest.stroke)},
-        {"place", {number(deepest.place[0]), number(deepest.place[1]), number(deepest.place[2])}}};
+        {"stroke", json_number(deepest.stroke)},
+        {"place",
+         {json_number(deepest.place[0]), json_number(deepest.place[1]), json_number(deepest.place[2])}}};
     if (spanned.spanning > 0)
       json["edges_across_corners"] = {
         {"touching", spanned.touching},
         {"spanning", spanned.spanning},
-        {"bulge_over_length", number(spanned.bulge)},
+        {"bulge_over_length", json_number(spanned.bulge)},
         {"die", spanned.die},
-        {"stroke", number(spanned.stroke)},
-        {"place", {number(spanned.place[0]), number(spanned.place[1]), number(spanned.place[2])}}};
+        {"stroke", json_number(spanned.stroke)},
+        {"place",
+         {json_number(spanned.place[0]), json_number(spanned.place[1]), json_number(spanned.place[2])}}};
     add_unless_empty(json, "restarts", list(restarts));
     add_unless_empty(json, "warnings", Json(warnings));
     add_unless_empty(json, "wall_seconds", number_map(wall_seconds));
-    json["record_bytes"] = number(record_bytes);
+    json["record_bytes"] = json_count(record_bytes);
     add_unless_empty(json, "check", list(check));
     if (check_remaining)
       json["check_remaining"] = *check_remaining;

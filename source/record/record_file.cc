@@ -295,19 +295,19 @@ namespace retroforge
 
   std::vector<RecordedInput> RecordReader::inputs() const
   {
-    std::vector<RecordedInput> inputs = {{0, 0., header_.parameters}};
+    std::vector<RecordedInput> inputs = {{0, 0., header_.parameters, 0}};
     for (unsigned int i = 0; i < n_increments_; ++i)
-      if (IncrementHead increment = head(i); !increment.parameters.empty())
-        inputs.push_back({i, increment.stroke, std::move(increment.parameters)});
+      if (IncrementHead increment = head(i); increment.parameters)
+        inputs.push_back({i, increment.stroke, std::move(*increment.parameters), increment.operation});
     return inputs;
   }
 
-  double RecordReader::stroke() const
+  std::pair<unsigned int, double> RecordReader::end() const
   {
     if (n_increments_ == 0)
-      return 0.;
+      return {0, 0.};
     const IncrementHead last = head(n_increments_ - 1);
-    return last.stroke + last.step;
+    return {last.operation, last.stroke + last.step};
   }
 
   IncrementRecord RecordReader::read(const unsigned int i) const

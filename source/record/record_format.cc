@@ -16,7 +16,7 @@ namespace retroforge
 {
   namespace
   {
-    constexpr unsigned int format = 8;
+    constexpr unsigned int format = 9;
 
     static_assert(sizeof(Vec3) == 3 * sizeof(double),
                   "nodal vectors are read and written as arrays of numbers");
@@ -189,7 +189,7 @@ namespace retroforge
       hdf5::write_array(group, "begin", {J.begin.size()}, J.begin.data());
       hdf5::write_array(group, "node", {J.node.size()}, J.node.data());
       hdf5::write_array(group, "weight", {J.weight.size()}, J.weight.data());
-      hdf5::write_attribute(group, "repaired", &remesh.repaired);
+      hdf5::write_attribute(group, "repaired", &remesh.removed_volume);
     }
 
     std::shared_ptr<const RemeshRecord> read_remesh(const hid_t parent, const std::string &where)
@@ -199,7 +199,7 @@ namespace retroforge
       TransferOperator  &J      = remesh->transfer;
       remesh->mesh              = read_mesh(group);
       remesh->X_before          = read_vectors(group, "X_before", hdf5::any);
-      remesh->repaired          = read_number(group, "repaired");
+      remesh->removed_volume    = read_number(group, "repaired");
       J.n_old                   = remesh->X_before.size();
       J.begin                   = hdf5::read_array<unsigned int>(group, "begin", {remesh->mesh.X.size() + 1});
       J.node                    = hdf5::read_array<unsigned int>(group, "node", {hdf5::any});
@@ -247,7 +247,7 @@ namespace retroforge
           V.insert(V.end(), solve.V[0].begin_raw(), solve.V[0].begin_raw() + 3 * n.velocity);
         if (n.quadratic())
           vertices.insert(
-            vertices.end(), solve.vertices[0].begin_raw(), solve.vertices[0].begin_raw() + 3 * n.mesh);
+            vertices.end(), (*solve.vertices)[0].begin_raw(), (*solve.vertices)[0].begin_raw() + 3 * n.mesh);
         P.insert(P.end(), solve.P.begin(), solve.P.end());
         active.insert(active.end(), solve.active.begin(), solve.active.end());
       }
@@ -414,6 +414,7 @@ namespace retroforge
     const NodeCounts   n     = check_increment(increment, shape);
     const hdf5::Handle group = hdf5::create_group(file, increment_name(i));
     hdf5::write_attribute(group, "run", &shape.run);
+    hdf5::write_attribute(group, "operation", &increment.operation);
     hdf5::write_attribute(group, "stroke", &increment.stroke);
     hdf5::write_attribute(group, "step", &increment.step);
     hdf5::write_attribute(group, "cuts", &increment.cuts);
@@ -426,8 +427,8 @@ namespace retroforge
     hdf5::write_attribute(group, "linear_solves", &increment.linear_solves);
     hdf5::write_string(group, "scheme", increment.scheme);
     write_contact(group, increment.contact);
-    if (!increment.parameters.empty())
-      hdf5::write_string(group, "parameters", increment.parameters);
+    if (increment.parameters)
+      hdf5::write_string(group, "parameters", *increment.parameters);
     write_vectors(group, "forces", increment.forces);
     write_pairs(group, increment.pairs);
     write_solves(group, increment.solves, n, increment.pairs.size());
@@ -447,9 +448,11 @@ namespace retroforge
 
     IncrementHead read_head(const hid_t group)
     {
-      return {read_number(group, "stroke"),
+      return {hdf5::read_attribute<unsigned int>(group, "operation"),
+              read_number(group, "stroke"),
               read_number(group, "step"),
-              hdf5::has_link(group, "parameters") ? hdf5::read_string(group, "parameters") : ""};
+              hdf5::has_link(group, "parameters") ? hdf5::read_string(group, "parameters")
+                                                  : std::optional<std::string>()};
     }
   } // namespace
 
@@ -466,6 +469,7 @@ namespace retroforge
     const hdf5::Handle group = open_increment(file, i, shape);
     IncrementHead      head  = read_head(group);
     IncrementRecord    increment;
+    increment.operation          = head.operation;
     increment.stroke             = head.stroke;
     increment.step               = head.step;
     increment.parameters         = std::move(head.parameters);

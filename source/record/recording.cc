@@ -6,7 +6,7 @@
 
 namespace retroforge
 {
-  std::function<const IncrementRecord &(unsigned int)> Recording::source() const
+  std::function<const IncrementRecord &(unsigned int)> Recording::access() const
   {
     if (!increments_.empty())
       return [this](const unsigned int i) -> const IncrementRecord & { return increments_[i]; };

@@ -108,15 +108,15 @@ namespace retroforge
                               const RemeshingParameters  &parameters,
                               const PushOut              &push_out,
                               const TouchesDie           &touches,
-                              const double                wanted_volume)
+                              const std::optional<double> wanted_volume)
   {
     AssertDimension(X.size(), mesh.n_nodes());
-    Assert(wanted_volume >= 0., dealii::ExcMessage("a volume is not negative"));
+    Assert(!wanted_volume || *wanted_volume > 0., dealii::ExcMessage("a volume is positive"));
     check_volumes(mesh, X);
     RemeshedMesh result;
     report_before(mesh, X, result.report);
-    if (wanted_volume > 0.)
-      result.report.volume_before = wanted_volume;
+    if (wanted_volume)
+      result.report.volume_before = *wanted_volume;
 
     const SurfaceFeatures features(mesh, X, parameters.ridge_angle, parameters.corner_angle, push_out);
     const OldSurface      old_surface(mesh, X, features, push_out);

@@ -10,12 +10,6 @@ namespace retroforge
   namespace
   {
     using Cell = std::array<NodeIndex, 4>;
-    using Edge = std::array<NodeIndex, 2>;
-
-    Edge edge(const NodeIndex a, const NodeIndex b)
-    {
-      return {{std::min(a, b), std::max(a, b)}};
-    }
   } // namespace
 
   PeeledMesh::PeeledMesh(const TetMesh &mesh, const NodalVectors<double> &X) : mesh_(mesh)
@@ -47,7 +41,7 @@ namespace retroforge
       for (unsigned int i = 0; i < 3; ++i)
       {
         boundary_nodes_.insert(face.nodes[i]);
-        boundary_edges_.insert(edge(face.nodes[i], face.nodes[(i + 1) % 3]));
+        boundary_edges_.insert(edge_key(face.nodes[i], face.nodes[(i + 1) % 3]));
       }
     }
   }
@@ -91,7 +85,7 @@ namespace retroforge
       case 1:
         return boundary_nodes_.count(cell[on[0]]) == 0;
       case 2: // the edge between the corners opposite them is not shared by them
-        return boundary_edges_.count(edge(cell[on[0]], cell[on[1]])) == 0;
+        return boundary_edges_.count(edge_key(cell[on[0]], cell[on[1]])) == 0;
       case 3:
         return true;
       default:

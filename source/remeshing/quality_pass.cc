@@ -144,8 +144,7 @@ namespace retroforge
     std::vector<NodeIndex> nodes;
     for (const CellIndex cell : cells)
       nodes.insert(nodes.end(), mesh.cell(cell).begin(), mesh.cell(cell).end());
-    CellIndex &failed_at =
-      edge_failed_at_.insert({{{std::min(a, b), std::max(a, b)}}, invalid_index}).first->second;
+    CellIndex &failed_at = edge_failed_at_.insert({edge_key(a, b), invalid_index}).first->second;
     if (!has_changed(nodes, failed_at))
       return {};
     auto change = plan_split(context_, a, b, minimum_quality(mesh, cells) + least_gain, SplitAt::best);

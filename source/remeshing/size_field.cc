@@ -74,9 +74,9 @@ namespace retroforge
     least_ = tree_.minima(size_);
   }
 
-  double GradedSize::operator()(const Vec3 &x, const SizeQuestion &question) const
+  double GradedSize::operator()(const Vec3 &x, const SizeQuery &query) const
   {
-    double size = std::min(largest_, question.most);
+    double size = std::min(largest_, query.upper);
     tree_.minimise(
       [&](const unsigned int branch) {
         return least_[branch] + growth_ * std::sqrt(tree_.box(branch).square_distance(x));
@@ -84,7 +84,7 @@ namespace retroforge
       [&](const unsigned int f) {
         if (size_[f] < size)
           size = std::min(size, size_[f] + growth_ * distance(x, facets_[f]));
-        return size < question.enough ? -1. : size;
+        return size < query.lower ? -1. : size;
       },
       size);
     return size;

@@ -22,7 +22,7 @@ namespace retroforge
       return cells;
     }
 
-    /// Of the cells at the surface, those that are flatter than a degree, the flattest first.
+    /// Returns the cells at the surface that are flatter than a degree, the flattest first.
     std::vector<Cell> slivers(const PeeledMesh &peeled)
     {
       const double                      limit = std::sin(M_PI / 180.);

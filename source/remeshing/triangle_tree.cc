@@ -10,19 +10,6 @@ namespace retroforge
 {
   namespace
   {
-    std::vector<BoundingBox> boxes_of(const std::vector<std::array<Vec3, 3>> &triangles)
-    {
-      std::vector<BoundingBox> boxes;
-      boxes.reserve(triangles.size());
-      for (const auto &triangle : triangles)
-      {
-        boxes.emplace_back(triangle[0]);
-        boxes.back().include(triangle[1]);
-        boxes.back().include(triangle[2]);
-      }
-      return boxes;
-    }
-
     TrianglePoint closest_on_rim(const Vec3 &x, const std::array<Vec3, 3> &triangle)
     {
       TrianglePoint best;
@@ -87,7 +74,8 @@ namespace retroforge
   }
 
   TriangleTree::TriangleTree(std::vector<std::array<Vec3, 3>> triangles)
-      : triangles_(std::move(triangles)), tree_(boxes_of(triangles_))
+      : triangles_(std::move(triangles))
+      , tree_(std::vector<BoundingBox>(triangles_.begin(), triangles_.end()))
   {
   }
 

@@ -31,90 +31,209 @@ namespace retroforge
       model.linear_solver = numerics.linear_solver;
     }
 
-    ForgingModel first_model(const Case &forging_case, Process<double> &process)
+    /// Where a segment of the run ends.
+    StrokeStep end_of(const ForgingProblem &problem, const std::size_t segment)
     {
-      ForgingModel model = with_dies(forging_case.model, process);
-      set_numerics(forging_case.segments.front().parameters, model);
-      return model;
+      if (segment + 1 == problem.segments.size())
+        return problem.process.end();
+      const RecordedInput &next = problem.segments[segment + 1].input;
+      return {next.stroke, 0., next.operation};
+    }
+
+    /// A mesh that someone else owns.
+    std::shared_ptr<const TetMesh> borrowed(const TetMesh &mesh)
+    {
+      return {std::shared_ptr<const TetMesh>(), &mesh};
     }
   } // namespace
 
-  ForwardRun::ForwardRun(const Case          &forging_case,
-                         Process<double>      process,
-                         NodalVectors<double> X_0,
-                         const Keep           keep)
-      : case_(forging_case)
-      , X_0_(std::move(X_0))
-      , model_(first_model(forging_case, process))
-      , process_(std::move(process))
-      , objectives_(forging_case.parameters.make_objectives(model_.dies, forging_case.billet))
-      , trace_(objectives_, model_, process_)
-      , first_leg_(std::make_shared<Leg>(forging_case.billet, model_, timings_))
-      , keep_(keep)
-      , recording_("", keep == Keep::increments)
+  ForgingProblem::ForgingProblem(const Case          &forging_case,
+                                 Process<double>      at_process,
+                                 NodalVectors<double> initial)
+      : parameters(forging_case.parameters)
+      , billet(borrowed(forging_case.billet))
+      , nominal_billet(borrowed(forging_case.nominal_billet))
+      , X_0(std::move(initial))
+      , model(with_dies(forging_case.model, at_process))
+      , process(std::move(at_process))
+      , segments(forging_case.segments)
+      , objectives(parameters.make_objectives(model.dies, *billet))
+  {
+    set_numerics(segments.front().parameters, model);
+  }
+
+  ForgingProblem::ForgingProblem(Parameters       resolved,
+                                 TetMesh          mesh,
+                                 std::vector<Die> dies,
+                                 Process<double>  at_process,
+                                 Objectives       given)
+      : parameters(std::move(resolved))
+      , billet(std::make_shared<const TetMesh>(std::move(mesh)))
+      , nominal_billet(billet)
+      , X_0(billet->X)
+      , model{parameters.discretization.choice, std::move(dies), {}, {}, {}, MPI_COMM_WORLD}
+      , process(std::move(at_process))
+      , segments({{{}, parameters}})
+      , objectives(given.empty() ? parameters.make_objectives(model.dies, *billet) : std::move(given))
+  {
+    set_numerics(parameters, model);
+  }
+
+  ForwardRun::SegmentRun::SegmentRun(const ForgingProblem &problem,
+                                     const std::size_t     segment,
+                                     Timings              &timings)
+      : press(problem.segments[segment].parameters.press)
+      , remesher(problem.segments[segment].parameters.remeshing,
+                 problem.segments[segment].parameters.edge_length(*problem.nominal_billet),
+                 problem.model.dies,
+                 problem.billet->patches,
+                 problem.model.comm)
+      , forging(problem.model, press, end_of(problem, segment), remesher, timings)
   {
   }
 
-  void ForwardRun::check() const
+  ForwardRun::ForwardRun(ForgingProblem     problem,
+                         const Keep         keep,
+                         Timings           &timings,
+                         const std::string &directory)
+      : problem_(std::move(problem))
+      , timings_(timings)
+      , first_epoch_(std::make_shared<MeshEpoch>(*problem_.billet, problem_.model, timings_))
+      , trace_(problem_.objectives, problem_.process)
+      , can_go_back_(keep == Keep::increments || !directory.empty())
+      , recording_(directory, keep == Keep::increments)
+      , state_(Forging::start(first_epoch_, problem_.X_0))
   {
-    check_scene(case_.parameters, first_leg_->scene, process_, X_0_);
+    enter(0);
   }
 
-  void ForwardRun::forge(const Forging::Watch &watch)
+  void ForwardRun::enter(const std::size_t segment)
   {
-    for (std::size_t s = 0; s < case_.segments.size(); ++s)
+    segment_ = segment;
+    running_ = std::make_unique<SegmentRun>(problem_, segment, timings_);
+  }
+
+  std::vector<std::string> ForwardRun::check() const
+  {
+    return check_scene(problem_.parameters, first_epoch_->scene, problem_.process, problem_.X_0);
+  }
+
+  void ForwardRun::restore(const unsigned int           n,
+                           const Forging::RecordAccess &record,
+                           const Forging::Observer     &observer)
+  {
+    set_numerics(problem_.segments.back().parameters, problem_.model);
+    enter(problem_.segments.size() - 1);
+    running_->forging.restore(problem_.process, n, record, state_, [&](const IncrementEvent &event) {
+      follow(event);
+      observer(event);
+    });
+  }
+
+  void ForwardRun::follow(const IncrementEvent &event)
+  {
+    recording_.keep(event.record);
+    const auto timing = timings_.scope("objectives");
+    trace_.add(event);
+  }
+
+  void ForwardRun::change_numerics(const NumericsSegment &segment)
+  {
+    problem_.segments.push_back(segment);
+    set_numerics(segment.parameters, problem_.model);
+    enter(problem_.segments.size() - 1);
+    Forging::change_numerics(segment.input.parameters, state_);
+  }
+
+  bool ForwardRun::is_left() const
+  {
+    return segment_ + 1 < problem_.segments.size() || running_->forging.is_left(state_);
+  }
+
+  void ForwardRun::forge(const Forging::Observer &observer)
+  {
+    for (;;)
     {
-      const Parameters &numerics = case_.segments[s].parameters;
-      PressParameters   press    = numerics.press;
-      if (s + 1 < case_.segments.size())
-        press.stroke = case_.segments[s + 1].input.stroke;
-      set_numerics(numerics, model_);
-      const Remesher remesher = case_.remesher(numerics, model_.dies);
-      const Forging  forging(model_, press, remesher, timings_);
-      if (s == 0)
-        state_ = forging.start(first_leg_, X_0_);
-      else
-        Forging::change_numerics("", state_);
-      forging.run(process_, state_, [&](const IncrementEvent &event) {
-        recording_.keep(event.record);
-        trace_.add(event);
-        if (watch)
-          watch(event);
+      running_->forging.run(problem_.process, state_, [&](const IncrementEvent &event) {
+        follow(event);
+        if (observer)
+          observer(event);
       });
+      if (segment_ + 1 == problem_.segments.size())
+        return;
+      set_numerics(problem_.segments[segment_ + 1].parameters, problem_.model);
+      enter(segment_ + 1);
+      Forging::change_numerics({}, state_);
     }
   }
 
   std::vector<double> ForwardRun::values()
   {
-    std::vector<double> values = trace_.values(state_, true);
+    trace_.decide(state_);
+    const std::vector<double> values = trace_.values(state_);
     for (std::size_t j = 0; j < values.size(); ++j)
       if (!std::isfinite(values[j]))
-        throw Error("Objective " + objectives_[j].name,
+        throw Error("Objective " + problem_.objectives[j].name,
                     "its value is " + as_text(values[j]),
                     "results must be finite numbers",
                     "use values of the usual size, of exponents and sharpness in particular");
     return values;
   }
 
+  RecordHeader ForwardRun::record_header(const std::string &parameters) const
+  {
+    return {
+      version, commit, parameters, facets(dies()), *problem_.billet, problem_.X_0, fingerprints(dies())};
+  }
+
   void ForwardRun::write_record(const std::string &directory, const std::string &parameters) const
   {
     make_directory(directory);
     write_file(directory + "/parameters.prm", parameters);
-    RecordWriter writer(
-      directory,
-      {version, commit, parameters, facets(model_.dies), case_.billet, X_0_, fingerprints(model_.dies)});
-    const auto source = recording_.source();
+    RecordWriter writer(directory, record_header(parameters));
+    const auto   record = recording_.access();
     for (unsigned int i = 0; i < state_.increments; ++i)
-      writer.write(source(i));
+      writer.write(record(i));
     writer.finish();
   }
 
-  AdjointSweep ForwardRun::sweep(const std::vector<Combination> &combinations)
+  RecordedForging ForwardRun::recorded() const
   {
-    AssertThrow(keep_ == Keep::increments,
-                dealii::ExcMessage("a run is swept back whose increments are not kept"));
-    const RecordedForging recorded{
-      model_, first_leg_, process_, recording_.source(), state_.increments, objectives_, timings_};
-    return adjoint_sweep(recorded, trace_.rows(), state_, combinations);
+    AssertThrow(can_go_back_, dealii::ExcMessage("a run is differentiated whose increments are kept"));
+    return {problem_.model,
+            first_epoch_,
+            problem_.process,
+            recording_.access(),
+            state_.increments,
+            problem_.objectives,
+            trace_.recorded(),
+            timings_};
+  }
+
+  AdjointSweep ForwardRun::sweep(const std::vector<Combination> &combinations) const
+  {
+    return adjoint_sweep(recorded(), state_, combinations);
+  }
+
+  std::vector<Dual> ForwardRun::tangent(const Process<Dual> &process, NodalVectors<Dual> X_0) const
+  {
+    return tangent_sweep(recorded(), process, std::move(X_0));
+  }
+
+  ForgingState ForwardRun::replay(const Process<double>      &process,
+                                  const NodalVectors<double> &X_0,
+                                  const Forging::Observer    &observer) const
+  {
+    ForgingState state = Forging::start(first_epoch_, X_0);
+    running_->forging.replay(process, state_.increments, recorded().record, state, observer);
+    return state;
+  }
+
+  std::vector<double> ForwardRun::replayed_values(const Process<double>      &process,
+                                                  const NodalVectors<double> &X_0) const
+  {
+    ObjectiveTrace     trace(problem_.objectives, process, trace_.recorded().decisions);
+    const ForgingState state = replay(process, X_0, [&](const IncrementEvent &event) { trace.add(event); });
+    return trace.values(state);
   }
 } // namespace retroforge

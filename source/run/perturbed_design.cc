@@ -60,7 +60,7 @@ namespace retroforge
   }
 
   std::vector<double> directional_derivatives(const Case                &forging_case,
-                                              const RecordedForging     &recorded,
+                                              const ForwardRun          &run,
                                               const std::vector<double> &mu_dot,
                                               const ShapePerturbation   &shift_dot)
   {
@@ -68,8 +68,8 @@ namespace retroforge
     for (std::size_t j = 0; j < forging_case.mu.size(); ++j)
       mu.push_back(moved(Dual(forging_case.mu[j]), mu_dot[j]));
     std::vector<double> derivatives;
-    for (const Dual &value : forging_case.combine(tangent_sweep(
-           recorded, process_at(forging_case, mu, shift_dot), positions_at(forging_case, mu, shift_dot))))
+    for (const Dual &value : forging_case.combine(
+           run.tangent(process_at(forging_case, mu, shift_dot), positions_at(forging_case, mu, shift_dot))))
       derivatives.push_back(value.dx(0));
     return derivatives;
   }

@@ -43,7 +43,7 @@ namespace retroforge
               << " mm^3 for the shape's " << as_text(shape) << " ("
               << as_text(std::round(1e4 * (mesh / shape - 1.)) / 100.)
               << " %); energies and forces lack about as much. A smaller Billet/element size comes nearer";
-    if (forging_case.parameters.billet.shape == "cylinder" &&
+    if (forging_case.parameters.billet.shape == BilletParameters::Shape::cylinder &&
         forging_case.parameters.billet.volume_held_by.empty())
       std::cout << ", and --at billet/radius="
                 << as_text(forging_case.parameters.billet.radius * std::sqrt(shape / mesh))

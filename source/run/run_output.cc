@@ -12,6 +12,19 @@
 
 namespace retroforge
 {
+  namespace
+  {
+    double whole_stroke(const Process<double> &process, const StrokeStep &at)
+    {
+      return process.whole_stroke(at.stroke, at.operation);
+    }
+
+    StrokeStep place(const ForgingState &state)
+    {
+      return {state.stroke, 0., state.operation};
+    }
+  } // namespace
+
   RunOutput::RunOutput(const Case           &forging_case,
                        const WholePart      &whole,
                        const ObjectiveTrace &trace,
@@ -20,7 +33,7 @@ namespace retroforge
       , whole_(whole)
       , trace_(trace)
       , timings_(timings)
-      , time_left_(forging_case.parameters.press.stroke)
+      , time_left_(whole_stroke(forging_case.process, forging_case.process.end()))
       , fields_(forging_case.comm,
                 forging_case.command.output_directory,
                 forging_case.model,
@@ -48,7 +61,8 @@ namespace retroforge
 
   bool RunOutput::is_due(const ForgingState &state, const unsigned int every) const
   {
-    const bool at_end = state.stroke >= case_.parameters.press.stroke * (1. - 1e-9);
+    const bool at_end = whole_stroke(case_.process, place(state)) >=
+                        whole_stroke(case_.process, case_.process.end()) * (1. - 1e-9);
     return every > 0 && (state.increments % every == 0 || at_end);
   }
 
@@ -57,10 +71,12 @@ namespace retroforge
     if (case_.parameters.output.every)
       return is_due(event.state, *case_.parameters.output.every);
     constexpr double n_pictures = 20.;
-    const auto       interval   = [&](const double stroke) {
-      return std::floor(n_pictures * stroke / case_.parameters.press.stroke + 1e-6);
+    const auto       interval   = [&](const StrokeStep &at) {
+      return std::floor(n_pictures * whole_stroke(case_.process, at) /
+                          whole_stroke(case_.process, case_.process.end()) +
+                        1e-6);
     };
-    return interval(event.state.stroke) > interval(event.record.stroke);
+    return interval(place(event.state)) > interval(retroforge::place(event.record));
   }
 
   void RunOutput::add(const IncrementEvent &event)
@@ -87,19 +103,18 @@ namespace retroforge
   {
     const auto              timing      = timings_.scope("objectives");
     const Objectives       &objectives  = case_.objectives;
-    const auto              values      = trace_.values(state, true, false);
-    const auto              diagnostics = trace_.diagnostics(state);
+    const auto              evaluations = trace_.evaluate_so_far(state);
     std::vector<NamedValue> columns;
     for (std::size_t j = 0; j < objectives.size(); ++j)
     {
       const std::string unit = " [" + objectives[j].unit() + "]";
-      columns.emplace_back(objectives[j].name + unit, values[j]);
-      for (const auto *numbers : {&diagnostics[j].parts, &diagnostics[j].details})
+      columns.emplace_back(objectives[j].name + unit, evaluations[j].value);
+      for (const auto *numbers : {&evaluations[j].parts, &evaluations[j].details})
         for (const auto &[name, value] : *numbers)
           columns.emplace_back(objectives[j].name + ": " + name + unit, value);
     }
     if (objectives_)
-      objectives_->add(state.stroke, columns);
+      objectives_->add(whole_stroke(case_.process, place(state)), columns);
   }
 
   void RunOutput::watch_edges(const IncrementEvent &event)
@@ -117,29 +132,30 @@ namespace retroforge
   HistoryRow RunOutput::row_of(const IncrementEvent &event)
   {
     const ForgingState      &state  = event.state;
-    const Scene             &scene  = state.leg->scene;
+    const Scene             &scene  = state.epoch->scene;
     const ReplicatedEntries &cells  = scene.discretization.cells();
     const std::vector<Die>  &dies   = case_.model.dies;
-    const double             size   = volume(scene.mesh, state.X, cells);
-    const auto               states = case_.process.at_stroke(state.stroke).dies;
-    const Penetration deepest = deepest_point(scene.mesh, scene.topology, dies, states, state.X, case_.comm);
+    const double             size   = volume(scene.mesh, state.workpiece.X, cells);
+    const auto               states = case_.process.at_stroke(state.stroke, state.operation).dies;
+    const Penetration        deepest =
+      deepest_point(scene.mesh, scene.topology, dies, states, state.workpiece.X, case_.comm);
     if (!(deepest.depth <= deepest_.depth))
       deepest_ = {deepest.depth,
                   deepest.depth / case_.edge_length(),
                   state.stroke,
                   {{deepest.place[0], deepest.place[1], deepest.place[2]}},
                   deepest.die == invalid_index ? "" : dies[deepest.die].name};
-    const unsigned int leading  = case_.nominal.leading_die;
+    const unsigned int leading  = case_.nominal.operations[state.operation].leading_die;
     const Vec3        &velocity = case_.nominal.dies[leading].velocity;
     const double       force    = event.record.forces[leading] * velocity / velocity.norm();
     const double       energy   = state.energy.total();
     return {state.increments,
             event.time,
-            state.stroke,
+            whole_stroke(case_.process, place(state)),
             force,
             energy,
             size,
-            minimum_quality(scene.mesh, state.X, cells),
+            minimum_quality(scene.mesh, state.workpiece.X, cells),
             deepest.depth,
             event.record.newton,
             event.record.krylov,
@@ -150,7 +166,7 @@ namespace retroforge
 
   void RunOutput::print(const IncrementEvent &event, const HistoryRow &row)
   {
-    const TetMesh &mesh = event.state.leg->scene.mesh;
+    const TetMesh &mesh = event.state.epoch->scene.mesh;
     if (event.record.remesh)
       std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());
     if (!std::isnan(seconds_)) // solved, not restored

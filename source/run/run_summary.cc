@@ -44,7 +44,7 @@ namespace retroforge
 
   void summarise_run(const Case &forging_case, const ForgingState &forged, Summary &summary)
   {
-    summary.command               = forging_case.command.command;
+    summary.command               = word_of(forging_case.command.command.value());
     summary.version               = version;
     summary.commit                = commit;
     summary.blas                  = blas_in_use();
@@ -58,8 +58,8 @@ namespace retroforge
     summary.increments            = forged.increments;
     summary.cuts                  = forged.cuts;
     summary.volume_initial        = volume(forging_case.billet.cells, forging_case.X_0);
-    summary.volume_final          = volume(forged.leg->scene.mesh.cells, forged.X);
-    summary.volume_repaired       = forged.repaired;
+    summary.volume_final          = volume(forged.epoch->scene.mesh.cells, forged.workpiece.X);
+    summary.volume_repaired       = forged.removed_volume;
     summarise_restarts(forging_case.segments, summary);
   }
 
@@ -69,14 +69,14 @@ namespace retroforge
                             const std::vector<double> &values,
                             Summary                   &summary)
   {
-    const auto diagnostics = trace.diagnostics(forged);
+    const auto evaluations = trace.evaluate(forged);
     for (std::size_t o = 0; o < forging_case.objectives.size(); ++o)
       summary.objectives.push_back(
         {forging_case.objectives[o].name,
          values[o],
          forging_case.objectives[o].unit(),
-         diagnostics[o].parts,
-         diagnostics[o].details,
+         evaluations[o].parts,
+         evaluations[o].details,
          copies(forging_case, forging_case.objectives[o], summary.whole) * values[o]});
     if (forging_case.parameters.objectives.combined)
       summary.objectives.push_back({forging_case.combinations[0].name,

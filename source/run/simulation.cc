@@ -39,12 +39,6 @@ namespace retroforge
                     "use values of the usual size, of exponents and sharpness in particular");
     }
 
-    void check_finite(const Objectives &objectives, const std::vector<double> &values)
-    {
-      for (std::size_t j = 0; j < objectives.size(); ++j)
-        require_finite(values[j], "Objective " + objectives[j].name, "its value");
-    }
-
     void check_finite(const ObjectiveSensitivity &objective, const Design &design)
     {
       for (std::size_t j = 0; j < objective.gradient.size(); ++j)
@@ -66,20 +60,21 @@ namespace retroforge
     /// A check reads the increments many times over; a gradient once, from the record.
     bool kept_in_memory(const Case &forging_case)
     {
-      return forging_case.command.command == "check" ||
-             (forging_case.command.command == "gradient" && !forging_case.parameters.output.record);
+      return forging_case.command.command == Command::check ||
+             (forging_case.command.command == Command::gradient && !forging_case.parameters.output.record);
     }
   } // namespace
 
   Simulation::Simulation(const CommandLine &command, MPI_Comm comm)
       : case_(command, timings_, comm)
       , root_(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
-      , first_leg_(std::make_shared<Leg>(case_.billet, case_.model, timings_))
-      , remesher_(case_.remesher(case_.parameters, case_.model.dies))
-      , forging_(case_.model, case_.parameters.press, remesher_, timings_)
-      , trace_(case_.objectives, case_.model, case_.process)
-      , recording_(command.output_directory, kept_in_memory(case_))
-      , warnings_(check_scene(case_.parameters, first_leg_->scene, case_.process, case_.X_0))
+      , run_(case_,
+             case_.process,
+             case_.X_0,
+             kept_in_memory(case_) ? ForwardRun::Keep::increments : ForwardRun::Keep::nothing,
+             timings_,
+             command.output_directory)
+      , warnings_(run_.check())
   {
   }
 
@@ -93,7 +88,8 @@ namespace retroforge
       write_inputs();
       print_begin(case_);
       print_warnings(warnings_);
-      print_warnings(estimate_scene(case_.parameters, first_leg_->scene, case_.process, case_.X_0).warnings);
+      print_warnings(
+        estimate_scene(case_.parameters, run_.first_epoch().scene, case_.process, case_.X_0).warnings);
       summary_.volume_of_shape = shape_volume(case_);
       print_chords(case_, summary_.volume_of_shape);
     }
@@ -117,7 +113,7 @@ namespace retroforge
       case_.resumption->check_increments();
     MPI_Barrier(case_.comm); // all have read before anything changes
     if (root_ && command.resume)
-      remove_all_but_record(command.output_directory, command.command == "check");
+      remove_all_but_record(command.output_directory, command.command == Command::check);
     else if (root_)
       make_results_folder(command.output_directory, command.overwrite, case_.echo);
   }
@@ -132,10 +128,10 @@ namespace retroforge
                                                "billet.msh",
                                                "forged.msh",
                                                "forged.stl"};
-    const bool               differentiates = case_.command.command != "simulate";
+    const bool               differentiates = case_.command.command != Command::simulate;
     if (differentiates)
       files.insert(files.end(), {"sensitivity.vtu", "sensitivity_nodes.csv"});
-    if (case_.command.command == "check")
+    if (case_.command.command == Command::check)
       files.push_back("check.json");
     if (case_.parameters.output.record)
       files.push_back("record.h5");
@@ -162,20 +158,19 @@ namespace retroforge
 
   bool Simulation::forge_and_judge()
   {
-    const double       begin   = timings_.seconds("total");
-    const std::string &command = case_.command.command;
-    summary_.whole = whole_part(case_.billet, case_.nominal.dies[case_.nominal.leading_die].velocity);
+    const double begin = timings_.seconds("total");
+    summary_.whole     = whole_part(case_.billet, case_.nominal.leading_velocity());
     forge();
     if (!case_.command.resume)
       forging_seconds_ = timings_.seconds("total") - begin;
-    if (command != "simulate")
+    if (case_.command.command != Command::simulate)
       differentiate();
-    summarise_run(case_, forged_, summary_);
-    summarise_objectives(case_, trace_, forged_, values_, summary_);
+    summarise_run(case_, run_.state(), summary_);
+    summarise_objectives(case_, run_.trace(), run_.state(), values_, summary_);
     summarise_gradients(case_, sensitivities_, summary_);
     summary_.deepest      = output_->deepest();
     summary_.spanned      = output_->spanned();
-    summary_.record_bytes = recording_.bytes();
+    summary_.record_bytes = run_.recording().bytes();
     summary_.warnings =
       warnings_of(summary_, case_.parameters.contact.largest_depth, output_->untouched_dies());
     const bool passed = verify();
@@ -189,9 +184,10 @@ namespace retroforge
 
   void Simulation::write_forged() const
   {
-    const TetMesh &mesh = forged_.leg->scene.mesh;
-    write_msh(path_of("forged.msh"), mesh, forged_.X);
-    write_boundary_stl(path_of("forged.stl"), mesh, forged_.X);
+    const TetMesh              &mesh = run_.state().epoch->scene.mesh;
+    const NodalVectors<double> &X    = run_.state().workpiece.X;
+    write_msh(path_of("forged.msh"), mesh, X);
+    write_boundary_stl(path_of("forged.stl"), mesh, X);
   }
 
   void Simulation::keep_failure()
@@ -203,7 +199,7 @@ namespace retroforge
     {
       write_file(path_of("failure.txt"), message + "\n");
       if (output_ && values_.empty())
-        output_->add_failed(forged_);
+        output_->add_failed(run_.state());
     }
     catch (const Error &)
     {
@@ -213,31 +209,23 @@ namespace retroforge
 
   void Simulation::forge()
   {
-    forged_ = forging_.start(first_leg_, case_.X_0);
-    output_ = std::make_unique<RunOutput>(case_, summary_.whole, trace_, timings_);
+    output_ = std::make_unique<RunOutput>(case_, summary_.whole, run_.trace(), timings_);
     if (case_.command.resume)
       resume();
     else if (root_ && case_.parameters.output.record)
-      recording_.write_to(RecordWriter(case_.command.output_directory,
-                                       {version,
-                                        commit,
-                                        case_.echo,
-                                        facets(case_.model.dies),
-                                        case_.billet,
-                                        case_.X_0,
-                                        fingerprints(case_.model.dies)}));
+      run_.recording().write_to(RecordWriter(case_.command.output_directory, run_.record_header(case_.echo)));
     if (root_)
       set_interrupt_message(resume_hint(case_));
     forge_on();
-    values_ = trace_.values(forged_, true);
+    values_ = run_.values();
     {
       const auto timing = timings_.scope("record");
-      recording_.finish();
+      run_.recording().finish();
     }
     MPI_Barrier(case_.comm); // the record is complete before any rank reads it
-    check_finite(case_.objectives, values_);
-    require_finite(forged_.energy.total(), "Workpiece", "its energy");
-    require_finite(volume(forged_.leg->scene.mesh.cells, forged_.X), "Workpiece", "its volume");
+    const ForgingState &end = run_.state();
+    require_finite(end.energy.total(), "Workpiece", "its energy");
+    require_finite(volume(end.epoch->scene.mesh.cells, end.workpiece.X), "Workpiece", "its volume");
   }
 
   void Simulation::forge_on()
@@ -246,13 +234,13 @@ namespace retroforge
     output_->begin();
     try
     {
-      forging_.run(case_.process, forged_, [&](const IncrementEvent &event) {
+      run_.forge([&](const IncrementEvent &event) {
         writes = true;
         {
           const auto timing = timings_.scope("record");
-          recording_.write(event.record);
+          run_.recording().write(event.record);
         }
-        follow(event);
+        output_->add(event);
         writes = false;
       });
     }
@@ -263,20 +251,10 @@ namespace retroforge
     catch (const Error &error)
     {
       // Other numerics do not cure a full disk.
-      if (writes || forged_.increments == 0 || !case_.has_record())
+      if (writes || run_.state().increments == 0 || !case_.has_record())
         throw;
-      throw error.or_else(resume_hint_after_failure(case_, forged_.stroke, remesher_.enabled()));
+      throw error.or_else(resume_hint_after_failure(case_, run_.state().stroke, run_.remeshes()));
     }
-  }
-
-  void Simulation::follow(const IncrementEvent &event)
-  {
-    recording_.keep(event.record);
-    {
-      const auto timing = timings_.scope("objectives");
-      trace_.add(event);
-    }
-    output_->add(event);
   }
 
   void Simulation::resume()
@@ -285,21 +263,21 @@ namespace retroforge
     const auto        &changes = case_.resumption->changes;
     const RecordReader record(folder);
     IncrementRecord    increment;
-    forging_.restore(
-      case_.process,
+    run_.restore(
       record.n_increments(),
       [&](const unsigned int i) -> const IncrementRecord & {
         increment = record.read(i);
         return increment;
       },
-      forged_,
-      [&](const IncrementEvent &event) { follow(event); });
+      [&](const IncrementEvent &event) { output_->add(event); });
     MPI_Barrier(case_.comm); // all have read before the writer removes what is torn
-    const bool is_left = forging_.is_left(forged_);
+    const ForgingState &state   = run_.state();
+    const bool          is_left = run_.is_left();
     if (is_left && !changes.empty())
     {
-      Forging::change_numerics(case_.echo, forged_);
-      case_.segments.push_back({{forged_.increments, forged_.stroke, case_.echo}, case_.parameters});
+      case_.segments.push_back(
+        {{state.increments, state.stroke, case_.echo, state.operation}, case_.parameters});
+      run_.change_numerics(case_.segments.back());
     }
     if (!root_)
       return;
@@ -308,19 +286,8 @@ namespace retroforge
     if (record.finished() && !is_left)
       RecordWriter::tidy(folder);
     else
-      recording_.write_to(RecordWriter::resume(folder));
-    print_resumed(forged_.increments, is_left, changes);
-  }
-
-  RecordedForging Simulation::recorded()
-  {
-    return {case_.model,
-            first_leg_,
-            case_.process,
-            recording_.source(),
-            forged_.increments,
-            case_.objectives,
-            timings_};
+      run_.recording().write_to(RecordWriter::resume(folder));
+    print_resumed(state.increments, is_left, changes);
   }
 
   void Simulation::differentiate()
@@ -335,7 +302,7 @@ namespace retroforge
                                 {}});
     // A check compares the two methods.
     if (case_.parameters.adjoint.method == AdjointParameters::Method::direct &&
-        case_.command.command == "gradient")
+        case_.command.command == Command::gradient)
       differentiate_directly();
     else
       sweep_back();
@@ -349,14 +316,15 @@ namespace retroforge
 
   void Simulation::sweep_back()
   {
-    const AdjointSweep sweep       = adjoint_sweep(recorded(), trace_.rows(), forged_, case_.combinations);
+    const AdjointSweep sweep       = run_.sweep(case_.combinations);
     summary_.linear_solves_adjoint = sweep.linear_solves;
     for (std::size_t j = 0; j < sensitivities_.size(); ++j)
     {
-      const auto timing          = timings_.scope("design");
-      sensitivities_[j].gradient = case_.design.pull_back(case_.mu, sweep.of[j].X_0, sweep.of[j].process);
-      sensitivities_[j].shape    = {sweep.of[j].X_0, {}};
-      for (const auto &die : sweep.of[j].process.dies)
+      const auto timing = timings_.scope("design");
+      sensitivities_[j].gradient =
+        case_.design.pull_back(case_.mu, sweep.gradients[j].X_0, sweep.gradients[j].process);
+      sensitivities_[j].shape = {sweep.gradients[j].X_0, {}};
+      for (const auto &die : sweep.gradients[j].process.dies)
         sensitivities_[j].shape.dies.push_back(die.vertices);
     }
     const auto timing = timings_.scope("sensitivity");
@@ -375,7 +343,7 @@ namespace retroforge
       std::vector<double> mu_dot(case_.mu.size(), 0.);
       mu_dot[i] = 1.;
       const auto derivatives =
-        directional_derivatives(case_, recorded(), mu_dot, {NodalVectors<double>(case_.X_0.size()), {}});
+        directional_derivatives(case_, run_, mu_dot, {NodalVectors<double>(case_.X_0.size()), {}});
       for (std::size_t j = 0; j < sensitivities_.size(); ++j)
         sensitivities_[j].gradient[i] = derivatives[j];
     }

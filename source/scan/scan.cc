@@ -7,13 +7,13 @@
 #include <retroforge/case/scene_estimate.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/interrupt_message.h>
+#include <retroforge/core/text.h>
 #include <retroforge/core/version.h>
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/scan/scan.h>
-#include <retroforge/time/leg.h>
+#include <retroforge/time/mesh_epoch.h>
 
-#include <cctype>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -31,15 +31,6 @@ namespace retroforge
       char text[32];
       std::snprintf(text, sizeof text, "%.17g", x);
       return text;
-    }
-
-    /// For names of folders.
-    std::string as_identifier(std::string name)
-    {
-      for (char &c : name)
-        if (std::isalnum(static_cast<unsigned char>(c)) == 0)
-          c = '_';
-      return name;
     }
 
     /// For a shell.
@@ -84,7 +75,8 @@ namespace retroforge
     one_run.resume      = false;
     Timings    timings;
     const Case scene(one_run, timings, comm);
-    check_scene(scene.parameters, Leg(scene.billet, scene.model, timings).scene, scene.process, scene.X_0);
+    check_scene(
+      scene.parameters, MeshEpoch(scene.billet, scene.model, timings).scene, scene.process, scene.X_0);
     warnings_   = estimate_scene(scene).warnings;
     echo_       = scene.echo;
     parameters_ = scene.parameters;
@@ -134,7 +126,7 @@ namespace retroforge
   CommandLine Scan::command_of(const ScanPoint &point) const
   {
     CommandLine run;
-    run.command          = parameters_.scan.gradients ? "gradient" : "simulate";
+    run.command          = parameters_.scan.gradients ? Command::gradient : Command::simulate;
     run.case_file        = command_.case_file;
     run.output_directory = point.directory;
     run.overrides        = command_.overrides;
@@ -148,7 +140,7 @@ namespace retroforge
 
   std::vector<std::string> Scan::words_of(const CommandLine &command) const
   {
-    std::vector<std::string> words = {this_program(), command.command, command.case_file};
+    std::vector<std::string> words = {this_program(), word_of(command.command.value()), command.case_file};
     for (const auto &[name, value] : command.overrides)
       words.insert(words.end(), {"--set", name + "=" + value});
     for (const auto &[name, value] : command.at)
@@ -165,7 +157,7 @@ namespace retroforge
     const CommandLine run = command_of(point);
     std::string       parameters;
     Parameters::read(run, parameters);
-    return make_same_results(read_file(file), parameters) && point.read_summary(run.command);
+    return make_same_results(read_file(file), parameters) && point.read_summary(word_of(run.command.value()));
   }
 
   std::vector<ScanPoint *> Scan::to_do()
@@ -266,7 +258,7 @@ namespace retroforge
 
   void Scan::finish(ScanPoint &point, const ExitStatus &end) const
   {
-    if (end.status != 0 || end.signal != 0 || !point.read_summary(command_of(point).command))
+    if (end.status != 0 || end.signal != 0 || !point.read_summary(word_of(command_of(point).command.value())))
       point.read_failure(point.directory + "/log.txt", end.status, end.signal);
     std::error_code ignored; // the record is as large as all else of many runs together
     std::filesystem::remove_all(point.directory + "/record", ignored);

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/csv.h>
 #include <retroforge/core/version.h>
+#include <retroforge/output/json_number.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/scan/scan_results.h>
 
@@ -19,23 +20,18 @@ namespace retroforge
   {
     using Json = nlohmann::ordered_json;
 
-    Json number(const double x)
-    {
-      return std::isfinite(x) ? Json(x) : Json();
-    }
-
     Json as_json(const LineStatistics &s)
     {
       return {{"values", s.n_values},
               {"slopes", s.n_slopes},
-              {"mean_value", number(s.mean_value)},
-              {"noise_rms", number(s.noise_rms)},
-              {"noise_max", number(s.noise_max)},
-              {"mean_slope", number(s.mean_slope)},
-              {"mean_fit_slope", number(s.mean_fit_slope)},
-              {"bias", number(s.bias)},
-              {"roughness_rms", number(s.roughness_rms)},
-              {"roughness_max", number(s.roughness_max)}};
+              {"mean_value", json_number(s.mean_value)},
+              {"noise_rms", json_number(s.noise_rms)},
+              {"noise_max", json_number(s.noise_max)},
+              {"mean_slope", json_number(s.mean_slope)},
+              {"mean_fit_slope", json_number(s.mean_fit_slope)},
+              {"bias", json_number(s.bias)},
+              {"roughness_rms", json_number(s.roughness_rms)},
+              {"roughness_max", json_number(s.roughness_max)}};
     }
 
     /// An empty cell for no number.

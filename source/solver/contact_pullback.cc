@@ -4,7 +4,8 @@
 
 namespace retroforge
 {
-  ContactPullback::ContactPullback(const StageView<double> &view, StageBar &bar) : view_(view), bar_(bar)
+  ContactPullback::ContactPullback(const EquilibriumView<double> &view, EquilibriumBar &bar)
+      : view_(view), bar_(bar)
   {
     areas_bar_.S.assign(view.stage.contact.pairs.size(), 0.);
     areas_bar_.Sf.assign(view.stage.contact.pairs.size(), 0.);
@@ -33,7 +34,7 @@ namespace retroforge
 
   void ContactPullback::finish()
   {
-    const Stage<double> &stage = view_.stage;
+    const Equilibrium<double> &stage = view_.stage;
     reverse_contact_areas(
       stage.scene.mesh, stage.scene.topology, stage.contact, stage.X, areas_bar_, bar_.X, bar_.contact);
   }

@@ -9,8 +9,8 @@ namespace retroforge
     /// Nodes that two dies hold need more than one sweep over the pairs.
     constexpr unsigned int sweeps = 3;
 
-    /// Beyond the die, of the fastest die's speed: enough to count as active, too little for a force. (A node
-    /// may stick to its die, so that its own speed against it is no measure.)
+    /// Approach excess of projected nodes, as a part of the fastest die's speed: enough to count as active,
+    /// too little for a force. (A node may stick to its die, so that its own speed against it is no measure.)
     constexpr double beyond = 1e-8;
 
     double fastest(const std::vector<DieState<double>> &dies)
@@ -21,9 +21,13 @@ namespace retroforge
       return speed;
     }
 
-    /// By a correction along the die's normal, as far as the symmetry planes let the node go that way.
-    /// @param speed  with which the node then goes through the die
-    void sink_into_die(const Stage<double> &stage, const unsigned int p, const double speed, Field<double> &W)
+    /// Corrects the node's velocity along the die's normal, as far as the symmetry planes let it move that
+    /// way.
+    /// @param speed  the approach excess of the node afterwards [mm/s]
+    void set_approach_excess(const Equilibrium<double> &stage,
+                             const unsigned int         p,
+                             const double               speed,
+                             Field<double>             &W)
     {
       const NodeIndex           k              = stage.contact.pairs[p].point.velocity_node;
       const ContactNode<double> node           = stage.contact_node(p, W, {});
@@ -36,12 +40,12 @@ namespace retroforge
         W.V[k] -= (approach_excess(node) - speed) / part * free;
     }
 
-    void put_onto_die(const Stage<double> &stage, const unsigned int p, Field<double> &W)
+    void put_onto_die(const Equilibrium<double> &stage, const unsigned int p, Field<double> &W)
     {
-      sink_into_die(stage, p, beyond * fastest(stage.physics.dies), W);
+      set_approach_excess(stage, p, beyond * fastest(stage.physics.dies), W);
     }
 
-    /// Whether a node is at its die: what it may approach at is little of its speed.
+    /// Returns whether a node is at its die: its allowed approach speed is a small part of its speed.
     bool touches(const ContactNode<double> &node)
     {
       constexpr double little = 0.05;
@@ -51,9 +55,9 @@ namespace retroforge
     /// A node is pressed against its die by more than this part of the mean force of those that are.
     constexpr double pressing = 0.1;
 
-    /// Of each pair with a velocity of its own, the force with which the metal presses its node against the
-    /// die when no node is held.
-    std::vector<double> forces_of_metal(const Stage<double> &stage, const Field<double> &W)
+    /// Returns, for each pair with a velocity of its own, the force with which the metal presses its node
+    /// against the die when no node is held [N].
+    std::vector<double> forces_of_metal(const Equilibrium<double> &stage, const Field<double> &W)
     {
       const auto &pairs = stage.contact.pairs;
       // Edges hold nodes, too: these are not the die's to hold.
@@ -70,7 +74,7 @@ namespace retroforge
       return force;
     }
 
-    std::vector<char> pressed_by_metal(const Stage<double> &stage, const Field<double> &W)
+    std::vector<char> pressed_by_metal(const Equilibrium<double> &stage, const Field<double> &W)
     {
       std::vector<double> force = forces_of_metal(stage, W);
       double              sum   = 0.;
@@ -89,10 +93,11 @@ namespace retroforge
     }
   } // namespace
 
-  std::vector<char> hold_on_dies(const Stage<double> &stage, Field<double> &W, const ActiveSet &pressed)
+  std::vector<char>
+  project_onto_dies(const Equilibrium<double> &stage, Field<double> &W, const ActiveChoice &pressed)
   {
     const auto       &pairs = stage.contact.pairs;
-    std::vector<char> held  = pressed.empty() ? pressed_by_metal(stage, W) : pressed;
+    std::vector<char> held  = pressed.is_given() ? *pressed : pressed_by_metal(stage, W);
     for (unsigned int sweep = 0; sweep < sweeps; ++sweep)
       for (unsigned int p = 0; p < pairs.size(); ++p)
         if (pairs[p].point.has_own_velocity())
@@ -104,16 +109,17 @@ namespace retroforge
     return held;
   }
 
-  void lean_on_dies(const Stage<double> &stage, const std::vector<char> &held, Field<double> &W)
+  void
+  apply_contact_pressure(const Equilibrium<double> &stage, const std::vector<char> &held, Field<double> &W)
   {
     const std::vector<double> force = forces_of_metal(stage, W);
     for (unsigned int p = 0; p < force.size(); ++p)
       if (held[p] && force[p] > 0.)
-        sink_into_die(
+        set_approach_excess(
           stage, p, excess_under(force[p], stage.contact_node(p, W, {}), stage.physics.contact), W);
   }
 
-  void stop_at_dies(const Stage<double> &stage, const ActiveSet &active, Field<double> &W)
+  void clip_to_dies(const Equilibrium<double> &stage, const ActiveSet &active, Field<double> &W)
   {
     const auto &pairs = stage.contact.pairs;
     for (unsigned int sweep = 0; sweep < sweeps; ++sweep)

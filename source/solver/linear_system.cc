@@ -9,10 +9,10 @@ namespace retroforge
   {
   }
 
-  void LinearSystem::assemble(const Stage<double> &stage,
-                              const Field<double> &W,
-                              const ActiveSet     &active,
-                              const Linearisation  linearisation)
+  void LinearSystem::assemble(const Equilibrium<double> &stage,
+                              const Field<double>       &W,
+                              const ActiveChoice        &active,
+                              const Linearisation        linearisation)
   {
     const auto timing = timings_.scope("assembly");
     matrix_.assemble(stage, W, active, linearisation);

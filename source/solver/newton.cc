@@ -42,7 +42,7 @@ namespace retroforge
   namespace
   {
     /// Of the billet, and of the fastest die.
-    std::pair<double, double> volume_and_speed(const Stage<double> &stage)
+    std::pair<double, double> volume_and_speed(const Equilibrium<double> &stage)
     {
       const Discretization<3> &discretization = stage.scene.discretization;
       double                   volume = 0., speed = 0.;
@@ -61,8 +61,9 @@ namespace retroforge
 
     /// What residuals are measured against. Where nothing pushes yet, all there is is rounding: what is small
     /// against the flow at the dies' speed, `reference`, is measured against that.
-    std::pair<double, double>
-    scale_of(const Stage<double> &stage, const Field<double> &W, const std::pair<double, double> &reference)
+    std::pair<double, double> scale_of(const Equilibrium<double>       &stage,
+                                       const Field<double>             &W,
+                                       const std::pair<double, double> &reference)
     {
       constexpr double negligible = 1e-3;
       const auto       scale      = residual_scale(stage, W);
@@ -71,7 +72,7 @@ namespace retroforge
     }
 
     /// What residual_scale would be in a flow at the dies' speed.
-    std::pair<double, double> reference_scale(const Stage<double> &stage)
+    std::pair<double, double> reference_scale(const Equilibrium<double> &stage)
     {
       const auto [volume, speed] = volume_and_speed(stage);
       const double rate = typical_rate(volume, speed), n = stage.scene.mesh.n_nodes(), v = volume / n;
@@ -81,11 +82,11 @@ namespace retroforge
     }
   } // namespace
 
-  double Newton::relative_residual(const Stage<double> &stage,
-                                   const Field<double> &W,
-                                   const ActiveSet     &frozen,
-                                   const Scale         &scale,
-                                   Field<double>       &r)
+  double Newton::relative_residual(const Equilibrium<double> &stage,
+                                   const Field<double>       &W,
+                                   const ActiveChoice        &frozen,
+                                   const Scale               &scale,
+                                   Field<double>             &r)
   {
     r                          = stage.residual(W, frozen);
     const auto  norm           = system_.residual_norm(r);
@@ -113,14 +114,14 @@ namespace retroforge
     /// Balances bubbles with velocities and pressures that are on their way. Where the metal hardly feels its
     /// rate, a load that a cell cannot bear makes them  |beta| ~ (load / K)^(1/m),  beyond all bounds, and
     /// systems solved to a part of such a residual say nothing of the rest: those are left as they are.
-    void settle_bubbles_in_reach(const Stage<double> &stage, const double speed, Field<double> &W)
+    void solve_bubbles_in_reach(const Equilibrium<double> &stage, const double speed, Field<double> &W)
     {
       constexpr double farthest       = 1e3; // of the dies' speed
       const auto      &discretization = stage.scene.discretization;
       if (!discretization.has_bubbles())
         return;
       const NodeVector<3, double> before = W.V;
-      settle_bubbles(stage, W);
+      solve_bubbles(stage, W);
       for (const CellIndex c : discretization.visited_cells())
       {
         const unsigned int place = discretization.velocity_places(c)[4];
@@ -130,11 +131,11 @@ namespace retroforge
     }
   } // namespace
 
-  double Newton::search_power(const Stage<double> &stage,
-                              Field<double>       &W,
-                              const Field<double> &r,
-                              const Field<double> &step,
-                              const ActiveSet     &active)
+  double Newton::search_power(const Equilibrium<double> &stage,
+                              Field<double>             &W,
+                              const Field<double>       &r,
+                              const Field<double>       &step,
+                              const ActiveChoice        &active)
   {
     // The pressure takes its full step: it is the multiplier of the functional's constraint.
     for (unsigned int place = 0; place < W.P.size(); ++place)
@@ -186,16 +187,16 @@ namespace retroforge
     return a;
   }
 
-  double Newton::search_residual(const Stage<double> &stage,
-                                 Field<double>       &W,
-                                 const SearchStart   &start,
-                                 const Field<double> &step,
-                                 const ActiveSet     &active)
+  double Newton::search_residual(const Equilibrium<double> &stage,
+                                 Field<double>             &W,
+                                 const SearchStart         &start,
+                                 const Field<double>       &step,
+                                 const ActiveChoice        &active)
   {
     // Friction that hardly grows with the slip leaves the residual blind to a step that goes too far.
     Field<double> there = W, r;
     const double  part  = search_power(stage, there, start.r, step, active);
-    settle_bubbles_in_reach(stage, start.speed, there);
+    solve_bubbles_in_reach(stage, start.speed, there);
     if (relative_residual(stage, there, active, start.scale, r) < start.residual)
     {
       W = std::move(there);
@@ -209,7 +210,7 @@ namespace retroforge
     {
       there = W;
       there.add(a, step);
-      settle_bubbles_in_reach(stage, start.speed, there);
+      solve_bubbles_in_reach(stage, start.speed, there);
       const double residual = relative_residual(stage, there, active, start.scale, r);
       if (i == 0 || residual < least)
       {
@@ -224,10 +225,10 @@ namespace retroforge
     return best;
   }
 
-  void Newton::initial_guess(const Stage<double> &stage,
-                             Field<double>       &W,
-                             const ActiveSet     &frozen,
-                             NewtonStatistics    &statistics)
+  void Newton::initial_guess(const Equilibrium<double> &stage,
+                             Field<double>             &W,
+                             const ActiveChoice        &frozen,
+                             NewtonStatistics          &statistics)
   {
     const auto [volume, speed] = volume_and_speed(stage);
     Physics<double> newtonian  = stage.physics;
@@ -239,10 +240,12 @@ namespace retroforge
       die.friction = linear_friction(die, slip, pressure, stage.physics.material.law, newtonian.material.law);
       die.interface_law = 0;
     }
-    const Stage<double> linear(scene_, newtonian, stage.contact, stage.X);
+    const Equilibrium<double> linear(scene_, newtonian, stage.contact, stage.X);
     // Nodes at rest against a die at rest must feel it: all that touch count as active in the first matrix.
-    ActiveSet active = frozen;
-    if (active.empty())
+    ActiveSet active;
+    if (frozen.is_given())
+      active = *frozen;
+    else
       for (const auto &projection : stage.contact.projections)
         active.push_back(projection.delta <= speed * stage.contact.tau);
     Field<double> step;
@@ -255,12 +258,12 @@ namespace retroforge
       statistics.krylov += system_.solve(rhs, 1e-4, step);
       ++statistics.iterations;
       W.add(1., step);
-      if (!frozen.empty() || linear.decide_active(W) == active)
+      if (frozen.is_given() || linear.decide_active(W) == active)
         break;
       active = linear.decide_active(W);
     }
     // No die reaches the metal: it stays where it is, and does not drift along a motion that costs nothing.
-    active = frozen.empty() ? linear.decide_active(W) : frozen;
+    active = frozen.is_given() ? *frozen : linear.decide_active(W);
     if (std::none_of(active.begin(), active.end(), [](const char pressed) { return pressed != 0; }))
       W = Field<double>(scene_.discretization);
   }
@@ -296,51 +299,60 @@ namespace retroforge
   /// Linear systems are not solved better than this only because steps are poor.
   constexpr double least_forcing = 1e-6;
 
+  /// Residual below which rounding may be all that is left of it, and the steps in a row that show it: where a
+  /// billet rests on few nodes, it is more than the smallest tolerances.
+  constexpr double       rounding   = 1e-11;
+  constexpr unsigned int idle_steps = 10;
+
   /// How well the last step of a replay is solved for. Replays are made to be subtracted from each other, and
   /// begin so close to their solutions that the tolerance says little: each takes one step more.
   constexpr double refined = 1e-5;
 
-  NewtonStatistics Newton::solve(const Stage<double> &stage,
-                                 Field<double>       &W,
-                                 const ActiveSet     &frozen,
-                                 const Start          start,
-                                 const ActiveSet     &pressed)
+  NewtonStatistics Newton::solve(const Equilibrium<double> &stage,
+                                 Field<double>             &W,
+                                 const ActiveChoice        &frozen,
+                                 const Origin               origin,
+                                 const ActiveChoice        &pressed)
   {
     Assert(&stage.scene == &scene_, dealii::ExcMessage("the stage is of another scene than the matrix"));
     Assert(W.belongs_to(scene_.discretization),
            dealii::ExcMessage("the guess is of another discretisation than the stage"));
-    Assert(frozen.empty() || frozen.size() == stage.contact.pairs.size(),
-           dealii::ExcDimensionMismatch(frozen.size(), stage.contact.pairs.size()));
-    Assert(pressed.empty() || pressed.size() == stage.contact.pairs.size(),
-           dealii::ExcDimensionMismatch(pressed.size(), stage.contact.pairs.size()));
+    Assert(frozen.fits(stage.contact.pairs.size()) && pressed.fits(stage.contact.pairs.size()),
+           dealii::ExcMessage("a choice of active contacts has an entry for each pair"));
     NewtonStatistics statistics;
     const bool       linear    = stage.physics.material.law.is_linear();
     const bool       from_rest = is_at_rest(scene_.discretization, W);
     if (from_rest && !linear)
       initial_guess(stage, W, frozen, statistics);
     // A recorded active set comes with its solution.
-    const bool        decides = frozen.empty() && !linear;
+    const bool        decides = !frozen.is_given() && !linear;
     std::vector<char> held;
     // Friction that follows the pressure needs to know it from the start.
     if (decides && (!from_rest || !stage.has_potential()))
-      held = hold_on_dies(stage, W, pressed);
+      held = project_onto_dies(stage, W, pressed);
     const double speed = volume_and_speed(stage).second;
-    settle_bubbles_in_reach(stage, speed, W);
+    solve_bubbles_in_reach(stage, speed, W);
     if (!held.empty())
-      lean_on_dies(stage, held, W);
-    unsigned int  picard    = decides && start == Start::far ? picard_steps : 0;
+      apply_contact_pressure(stage, held, W);
+    unsigned int  picard    = decides && origin == Origin::transferred ? picard_steps : 0;
     const Scale   reference = reference_scale(stage);
     Scale         scale;
     Field<double> r, step;
     double        last = 1., largest_forcing = parameters_.forcing;
     bool          whole = false; // the step before
+    unsigned int  idle  = 0;
     for (unsigned int iteration = 0; iteration < parameters_.max_iterations; ++iteration)
     {
-      ActiveSet first_active = frozen;
-      if (from_rest && iteration == 0 && frozen.empty() && linear)
+      // At rest nothing is pressed: the first matrix has the contacts that touch.
+      std::optional<ActiveSet> touching;
+      if (from_rest && iteration == 0 && !frozen.is_given() && linear)
+      {
+        touching.emplace();
         for (const auto &projection : stage.contact.projections)
-          first_active.push_back(projection.delta <= 0.);
-      const auto assemble = [&]() {
+          touching->push_back(projection.delta <= 0.);
+      }
+      const ActiveChoice first_active = touching ? ActiveChoice(touching) : frozen;
+      const auto         assemble     = [&]() {
         system_.assemble(stage, W, first_active, picard > 0 ? Linearisation::picard : Linearisation::newton);
       };
       // The first matrix makes the frames and scales that residuals are measured in.
@@ -350,8 +362,9 @@ namespace retroforge
       if (last >= close)
         scale = scale_of(stage, W, reference);
       statistics.residual = relative_residual(stage, W, first_active, scale, r);
-      const bool found    = first_active == frozen && statistics.residual <= parameters_.tolerance;
-      if (found && frozen.empty())
+      idle             = statistics.residual <= rounding && statistics.residual > 0.5 * last ? idle + 1 : 0;
+      const bool found = !touching && (statistics.residual <= parameters_.tolerance || idle >= idle_steps);
+      if (found && !frozen.is_given())
         return statistics;
       if (iteration > 0)
         assemble();
@@ -375,9 +388,9 @@ namespace retroforge
         W.add(1., step);
         return statistics;
       }
-      if (first_active == frozen && statistics.residual > settled)
+      if (!touching && statistics.residual > settled)
       {
-        const auto search = [&](const ActiveSet &active) {
+        const auto search = [&](const ActiveChoice &active) {
           return stage.has_potential()
                    ? search_power(stage, W, r, step, active)
                    : search_residual(stage, W, {r, statistics.residual, scale, speed}, step, active);
@@ -387,7 +400,7 @@ namespace retroforge
         {
           const ActiveSet active = stage.decide_active(W);
           taken                  = search(active);
-          stop_at_dies(stage, active, W);
+          clip_to_dies(stage, active, W);
         }
         else
         {
@@ -404,7 +417,7 @@ namespace retroforge
       else
         W.add(1., step);
       if (statistics.residual > settled)
-        settle_bubbles_in_reach(stage, speed, W);
+        solve_bubbles_in_reach(stage, speed, W);
       last = statistics.residual;
     }
     std::ostringstream what;

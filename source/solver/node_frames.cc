@@ -6,25 +6,39 @@
 
 namespace retroforge
 {
-  namespace
+  template <int dim>
+  unsigned int
+  append_axis(dealii::Tensor<2, dim> &axes, const unsigned int n, dealii::Tensor<1, dim> direction)
   {
-    /// Appends `direction`, orthonormalised against the first n rows, unless it lies nearly in their span.
-    unsigned int append_axis(dealii::Tensor<2, 3> &axes, const unsigned int n, Vec3 direction)
+    if (n == dim)
+      return dim;
+    // Twice, for what is left of a direction close to the span is as inexact as it is short.
+    for (const bool again : {false, true})
     {
-      if (n == 3)
-        return 3;
-      // Twice, for what is left of a direction close to the span is as inexact as it is short.
-      for (const bool again : {false, true})
-      {
-        for (unsigned int i = 0; i < n; ++i)
-          direction -= (axes[i] * direction) * axes[i];
-        if (!again && direction.norm() < 1e-3)
-          return n;
-      }
-      axes[n] = direction / direction.norm();
-      return n + 1;
+      for (unsigned int i = 0; i < n; ++i)
+        direction -= (axes[i] * direction) * axes[i];
+      if (!again && direction.norm() < 1e-3)
+        return n;
     }
-  } // namespace
+    axes[n] = direction / direction.norm();
+    return n + 1;
+  }
+
+  template <int dim>
+  void complete_axes(dealii::Tensor<2, dim> &axes, unsigned int n)
+  {
+    for (unsigned int i = 0; i < dim && n < dim; ++i)
+    {
+      dealii::Tensor<1, dim> unit;
+      unit[(i + 1) % dim] = 1.;
+      // A direction far from the axes there are keeps the completion well conditioned.
+      dealii::Tensor<1, dim> rest = unit;
+      for (unsigned int j = 0; j < n; ++j)
+        rest -= (axes[j] * unit) * axes[j];
+      if (rest.norm() > 0.5)
+        n = append_axis(axes, n, unit);
+    }
+  }
 
   std::vector<NodeFrame>
   make_frames(const Scene &scene, const ContactSet<double> &contact, const ActiveSet &active)
@@ -56,36 +70,35 @@ namespace retroforge
       else
       {
         frames[k].identity = false;
-        for (unsigned int i = 0; i < 3 && n_axes[k] < 3; ++i)
-        {
-          Vec3 unit;
-          unit[(i + 1) % 3] = 1.;
-          // A direction far from the axes there are keeps the completion well conditioned.
-          Vec3 rest = unit;
-          for (unsigned int j = 0; j < n_axes[k]; ++j)
-            rest -= (frames[k].axes[j] * unit) * frames[k].axes[j];
-          if (rest.norm() > 0.5)
-            append(k, unit);
-        }
+        complete_axes(frames[k].axes, n_axes[k]);
       }
     for (NodeFrame &frame : frames)
       frame.tests = frame.axes;
     return frames;
   }
 
-  void choose_tests(const dealii::Tensor<2, 3> &tangent, NodeFrame &frame)
+  template <int dim>
+  void choose_tests(const dealii::Tensor<2, dim> &tangent, VelocityFrame<dim> &frame)
   {
-    if (frame.n_fixed == 3)
+    if (frame.n_fixed == dim)
       return;
     unsigned int p = frame.n_fixed;
-    for (unsigned int i = p + 1; i < 3; ++i)
+    for (unsigned int i = p + 1; i < dim; ++i)
       if (tangent[i][i] > tangent[p][p])
         p = i;
-    for (unsigned int i = frame.n_fixed; i < 3; ++i)
+    for (unsigned int i = frame.n_fixed; i < dim; ++i)
       if (const double difference = tangent[i][p] - tangent[p][i]; difference != 0.)
       {
         frame.tests[i] -= difference / tangent[p][p] * frame.axes[p];
         frame.identity = false;
       }
   }
+
+#define RETROFORGE_INSTANTIATE(dim)                                                                  \
+  template unsigned int append_axis(dealii::Tensor<2, dim> &, unsigned int, dealii::Tensor<1, dim>); \
+  template void         complete_axes(dealii::Tensor<2, dim> &, unsigned int);                       \
+  template void         choose_tests(const dealii::Tensor<2, dim> &, VelocityFrame<dim> &);
+  RETROFORGE_INSTANTIATE(2)
+  RETROFORGE_INSTANTIATE(3)
+#undef RETROFORGE_INSTANTIATE
 } // namespace retroforge

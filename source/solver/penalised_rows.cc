@@ -2,7 +2,9 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/solver/penalised_rows.h>
 
-#include <deal.II/lac/solver_gmres.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/sparse_direct.h>
+#include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 
 namespace retroforge
@@ -12,7 +14,6 @@ namespace retroforge
     /// Some rows and columns of a matrix.
     struct Submatrix
     {
-      bool                                                      transposed = false;
       std::vector<double>                                       diagonal;
       std::vector<std::vector<std::pair<unsigned int, double>>> entries;
 
@@ -35,41 +36,34 @@ namespace retroforge
             }
         }
       }
-
-      /// y = A x, or A^T x.
-      void vmult(dealii::Vector<double> &y, const dealii::Vector<double> &x) const
-      {
-        y = 0.;
-        for (std::size_t i = 0; i < entries.size(); ++i)
-          for (const auto &[j, value] : entries[i])
-            if (transposed)
-              y[j] += value * x[i];
-            else
-              y[i] += value * x[j];
-      }
     };
 
-    /// Division by the diagonal.
-    struct Diagonal
+    /// d = A^(-1) residual, or A^(-T) residual, of any A by its factors; zero where A is singular, which the
+    /// solver of the whole system has to judge, with all ranks.
+    std::vector<double> solve_unsymmetric(const Submatrix           &A,
+                                          const Transposition        transposition,
+                                          const std::vector<double> &residual)
     {
-      const std::vector<double> &of;
-
-      void vmult(dealii::Vector<double> &y, const dealii::Vector<double> &x) const
+      const std::size_t              n = residual.size();
+      dealii::DynamicSparsityPattern met(n, n);
+      for (std::size_t i = 0; i < n; ++i)
+        for (const auto &[j, value] : A.entries[i])
+          met.add(i, j);
+      dealii::SparsityPattern pattern;
+      pattern.copy_from(met);
+      dealii::SparseMatrix<double> matrix(pattern);
+      for (std::size_t i = 0; i < n; ++i)
+        for (const auto &[j, value] : A.entries[i])
+          matrix.set(i, j, value);
+      dealii::Vector<double> d(residual.begin(), residual.end());
+      try
       {
-        for (std::size_t i = 0; i < of.size(); ++i)
-          y[i] = x[i] / of[i];
+        dealii::SparseDirectUMFPACK().solve(matrix, d, transposition == Transposition::transposed);
       }
-    };
-
-    /// d = A^(-1) residual  of any A.
-    std::vector<double> solve_unsymmetric(const Submatrix &A, const std::vector<double> &residual)
-    {
-      constexpr unsigned int                      most = 200;
-      const dealii::Vector<double>                b(residual.begin(), residual.end());
-      dealii::Vector<double>                      d(b.size());
-      dealii::IterationNumberControl              control(most, 1e-10 * b.l2_norm());
-      dealii::SolverGMRES<dealii::Vector<double>> gmres(control);
-      gmres.solve(A, d, b, Diagonal{A.diagonal});
+      catch (const dealii::SparseDirectUMFPACK::ExcUMFPACKError &)
+      {
+        d = 0.;
+      }
       return {d.begin(), d.end()};
     }
 
@@ -123,13 +117,14 @@ namespace retroforge
                             double             *x)
   {
     const std::vector<unsigned int> &rows = system.penalised;
-    Submatrix                        A(*system.A, rows);
-    A.transposed = transposition == Transposition::transposed;
+    if (rows.empty())
+      return;
+    const Submatrix     A(*system.A, rows);
     std::vector<double> change(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
       change[i] = r[rows[i]];
     if (system.penalties_couple && !system.symmetric)
-      change = solve_unsymmetric(A, change);
+      change = solve_unsymmetric(A, transposition, change);
     else if (system.penalties_couple)
       change = solve(A, std::move(change));
     else

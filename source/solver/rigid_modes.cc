@@ -13,8 +13,8 @@ namespace retroforge
 {
   namespace
   {
-    /// How much farther from a die than the nearest node others may be and still touch it, over the size of
-    /// the workpiece.
+    /// Distance from a die beyond the nearest node's within which nodes touch it, over the size of the
+    /// workpiece.
     constexpr double touching = 0.05;
     /// Eigenvalues below this, of one per resisting direction, are of free motions.
     constexpr double unresisted = 1e-8;
@@ -32,7 +32,7 @@ namespace retroforge
       }
     };
 
-    /// What resists motions of a body.
+    /// The resistance to rigid motions of a body.
     class Resistance
     {
     public:
@@ -201,6 +201,8 @@ namespace retroforge
         resistance.resist(k, direction);
     for (unsigned int d = 0; d < scene.dies.size(); ++d)
     {
+      if (physics.dies[d].in_press == 0)
+        continue;
       const Vec3 &displacement = physics.dies[d].displacement;
       double      reach        = within.value_or(0.);
       if (!within)

@@ -159,7 +159,7 @@ namespace retroforge
     for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
       const NodeFrame &frame = frames_[local];
-      const auto      &block = sums_->row(local)[diagonal_[local]];
+      const auto      &block = cell_tangents_->row(local)[diagonal_[local]];
       for (unsigned int i = 0; i < 3; ++i)
       {
         Vec3 row = frame.axes[i], column;
@@ -171,19 +171,19 @@ namespace retroforge
     return diagonal;
   }
 
-  void SaddleMatrix::write_sums()
+  void SaddleMatrix::write_cell_tangents()
   {
     const NodePattern &pattern    = system_.A->pattern();
     const unsigned int n_vertices = scene_.mesh.n_nodes();
     const double       squared    = pressure_scale_ * pressure_scale_;
     for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
     {
-      const bool                is_vertex = velocities_.node_at(local) < n_vertices;
-      const Vec3               &scale_k   = unknown_scale_.at_place(local);
-      const auto                columns   = pattern.row(local);
-      const TangentSums::Block *block     = sums_->row(local);
-      const double             *schur     = sums_->schur_row(local);
-      double                   *A[3], *B[3], *D = nullptr, *C = nullptr, *S = nullptr;
+      const bool                         is_vertex = velocities_.node_at(local) < n_vertices;
+      const Vec3                        &scale_k   = unknown_scale_.at_place(local);
+      const auto                         columns   = pattern.row(local);
+      const CellTangentAssembler::Block *block     = cell_tangents_->row(local);
+      const double                      *schur     = cell_tangents_->schur_row(local);
+      double                            *A[3], *B[3], *D = nullptr, *C = nullptr, *S = nullptr;
       for (unsigned int i = 0; i < 3; ++i)
       {
         A[i] = system_.A->entry(local, i, 0);
@@ -232,8 +232,9 @@ namespace retroforge
     }
   }
 
-  std::vector<SaddleMatrix::ContactEntries>
-  SaddleMatrix::contact_entries(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active)
+  std::vector<SaddleMatrix::ContactEntries> SaddleMatrix::contact_entries(const Equilibrium<double> &stage,
+                                                                          const Field<double>       &W,
+                                                                          const ActiveSet           &active)
   {
     std::vector<ContactEntries> entries;
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)

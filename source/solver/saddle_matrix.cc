@@ -19,26 +19,26 @@ namespace retroforge
       , pressures_(*scene.discretization.pressure_nodes())
   {
     make_patterns();
-    sums_ = std::make_unique<TangentSums>(scene, system_.A->pattern());
+    cell_tangents_ = std::make_unique<CellTangentAssembler>(scene, system_.A->pattern());
   }
 
-  void SaddleMatrix::assemble(const Stage<double> &stage,
-                              const Field<double> &W,
-                              const ActiveSet     &active,
-                              const Linearisation  linearisation)
+  void SaddleMatrix::assemble(const Equilibrium<double> &stage,
+                              const Field<double>       &W,
+                              const ActiveChoice        &active,
+                              const Linearisation        linearisation)
   {
     Assert(&stage.scene == &scene_, ExcMessage("the stage is of another scene than the matrix"));
-    Assert(active.empty() || active.size() == stage.contact.pairs.size(),
-           ExcDimensionMismatch(active.size(), stage.contact.pairs.size()));
-    const ActiveSet chosen = active.empty() ? stage.decide_active(W) : active;
+    Assert(active.fits(stage.contact.pairs.size()),
+           ExcMessage("a choice of active contacts has an entry for each pair"));
+    const ActiveSet chosen = active.is_given() ? *active : stage.decide_active(W);
     system_.symmetric      = stage.has_potential();
     frames_                = make_frames(scene_, stage.contact, chosen);
-    sums_->assemble(stage, W, linearisation);
-    pressure_scale_                           = sums_->viscosity_over_edge();
+    cell_tangents_->assemble(stage, W, linearisation);
+    pressure_scale_                           = cell_tangents_->viscosity_over_edge();
     const std::vector<double>         viscous = viscous_diagonal();
     const std::vector<ContactEntries> contact = contact_entries(stage, W, chosen);
     choose_scales(viscous, contact);
-    write_sums();
+    write_cell_tangents();
     add_contact(contact);
     put_diagonals_of_fixed(viscous);
     describe_rows();
@@ -140,7 +140,7 @@ namespace retroforge
 
   unsigned int SaddleMatrix::n_eliminated() const
   {
-    return sums_->eliminations().empty() ? 0 : scene_.discretization.visited_cells().size();
+    return cell_tangents_->eliminations().empty() ? 0 : scene_.discretization.visited_cells().size();
   }
 
   la::BlockVector SaddleMatrix::vector() const
@@ -172,7 +172,7 @@ namespace retroforge
       const CellIndex    c    = discretization.visited_cells()[v];
       CellValues<double> cell = {};
       cell.beta               = MiniPair::bubble(discretization, rhs, c);
-      sums_->eliminations()[v].condense(cell);
+      cell_tangents_->eliminations()[v].condense(cell);
       MiniPair::add(discretization, cell, c, result);
     }
     return result;
@@ -224,7 +224,7 @@ namespace retroforge
       const CellIndex          c = discretization.visited_cells()[v];
       const CellValues<double> w = MiniPair::on_cell(discretization, solution, c);
       MiniPair::bubble(discretization, solution, c) =
-        sums_->eliminations()[v].recover_bubble(MiniPair::bubble(discretization, rhs, c), w.V, w.P);
+        cell_tangents_->eliminations()[v].recover_bubble(MiniPair::bubble(discretization, rhs, c), w.V, w.P);
     }
   }
 

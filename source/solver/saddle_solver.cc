@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/enum_setting.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/setting_tags.h>
 #include <retroforge/core/text.h>
@@ -8,6 +9,7 @@
 #include <retroforge/solver/saddle_solver.h>
 
 #include <deal.II/lac/solver_gmres.h>
+#include <deal.II/lac/vector_memory.h>
 
 namespace retroforge
 {
@@ -18,6 +20,13 @@ namespace retroforge
     /// A preconditioner is made anew when a solve with it takes `patience` times the iterations that it took
     /// when it was new, and so many more; and for the next solve from `aged` times on.
     constexpr double patience = 2.5, spare_iterations = 10., aged = 1.7;
+
+    using Method = LinearSolverParameters::Method;
+
+    const EnumWords<Method> method_words = {{"auto", Method::automatic},
+                                            {"ilu", Method::ilu},
+                                            {"multigrid", Method::multigrid},
+                                            {"direct", Method::direct}};
 
     /// A function of two vectors, as deal.II's solvers call it.
     template <typename F>
@@ -34,12 +43,13 @@ namespace retroforge
   void LinearSolverParameters::add_parameters(ParameterHandler &prm)
   {
     prm.enter_subsection("Linear solver");
-    prm.add_parameter(
+    add_enum(
+      prm,
       "method",
       method,
+      method_words,
       "auto takes `multigrid` on large meshes and for quadratic velocities, else `ilu`, and falls back to "
-      "`direct` when they fail. Units: none.",
-      Patterns::Selection("auto|ilu|multigrid|direct"));
+      "`direct` when they fail. Units: none.");
     prm.add_parameter(
       "multigrid from",
       multigrid_from,
@@ -68,7 +78,7 @@ namespace retroforge
   {
     const Transposition transposition = simplest(asked);
     x                                 = 0.;
-    if (parameters_.method != "direct")
+    if (parameters_.method != Method::direct)
       return solve_iteratively(b, tolerance, guesses, transposition, x);
     solve_directly(b, transposition, x);
     return 0;
@@ -81,7 +91,7 @@ namespace retroforge
                                                    la::BlockVector             &x)
   {
     const Transposition transposition = simplest(asked);
-    if (parameters_.method == "direct")
+    if (parameters_.method == Method::direct)
       return solve(b, tolerance, guesses, transposition, x);
     la::BlockVector       first(x), nothing(b);
     const la::BlockVector rest = take_penalised(b, transposition, first);
@@ -96,7 +106,7 @@ namespace retroforge
 
   double SaddleSolver::norm_beside_penalties(const la::BlockVector &b, const Transposition asked) const
   {
-    if (parameters_.method == "direct")
+    if (parameters_.method == Method::direct)
       return b.l2_norm();
     la::BlockVector x(b);
     return take_penalised(b, simplest(asked), x).l2_norm();
@@ -175,17 +185,21 @@ namespace retroforge
 
   void SaddleSolver::make_preconditioner()
   {
-    const auto timing    = timings_.scope("preconditioner");
-    const bool large     = system_.P || system_.A->pattern().rows().n >= parameters_.multigrid_from;
-    const bool multigrid = parameters_.method == "multigrid" || (parameters_.method == "auto" && large);
-    preconditioner_      = std::make_unique<Preconditioner>(*A_,
+    const auto timing = timings_.scope("preconditioner");
+    const bool large  = system_.P || system_.A->pattern().rows().n >= parameters_.multigrid_from;
+    const bool multigrid =
+      parameters_.method == Method::multigrid || (parameters_.method == Method::automatic && large);
+    // The vectors of the last solve's Krylov space lie in deal.II's pool. While it is made, a preconditioner
+    // needs more room than afterwards: theirs.
+    GrowingVectorMemory<la::BlockVector>::release_unused_memory();
+    preconditioner_ = std::make_unique<Preconditioner>(*A_,
                                                        system_.matrix.block(0, 1),
                                                        system_.matrix.block(1, 0),
                                                        system_.schur,
                                                        multigrid,
                                                        system_.translations,
                                                        system_.P ? &system_.interpolation : nullptr);
-    first_rate_          = 0.;
+    first_rate_     = 0.;
   }
 
   void SaddleSolver::polish_penalised(const la::BlockVector &b,
@@ -255,10 +269,10 @@ namespace retroforge
           break;
       }
     }
-    if (parameters_.method != "auto")
+    if (parameters_.method != Method::automatic)
       throw Error("Linear solver/method",
-                  "'" + parameters_.method + "' did not reach " + as_text(tolerance) + " in " +
-                    std::to_string(parameters_.max_iterations) + " iterations",
+                  "'" + word_of(parameters_.method, method_words) + "' did not reach " + as_text(tolerance) +
+                    " in " + std::to_string(parameters_.max_iterations) + " iterations",
                   "the linear system must be solved",
                   "use 'auto', which falls back to the direct solver, or check that the billet cannot slide "
                   "or spin freely");

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <deal.II/base/mpi.h>
-
 #include <retroforge/discretization/vertex_motion.h>
 #include <retroforge/solver/stage_motion.h>
 
@@ -10,7 +8,7 @@ namespace retroforge
   namespace
   {
     template <typename Number>
-    std::vector<Number> freedom(const Stage<Number> &stage)
+    std::vector<Number> freedom(const Equilibrium<Number> &stage)
     {
       std::vector<Number> c(stage.scene.mesh.n_nodes(), Number(1.));
       for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
@@ -20,7 +18,8 @@ namespace retroforge
     }
 
     /// Adds to the ramps' derivatives. A node may be held by several dies.
-    void reverse_freedom(const Stage<double> &stage, const std::vector<double> &c_bar, ContactSetBar &bar)
+    void
+    reverse_freedom(const Equilibrium<double> &stage, const std::vector<double> &c_bar, ContactSetBar &bar)
     {
       const ContactSet<double>              &contact = stage.contact;
       std::vector<std::vector<unsigned int>> pairs(c_bar.size());
@@ -39,7 +38,7 @@ namespace retroforge
   } // namespace
 
   template <typename Number>
-  NodalVectors<Number> motion(const Stage<Number> &stage, const Field<Number> &W)
+  NodalVectors<Number> motion(const Equilibrium<Number> &stage, const Field<Number> &W)
   {
     Assert(W.belongs_to(stage.scene.discretization),
            dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
@@ -52,22 +51,22 @@ namespace retroforge
     return vertex_velocities<Number>({scene.mesh, scene.topology, *discretization.middles(), stage.X, V, c});
   }
 
-  void reverse_motion(const Stage<double>        &stage,
-                      const Field<double>        &W,
-                      const NodalVectors<double> &motion_bar,
-                      StageBar                   &bar)
+  void reverse_motion(const Equilibrium<double>     &stage,
+                      const Field<double>           &W,
+                      const NodalVectors<double>    &motion_bar,
+                      Field<double>                 &W_bar,
+                      RankSum<NodalVectors<double>> &X_bar,
+                      RankSum<ContactSetBar>        &contact_bar)
   {
-    Assert(W.belongs_to(stage.scene.discretization) && bar.W.belongs_to(stage.scene.discretization),
+    Assert(W.belongs_to(stage.scene.discretization) && W_bar.belongs_to(stage.scene.discretization),
            dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
     AssertDimension(motion_bar.size(), stage.X.size());
-    AssertDimension(bar.X.size(), stage.X.size());
-    AssertDimension(bar.contact.ramp.size(), stage.contact.pairs.size());
     const Scene &scene          = stage.scene;
     const auto  &discretization = scene.discretization;
     const auto   add_to_W       = [&](const NodalVectors<double> &V_bar) {
-      for (unsigned int place = 0; place < bar.W.V.size(); ++place)
-        if (const NodeIndex k = bar.W.V.numbering()->node_at(place); k < V_bar.size())
-          bar.W.V.at_place(place) += V_bar[k];
+      for (unsigned int place = 0; place < W_bar.V.size(); ++place)
+        if (const NodeIndex k = W_bar.V.numbering()->node_at(place); k < V_bar.size())
+          W_bar.V.at_place(place) += V_bar[k];
     };
     if (!discretization.middles())
       return add_to_W(motion_bar);
@@ -79,13 +78,15 @@ namespace retroforge
     reverse_vertex_velocities(
       {scene.mesh, scene.topology, *discretization.middles(), stage.X, V, c}, motion_bar, motion_input_bar);
     add_to_W(motion_input_bar.V);
-    if (dealii::Utilities::MPI::this_mpi_process(discretization.comm()) > 0)
-      return;
-    for (std::size_t k = 0; k < stage.X.size(); ++k)
-      bar.X[k] += motion_input_bar.X[k];
-    reverse_freedom(stage, motion_input_bar.freedom, bar.contact);
+    X_bar.add_once([&](NodalVectors<double> &part) {
+      AssertDimension(part.size(), stage.X.size());
+      for (std::size_t k = 0; k < part.size(); ++k)
+        part[k] += motion_input_bar.X[k];
+    });
+    contact_bar.add_once(
+      [&](ContactSetBar &part) { reverse_freedom(stage, motion_input_bar.freedom, part); });
   }
 
-  template NodalVectors<double> motion(const Stage<double> &, const Field<double> &);
-  template NodalVectors<Dual>   motion(const Stage<Dual> &, const Field<Dual> &);
+  template NodalVectors<double> motion(const Equilibrium<double> &, const Field<double> &);
+  template NodalVectors<Dual>   motion(const Equilibrium<Dual> &, const Field<Dual> &);
 } // namespace retroforge

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/discretization/error_indicator.h>
-#include <retroforge/discretization/strain_history.h>
 #include <retroforge/linear_algebra/direct_solver.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/self_crossing.h>
+#include <retroforge/steps/change_of_mesh.h>
 #include <retroforge/time/forging.h>
-#include <retroforge/transfer/cell_transfer.h>
 
 namespace retroforge
 {
@@ -15,38 +14,38 @@ namespace retroforge
 
   Forging::Forging(const ForgingModel    &model,
                    const PressParameters &press,
+                   const StrokeStep      &end,
                    const Remesher        &remesher,
                    Timings               &timings)
-      : model_(model), press_(press), remesher_(remesher), timings_(timings), limits_(model, press, remesher)
+      : model_(model), end_(end), remesher_(remesher), timings_(timings), limits_(model, press, remesher)
   {
   }
 
-  ForgingState Forging::start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0) const
+  ForgingState Forging::start(std::shared_ptr<MeshEpoch> epoch, const NodalVectors<double> &X_0)
   {
-    Assert(leg != nullptr, dealii::ExcMessage("a run starts on a mesh"));
-    AssertDimension(X_0.size(), leg->scene.mesh.n_nodes());
+    Assert(epoch != nullptr, dealii::ExcMessage("a run starts on a mesh"));
+    AssertDimension(X_0.size(), epoch->scene.mesh.n_nodes());
     ForgingState state;
-    state.X      = X_0;
-    state.volume = volume(leg->scene.mesh.cells, X_0);
-    state.next.W = Field<double>(leg->scene.discretization);
-    state.strain = std::vector<double>(leg->scene.mesh.n_cells(), 0.);
-    state.leg    = std::move(leg);
+    state.workpiece = initial_state<3>(X_0, epoch->scene.mesh.n_cells());
+    state.volume    = volume(epoch->scene.mesh.cells, X_0);
+    state.next.W    = Field<double>(epoch->scene.discretization);
+    state.epoch     = std::move(epoch);
     return state;
   }
 
-  Refusal Forging::attempt(const Process<double> &process,
-                           const ForgingState    &state,
-                           Guess                 &guess,
-                           IncrementRecord       &record,
-                           SolvedIncrement       &solved) const
+  std::optional<StepRejection> Forging::attempt(const Process<double> &process,
+                                                const ForgingState    &state,
+                                                InitialGuess          &guess,
+                                                IncrementRecord       &record,
+                                                SolvedIncrement       &solved) const
   {
     try
     {
-      solved = state.leg->increment.forward(process, state.X, state.strain, false, guess, record);
+      solved = state.epoch->increment.mechanics.forward(process, state.workpiece, false, guess, record);
     }
     catch (const NoEquilibrium &failure)
     {
-      return {failure.what()};
+      return StepRejection{failure.what()};
     }
     catch (const NoLinearSolution &)
     {
@@ -54,63 +53,65 @@ namespace retroforge
     }
     guess.W.V.take(record.solves.front().V);
     guess.W.P.take(record.solves.front().P);
-    guess.known       = Start::near;
+    guess.origin      = Origin::previous;
     guess.ahead       = 0.;
     const auto timing = timings_.scope("checks");
-    return limits_.refusal(process, *state.leg, record, state.X, solved.X);
+    return limits_.rejection(process, *state.epoch, record, state.workpiece.X, solved.X);
   }
 
   namespace
   {
     bool crosses(const ForgingState &state)
     {
-      return !self_crossings(state.leg->scene.mesh, state.X).empty();
+      return !self_crossings(state.epoch->scene.mesh, state.workpiece.X).empty();
     }
   } // namespace
 
   void Forging::change_mesh(const RemeshRecord &remesh, ForgingState &state) const
   {
-    AssertDimension(remesh.transfer.n_old, state.leg->scene.mesh.n_nodes());
-    AssertDimension(remesh.transfer.n_new(), remesh.mesh.n_nodes());
-    state.repaired += remesh.repaired;
-    const TransferOperator    &J           = remesh.transfer;
-    const std::shared_ptr<Leg> before      = state.leg; // fields know its nodes
-    const auto                 transferred = [&](const Field<double> &W) {
+    state.removed_volume += remesh.removed_volume;
+    const TransferOperator          &J           = remesh.transfer;
+    const std::shared_ptr<MeshEpoch> before      = state.epoch; // fields know its nodes
+    const auto                       transferred = [&](const Field<double> &W) {
       if (W.empty())
         return W;
       const auto          &old = before->scene.discretization;
       NodalVectors<double> V   = W.V.complete(*old.condensed_nodes());
       V.resize(old.n_vertices());
       return interpolated(
-        state.leg->scene.discretization, J.apply(V), J.apply(W.P.complete(*old.pressure_nodes())));
+        state.epoch->scene.discretization, J.apply(V), J.apply(W.P.complete(*old.pressure_nodes())));
     };
-    auto strain = transfer_cells(state.leg->scene.mesh, state.X, J, remesh.mesh, state.strain);
-    state.strains_before.push_back(std::exchange(state.strain, std::move(strain)));
-    state.X         = J.positions(state.X);
-    state.leg       = std::make_shared<Leg>(remesh.mesh, model_, timings_);
-    state.next.W    = transferred(state.next.W);
-    state.next.rate = transferred(state.next.rate);
+    auto workpiece = retroforge::change_mesh(before->scene.mesh, remesh, state.workpiece);
+    state.left_behind.push_back(without_positions(std::exchange(state.workpiece, std::move(workpiece))));
+    state.epoch  = std::make_shared<MeshEpoch>(remesh.mesh, model_, timings_);
+    state.next.W = transferred(state.next.W);
+    if (state.next.rate)
+      state.next.rate = transferred(*state.next.rate);
     // Fields on the new mesh are shown, and measured, where an increment fails that began with it.
-    const auto &discretization = state.leg->scene.discretization;
-    state.solution             = {state.next.W.V.complete(*discretization.condensed_nodes()),
+    const auto &discretization = state.epoch->scene.discretization;
+    state.solution             = LastSolution{state.next.W.V.complete(*discretization.condensed_nodes()),
                                   state.next.W.P.complete(*discretization.pressure_nodes())};
-    state.next.known           = Start::far;
+    state.next.origin          = Origin::transferred;
     state.remeshed.push_back(state.increments);
   }
 
   std::optional<OptimalSizes> Forging::error_sizes(const Process<double> &process,
                                                    const ForgingState    &state) const
   {
-    if (!remesher_.follows_errors() || state.increments == 0)
+    if (!remesher_.follows_errors() || !state.solution || state.increments == 0)
       return {};
     const auto    timing = timings_.scope("error sizes");
-    const Scene  &scene  = state.leg->scene;
+    const Scene  &scene  = state.epoch->scene;
     Field<double> W(scene.discretization);
-    W.V.take(state.solution.V);
-    W.P.take(state.solution.P);
+    W.V.take(state.solution->V);
+    W.P.take(state.solution->P);
     return optimal_sizes(scene.mesh,
-                         state.X,
-                         indicated_errors(scene.discretization, state.X, W, process.material, state.strain),
+                         state.workpiece.X,
+                         indicated_errors(scene.discretization,
+                                          state.workpiece.X,
+                                          W,
+                                          process.material,
+                                          point_states(scene.mesh, state.workpiece)),
                          velocity_degree(scene.discretization),
                          remesher_.error_size_bounds());
   }
@@ -118,42 +119,35 @@ namespace retroforge
   void Forging::remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const
   {
     const auto   timing     = timings_.scope("remeshing");
-    const double repairable = remesher_.largest_repair() * state.volume - state.repaired;
-    record.remesh           = remesher_.remesh(state.leg->scene.mesh,
-                                     state.X,
-                                     process.at_stroke(state.stroke).dies,
+    const double repairable = remesher_.largest_repair() * state.volume - state.removed_volume;
+    record.remesh           = remesher_.remesh(state.epoch->scene.mesh,
+                                     state.workpiece.X,
+                                     process.at_stroke(state.stroke, state.operation).dies,
                                      error_sizes(process, state),
                                      repairable,
                                      timings_);
     change_mesh(*record.remesh, state);
-    state.X = record.remesh->mesh.X; // J X + c to the last bit
-  }
-
-  void Forging::add_strain(const SolvedIncrement &solved, ForgingState &state) const
-  {
-    const auto   timing = timings_.scope("checks");
-    const Scene &scene  = state.leg->scene;
-    for (const auto &stage : solved.stages)
-      state.strain = accumulate_strain(
-        scene.discretization, stage->X, stage->W, stage->weight * solved.start->dt, state.strain);
-    scene.discretization.cells().complete(state.strain.data(), 1);
+    state.workpiece.X = record.remesh->mesh.X; // J X + c to the last bit
   }
 
   void Forging::finish_increment(const Process<double> &process,
                                  const IncrementRecord &record,
                                  const SolvedIncrement &solved,
                                  ForgingState          &state,
-                                 const Watch           &watch) const
+                                 const Observer        &observer) const
   {
-    const NodalVectors<double> X_before = std::exchange(state.X, solved.X);
-    if (process.material.depends_on_state())
-      state.strains.push_back(state.strain);
-    add_strain(solved, state);
-    state.next                 = state.leg->increment.guess_after(solved, record);
-    const auto &discretization = state.leg->scene.discretization;
-    state.solution             = {solved.last().W.V.complete(*discretization.condensed_nodes()),
+    const NodalVectors<double> X_before = state.workpiece.X;
+    if (Increment::reads_history(process))
+      state.starts.push_back(without_positions(state.workpiece));
+    {
+      const auto timing = timings_.scope("checks");
+      state.epoch->increment.advance(solved, state.workpiece);
+    }
+    state.next                 = state.epoch->increment.mechanics.guess_after(solved, record);
+    const auto &discretization = state.epoch->scene.discretization;
+    state.solution             = LastSolution{solved.last().W.V.complete(*discretization.condensed_nodes()),
                                   solved.last().W.P.complete(*discretization.pressure_nodes())};
-    state.slip                 = limits_.slip(process, record, X_before, state.X) / record.step;
+    state.slip                 = limits_.slip(process, record, X_before, state.workpiece.X) / record.step;
     state.stroke += record.step;
     state.energy.deformation += record.deformation_energy;
     state.energy.friction += record.friction_energy;
@@ -169,28 +163,45 @@ namespace retroforge
     while (state.depth > 0 && limits_.allow(state.slip * whole / (1 << (state.depth - 1))) &&
            std::abs(done * (1 << (state.depth - 1)) - std::round(done * (1 << (state.depth - 1)))) < 1e-9)
       --state.depth;
-    if (watch)
-      watch({record, X_before, solved, state, process.time(state.stroke)});
+    if (observer)
+      observer({record, X_before, solved, state, process.whole_time(state.stroke, state.operation)});
   }
 
-  void Forging::change_numerics(const std::string &parameters, ForgingState &state)
+  void Forging::change_numerics(std::optional<std::string> parameters, ForgingState &state)
   {
     state.depth               = 0;
     state.numerics_stroke     = state.stroke;
     state.numerics_increments = state.increments;
-    state.parameters          = parameters;
+    state.parameters          = std::move(parameters);
+  }
+
+  void Forging::enter(const unsigned int operation, ForgingState &state) const
+  {
+    if (operation == state.operation)
+      return;
+    state.operation = operation;
+    state.stroke    = 0.;
+    change_numerics(state.parameters, state);
+    state.next   = {};
+    state.next.W = Field<double>(state.epoch->scene.discretization);
+  }
+
+  double Forging::last_stroke(const Process<double> &process, const ForgingState &state) const
+  {
+    AssertIndexRange(state.operation, process.operations.size());
+    return state.operation == end_.operation ? end_.stroke : process.operations[state.operation].stroke;
   }
 
   bool Forging::is_left(const ForgingState &state) const
   {
-    return state.stroke < press_.stroke - 1e-9 * whole();
+    return state.operation < end_.operation || state.stroke < end_.stroke - 1e-9 * nominal_step();
   }
 
-  void Forging::run(const Process<double> &process, ForgingState &state, const Watch &watch) const
+  void Forging::run(const Process<double> &process, ForgingState &state, const Observer &observer) const
   {
     std::vector<bool> frozen;
     if (remesher_.enabled())
-      frozen = remesher_.frozen(state.leg->scene.mesh);
+      frozen = remesher_.frozen(state.epoch->scene.mesh);
     const auto since_remeshing = [&]() {
       return state.increments - (state.remeshed.empty() ? 0 : state.remeshed.back());
     };
@@ -201,60 +212,69 @@ namespace retroforge
       limits_.check_progress(state);
     while (is_left(state))
     {
+      if (!(state.stroke < last_stroke(process, state) - 1e-9 * nominal_step()))
+      {
+        enter(state.operation + 1, state);
+        continue; // other numerics may begin here
+      }
       IncrementRecord record;
       const auto      renew = [&]() {
         remesh(process, state, record);
-        frozen = remesher_.frozen(state.leg->scene.mesh);
+        frozen = remesher_.frozen(state.epoch->scene.mesh);
       };
       const auto ask_for_other_sizes = [&](const std::optional<OptimalSizes> &errors) {
         return errors && Remesher::worthwhile(*errors, since_remeshing(), state.increments == 1);
       };
       const bool crossed = remesher_.enabled() && crosses(state);
-      if (crossed && state.repaired >= remesher_.largest_repair() * state.volume)
+      if (crossed && state.removed_volume >= remesher_.largest_repair() * state.volume)
         limits_.check_fold(state);
-      if (crossed || (remesher_.enabled() && (remesher_.due(state.leg->scene.mesh,
-                                                            state.X,
-                                                            process.at_stroke(state.stroke).dies,
-                                                            frozen,
-                                                            since_remeshing(),
-                                                            state.increments == 0) ||
-                                              ask_for_other_sizes(error_sizes(process, state)))))
+      if (crossed ||
+          (remesher_.enabled() && (remesher_.due(state.epoch->scene.mesh,
+                                                 state.workpiece.X,
+                                                 process.at_stroke(state.stroke, state.operation).dies,
+                                                 frozen,
+                                                 since_remeshing(),
+                                                 state.increments == 0) ||
+                                   ask_for_other_sizes(error_sizes(process, state)))))
         renew();
       if (crossed)
         limits_.check_fold(state);
-      record.stroke     = state.stroke;
-      record.step       = std::min(whole() / (1 << state.depth), press_.stroke - state.stroke);
-      record.parameters = std::exchange(state.parameters, "");
+      record.operation = state.operation;
+      record.stroke    = state.stroke;
+      record.step = std::min(nominal_step() / (1 << state.depth), last_stroke(process, state) - state.stroke);
+      record.parameters = std::exchange(state.parameters, std::nullopt);
       SolvedIncrement solved;
-      Guess           guess   = state.next;
+      InitialGuess    guess   = state.next;
       bool            is_full = false;
       for (;;)
       {
-        Refusal refusal = attempt(process, state, guess, record, solved);
-        if (refusal.reason.empty())
+        auto rejection = attempt(process, state, guess, record, solved);
+        if (!rejection)
           break;
-        is_full = refusal.is_full |= is_full;
-        if (refusal.of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0)
+        is_full = rejection->is_full |= is_full;
+        if (rejection->of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0)
         {
           renew();
           guess = state.next;
           continue;
         }
-        record.step = std::ldexp(record.step, -static_cast<int>(refusal.halvings));
-        record.cuts += refusal.halvings;
+        record.step = std::ldexp(record.step, -static_cast<int>(rejection->halvings));
+        record.cuts += rejection->halvings;
         if (limits_.too_short(record.step))
         {
           // A fold that is closing is the true reason.
           limits_.check_fold(state);
-          limits_.stop(process, state, record, refusal);
+          limits_.stop(process, state, record, *rejection);
         }
       }
-      finish_increment(process, record, solved, state, watch);
+      finish_increment(process, record, solved, state, observer);
       limits_.check_progress(state);
       // With remeshing, the next increment begins with a repair.
       const bool last = !is_left(state);
       if (remesher_.enabled()
-            ? last && !remesher_.repairs(state.leg->scene.mesh, state.X, process.at_stroke(state.stroke).dies)
+            ? last && !remesher_.repairs(state.epoch->scene.mesh,
+                                         state.workpiece.X,
+                                         process.at_stroke(state.stroke, state.operation).dies)
             : last || state.increments % fold_interval == 0)
         limits_.check_fold(state);
     }
@@ -262,41 +282,46 @@ namespace retroforge
 
   void Forging::restore(const Process<double> &process,
                         const unsigned int     n,
-                        const Source          &source,
+                        const RecordAccess    &access,
                         ForgingState          &state,
-                        const Watch           &watch) const
+                        const Observer        &observer) const
   {
     for (unsigned int i = 0; i < n; ++i)
     {
-      const IncrementRecord &record = source(i);
-      if (!record.parameters.empty())
-        change_numerics("", state);
+      const IncrementRecord &record = access(i);
+      enter(record.operation, state);
+      if (record.parameters)
+        change_numerics({}, state);
       if (record.remesh)
       {
         change_mesh(*record.remesh, state);
-        state.X = record.remesh->mesh.X;
+        state.workpiece.X = record.remesh->mesh.X;
       }
-      finish_increment(
-        process, record, state.leg->increment.recorded(process, state.X, state.strain, record), state, watch);
+      finish_increment(process,
+                       record,
+                       state.epoch->increment.mechanics.recorded(process, state.workpiece, record),
+                       state,
+                       observer);
     }
   }
 
   void Forging::replay(const Process<double> &process,
                        const unsigned int     n,
-                       const Source          &source,
+                       const RecordAccess    &access,
                        ForgingState          &state,
-                       const Watch           &watch) const
+                       const Observer        &observer) const
   {
     for (unsigned int i = 0; i < n; ++i)
     {
-      IncrementRecord record = source(i);
+      IncrementRecord record = access(i);
       record.newton = record.krylov = record.linear_solves = 0;
+      enter(record.operation, state);
       if (record.remesh)
         change_mesh(*record.remesh, state);
-      const Guess           guess = state.leg->increment.recorded_guess(record);
+      const InitialGuess    guess = state.epoch->increment.mechanics.recorded_guess(record);
       const SolvedIncrement solved =
-        state.leg->increment.forward(process, state.X, state.strain, true, guess, record);
-      finish_increment(process, record, solved, state, watch);
+        state.epoch->increment.mechanics.forward(process, state.workpiece, true, guess, record);
+      finish_increment(process, record, solved, state, observer);
     }
   }
 } // namespace retroforge

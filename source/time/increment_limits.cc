@@ -70,21 +70,22 @@ namespace retroforge
     }
   } // namespace
 
-  Refusal IncrementLimits::refusal(const Process<double>      &process,
-                                   const Leg                  &leg,
-                                   const IncrementRecord      &record,
-                                   const NodalVectors<double> &X,
-                                   const NodalVectors<double> &X_next) const
+  std::optional<StepRejection> IncrementLimits::rejection(const Process<double>      &process,
+                                                          const MeshEpoch            &epoch,
+                                                          const IncrementRecord      &record,
+                                                          const NodalVectors<double> &X,
+                                                          const NodalVectors<double> &X_next) const
   {
-    if (is_full(process, leg.scene, record, X_next))
-      return {"the cavity is full", 1, false, true};
-    if (const std::string reason = too_much(leg.scene, X, X_next); !reason.empty())
-      return {reason};
+    if (is_full(process, epoch.scene, record, X_next))
+      return StepRejection{"the cavity is full", 1, false, true};
+    if (const auto reason = violated_limit(epoch.scene, X, X_next))
+      return StepRejection{*reason};
     const Slip slip = largest_slip(process, record, X, X_next);
     if (allow(slip.of_edge))
       return {};
     // Velocities hardly depend on the increment's length: what it must be is known at once.
-    return {"a node would slip along " + slip.where, halvings(slip.of_edge / press_.largest_slip), false};
+    return StepRejection{
+      "a node would slip along " + slip.where, halvings(slip.of_edge / press_.largest_slip), false};
   }
 
   bool IncrementLimits::is_full(const Process<double>      &process,
@@ -96,7 +97,7 @@ namespace retroforge
     for (const ContactPair &pair : record.pairs)
       if (pair.touching && pair.point.is_node())
         touches[pair.point.nodes[0]] = true;
-    const auto dies    = process.at_stroke(record.stroke + record.step).dies;
+    const auto dies    = process.at_stroke(record.stroke + record.step, record.operation).dies;
     double     surface = 0., touching = 0., inside = 0.;
     const auto is_touched = [&](const BoundaryFace &face) {
       return touches[face.nodes[0]] && touches[face.nodes[1]] && touches[face.nodes[2]];
@@ -118,23 +119,24 @@ namespace retroforge
         {
           double depth = 0.;
           for (unsigned int d = 0; d < scene.dies.size(); ++d)
-            depth = std::max(depth, scene.dies[d].depth_of(X[k], dies[d].displacement, within));
+            if (dies[d].in_press != 0)
+              depth = std::max(depth, scene.dies[d].depth_of(X[k], dies[d].displacement, within));
           inside += area / 3. * depth;
         }
       }
     return inside > inside_when_full * volume(scene.mesh.cells, X);
   }
 
-  Refusal IncrementLimits::singular(const ForgingState &state)
+  StepRejection IncrementLimits::singular(const ForgingState &state)
   {
     return {"the linear systems of an increment have no solution; the flattest element is" +
-            at(flattest_cell(state.leg->scene.mesh, state.X))};
+            at(flattest_cell(state.epoch->scene.mesh, state.workpiece.X))};
   }
 
-  std::string IncrementLimits::too_much(const TetMesh              &mesh,
-                                        const CellIndex             c,
-                                        const NodalVectors<double> &X,
-                                        const NodalVectors<double> &X_next) const
+  std::optional<std::string> IncrementLimits::violated_limit(const TetMesh              &mesh,
+                                                             const CellIndex             c,
+                                                             const NodalVectors<double> &X,
+                                                             const NodalVectors<double> &X_next) const
   {
     const auto   before = corners(mesh.cells[c], X), after = corners(mesh.cells[c], X_next);
     const double volume = cell_geometry(after).volume;
@@ -145,20 +147,24 @@ namespace retroforge
         if (((after[a] - before[a]) - (after[b] - before[b])).norm() >
             press_.largest_move * (before[a] - before[b]).norm())
           return "an edge would be turned or stretched by more than Press/largest move" + at(before[a]);
-    return "";
+    return {};
   }
 
-  std::string IncrementLimits::too_much(const Scene                &scene,
-                                        const NodalVectors<double> &X,
-                                        const NodalVectors<double> &X_next) const
+  std::optional<std::string> IncrementLimits::violated_limit(const Scene                &scene,
+                                                             const NodalVectors<double> &X,
+                                                             const NodalVectors<double> &X_next) const
   {
     const auto &owned     = scene.discretization.cells().owned();
-    const auto  is_broken = [&](const CellIndex c) { return !too_much(scene.mesh, c, X, X_next).empty(); };
-    const auto  found     = std::find_if(owned.begin(), owned.end(), is_broken);
+    const auto  is_broken = [&](const CellIndex c) {
+      return violated_limit(scene.mesh, c, X, X_next).has_value();
+    };
+    const auto found = std::find_if(owned.begin(), owned.end(), is_broken);
     // All ranks tell of the same cell.
     const CellIndex first =
       dealii::Utilities::MPI::min(found == owned.end() ? invalid_index : *found, scene.discretization.comm());
-    return first == invalid_index ? "" : too_much(scene.mesh, first, X, X_next);
+    if (first == invalid_index)
+      return {};
+    return violated_limit(scene.mesh, first, X, X_next);
   }
 
   IncrementLimits::Slip IncrementLimits::largest_slip(const Process<double>      &process,
@@ -168,9 +174,9 @@ namespace retroforge
   {
     if (!remesher_.enabled())
       return {};
-    const auto      dies = process.at_stroke(record.stroke).dies;
+    const auto      dies = process.over(place(record)).dies;
     const SizeField size = remesher_.size_field(dies);
-    const double    time = process.time(record.step);
+    const double    time = process.duration(place(record));
     Slip            largest;
     for (const ContactPair &pair : record.pairs)
       if (pair.point.is_node() && model_.dies[pair.die].surface())
@@ -212,19 +218,20 @@ namespace retroforge
                                    const double           stroke,
                                    const std::string     &what) const
   {
-    const Scene             &scene   = state.leg->scene;
-    const Physics<double>    physics = process.at_stroke(stroke);
+    const Scene             &scene   = state.epoch->scene;
+    const Physics<double>    physics = process.at_stroke(stroke, state.operation);
     std::vector<std::string> touching;
     for (unsigned int d = 0; d < scene.dies.size(); ++d)
-      if (touches(scene, state.X, scene.dies[d], physics.dies[d].displacement))
+      if (touches(scene, state.workpiece.X, scene.dies[d], physics.dies[d].displacement))
         touching.push_back(scene.dies[d].name);
-    const Vec3 &way    = process.dies[process.leading_die].velocity;
+    const Vec3 &way    = process.leading_velocity(state.operation);
     const auto  planes = symmetry_planes(scene.mesh);
     const bool  is_held =
       touching.size() > 1 || std::any_of(planes.begin(), planes.end(), [&](const Plane &plane) {
         return std::abs(plane.normal * way) > 1e-6 * way.norm();
       });
-    const auto motions = free_rigid_motions(scene, physics, state.X, model_.step.contact.ramp.width);
+    const auto motions =
+      free_rigid_motions(scene, physics, state.workpiece.X, model_.step.contact.ramp.width);
     if (is_held && motions.empty())
       return;
     throw Error(
@@ -241,13 +248,13 @@ namespace retroforge
   void IncrementLimits::stop(const Process<double> &process,
                              const ForgingState    &state,
                              const IncrementRecord &record,
-                             const Refusal         &refusal) const
+                             const StepRejection   &rejection) const
   {
     std::ostringstream what;
     what.precision(5);
     what << "stops at stroke " << record.stroke << " mm, where even an increment of " << shortest()
-         << " mm is too long: " << refusal.reason;
-    if (refusal.is_full)
+         << " mm is too long: " << rejection.reason;
+    if (rejection.is_full)
       throw_full(record.stroke);
     check_held(process, state, record.stroke, what.str());
     const char *remedy =
@@ -266,8 +273,9 @@ namespace retroforge
 
   void IncrementLimits::check_progress(const ForgingState &state) const
   {
-    const Scene       &scene  = state.leg->scene;
-    const double       change = volume(scene.mesh, state.X, scene.discretization.cells()) / state.volume - 1.;
+    const Scene &scene = state.epoch->scene;
+    const double change =
+      volume(scene.mesh, state.workpiece.X, scene.discretization.cells()) / state.volume - 1.;
     std::ostringstream what;
     what.precision(4);
     if (!(std::abs(change) <= press_.largest_loss))
@@ -294,6 +302,6 @@ namespace retroforge
 
   void IncrementLimits::check_fold(const ForgingState &state)
   {
-    check_boundary_does_not_cross(state.leg->scene.mesh, state.X, "Workpiece");
+    check_boundary_does_not_cross(state.epoch->scene.mesh, state.workpiece.X, "Workpiece");
   }
 } // namespace retroforge

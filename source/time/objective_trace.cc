@@ -5,17 +5,25 @@
 
 namespace retroforge
 {
-  ObjectiveTrace::ObjectiveTrace(const Objectives      &objectives,
-                                 const ForgingModel    &model,
-                                 const Process<double> &process)
-      : objectives_(objectives), model_(model), process_(process), rows_(objectives.size())
+  ObjectiveTrace::ObjectiveTrace(const Objectives           &objectives,
+                                 const Process<double>      &process,
+                                 std::vector<FinalDecisions> decisions)
+      : objectives_(objectives)
+      , process_(process)
+      , recorded_{std::vector<PathRows<double>>(objectives.size()), std::move(decisions)}
   {
+    Assert(recorded_.decisions.empty() || recorded_.decisions.size() == objectives.size(),
+           dealii::ExcMessage("decisions are of each objective"));
   }
 
   template <typename Number>
   PathRow<Number> row_of(const IncrementRecord &record, const Process<Number> &process)
   {
-    return {{}, process.time(record.step), process.time(record.stroke), record.stroke, record.step};
+    return {{},
+            process.duration(place(record)),
+            process.time(record.stroke, record.operation),
+            record.stroke,
+            record.step};
   }
 
   template PathRow<double> row_of(const IncrementRecord &, const Process<double> &);
@@ -52,56 +60,99 @@ namespace retroforge
     for (std::size_t j = 0; j < objectives_.size(); ++j)
       if (const auto &objective = objectives_[j].path)
       {
-        rows_[j].push_back(row_of<double>(event.record, process_));
+        recorded_.rows[j].push_back(row_of<double>(event.record, process_));
         for (const auto &stage : event.solved.stages)
-          add_integrals(*objective, stage->view(), rows_[j].back());
+          add_integrals(*objective, stage->view(), recorded_.rows[j].back());
       }
   }
 
-  std::vector<double>
-  ObjectiveTrace::values(const ForgingState &state, const bool decide, const bool complete) const
+  namespace
   {
-    const auto          dies = process_.at_stroke(state.stroke).dies;
-    std::vector<double> values;
+    using Evaluation = ObjectiveTrace::Evaluation;
+
+    FinalView<double> view_of(const FinalObjective                &objective,
+                              const ForgingState                  &state,
+                              const std::vector<DieState<double>> &dies)
+    {
+      return final_view(objective, state.epoch->scene, state.workpiece.X, state.workpiece.strain, dies);
+    }
+
+    Evaluation evaluated(const PathObjective &objective, const PathRows<double> &rows)
+    {
+      return {objective.value(rows), objective.parts(rows), objective.details(rows)};
+    }
+
+    Evaluation
+    evaluated(const FinalObjective &objective, const FinalView<double> &view, const FinalDecisions &decisions)
+    {
+      const auto b = objective.integrals(view, decisions).complete();
+      return {objective.value(b, decisions), objective.parts(b), objective.details(b, decisions)};
+    }
+
+    const double undefined = std::numeric_limits<double>::quiet_NaN();
+
+    Evaluation evaluated_so_far(const PathObjective &objective, const PathRows<double> &rows)
+    try
+    {
+      return evaluated(objective, rows);
+    }
+    catch (const Error &)
+    {
+      return {undefined, objective.parts(rows), objective.details(rows)};
+    }
+
+    Evaluation evaluated_so_far(const FinalObjective &objective, const FinalView<double> &view)
+    try
+    {
+      return evaluated(objective, view, objective.decide(view));
+    }
+    catch (const Error &)
+    {
+      return {undefined, {}, {}};
+    }
+  } // namespace
+
+  void ObjectiveTrace::decide(const ForgingState &state)
+  {
+    const auto dies = process_.at_stroke(state.stroke, state.operation).dies;
+    recorded_.decisions.assign(objectives_.size(), {});
     for (std::size_t j = 0; j < objectives_.size(); ++j)
-      try
-      {
-        if (objectives_[j].path)
-          values.push_back(objectives_[j].path->value(rows_[j]));
-        else
-        {
-          const auto view = final_view(*objectives_[j].at_end, state.leg->scene, state.X, state.strain, dies);
-          if (decide)
-            objectives_[j].at_end->decide(view);
-          values.push_back(objectives_[j].at_end->value(
-            sum_over_ranks(objectives_[j].at_end->integrals(view), model_.comm)));
-        }
-      }
-      catch (const Error &)
-      {
-        if (complete)
-          throw;
-        values.push_back(std::numeric_limits<double>::quiet_NaN());
-      }
+      if (const auto &objective = objectives_[j].at_end)
+        recorded_.decisions[j] = objective->decide(view_of(*objective, state, dies));
+  }
+
+  std::vector<Evaluation> ObjectiveTrace::evaluate(const ForgingState &state) const
+  {
+    AssertDimension(recorded_.decisions.size(), objectives_.size());
+    const auto              dies = process_.at_stroke(state.stroke, state.operation).dies;
+    std::vector<Evaluation> evaluations;
+    for (std::size_t j = 0; j < objectives_.size(); ++j)
+      if (const auto &path = objectives_[j].path)
+        evaluations.push_back(evaluated(*path, recorded_.rows[j]));
+      else
+        evaluations.push_back(evaluated(
+          *objectives_[j].at_end, view_of(*objectives_[j].at_end, state, dies), recorded_.decisions[j]));
+    return evaluations;
+  }
+
+  std::vector<double> ObjectiveTrace::values(const ForgingState &state) const
+  {
+    std::vector<double> values;
+    for (const Evaluation &evaluation : evaluate(state))
+      values.push_back(evaluation.value);
     return values;
   }
 
-  std::vector<ObjectiveTrace::Diagnostics> ObjectiveTrace::diagnostics(const ForgingState &state) const
+  std::vector<Evaluation> ObjectiveTrace::evaluate_so_far(const ForgingState &state) const
   {
-    const auto               dies = process_.at_stroke(state.stroke).dies;
-    std::vector<Diagnostics> diagnostics;
-    for (const NamedObjective &objective : objectives_)
-      if (objective.path)
-      {
-        const PathRows<double> &rows = rows_[diagnostics.size()];
-        diagnostics.push_back({objective.path->parts(rows), objective.path->details(rows)});
-      }
+    const auto              dies = process_.at_stroke(state.stroke, state.operation).dies;
+    std::vector<Evaluation> evaluations;
+    for (std::size_t j = 0; j < objectives_.size(); ++j)
+      if (const auto &path = objectives_[j].path)
+        evaluations.push_back(evaluated_so_far(*path, recorded_.rows[j]));
       else
-      {
-        const auto view = final_view(*objective.at_end, state.leg->scene, state.X, state.strain, dies);
-        const auto b    = sum_over_ranks(objective.at_end->integrals(view), model_.comm);
-        diagnostics.push_back({objective.at_end->parts(b), objective.at_end->details(b)});
-      }
-    return diagnostics;
+        evaluations.push_back(
+          evaluated_so_far(*objectives_[j].at_end, view_of(*objectives_[j].at_end, state, dies)));
+    return evaluations;
   }
 } // namespace retroforge

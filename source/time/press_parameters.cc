@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/nearest_name.h>
+#include <retroforge/core/number_checks.h>
 #include <retroforge/core/setting_tags.h>
 #include <retroforge/time/press_parameters.h>
 
@@ -19,6 +20,15 @@ namespace retroforge
     prm.enter_subsection("Press");
     prm.add_parameter(
       "leading die", leading_die, "Die whose path is the stroke; empty: the first that moves. Units: none.");
+    prm.add_parameter(
+      "motion",
+      motion_type,
+      "How the press goes along its stroke: at constant speed, that of the dies; programs that "
+      "use the library may add others. Units: none.");
+    prm.add_parameter("motion numbers",
+                      motion_numbers,
+                      "Numbers that the motion has, in its order; a constant speed has none. Units: those of "
+                      "the motion.");
     prm.add_parameter("stroke", stroke, "Path of the leading die. Units: mm.", Double(1e-300));
     prm.add_parameter("increments",
                       increments,
@@ -56,6 +66,19 @@ namespace retroforge
       Double(0.));
     prm.leave_subsection();
     tag(prm, "Press", SettingRole::numerics);
-    tag(prm, "Press/leading die", SettingRole::scene);
+    for (const char *setting : {"leading die", "motion", "motion numbers"})
+      tag(prm, std::string("Press/") + setting, SettingRole::scene);
+  }
+
+  PressMotion<double> PressParameters::motion() const
+  {
+    PressMotion<double> motion;
+    motion.type    = find_press_motion(motion_type, "Press/motion");
+    motion.numbers = motion_numbers;
+    check_numbers(motion.numbers,
+                  press_motion_type(motion.type).info(),
+                  "Press/motion numbers",
+                  "the motion '" + motion_type + "'");
+    return motion;
   }
 } // namespace retroforge

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <deal.II/base/mpi.h>
 
+#include <retroforge/core/enum_setting.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/setting_tags.h>
 #include <retroforge/geometry/facet_curvature.h>
@@ -22,32 +23,34 @@ namespace retroforge
   {
     using namespace dealii::Patterns;
     prm.enter_subsection("Remeshing");
-    prm.add_parameter(
+    add_enum<When>(
+      prm,
       "when",
       when,
+      {{"never", When::never}, {"quality", When::quality}, {"increments", When::increments}},
       "quality: when an angle between two faces of a cell falls below the trigger angle, or an "
       "increment would invert a cell, or when the surface no longer fits a curved die. increments: that, and "
       "after every so many increments. "
-      "Units: none.",
-      Selection("never|quality|increments"));
+      "Units: none.");
     prm.add_parameter("every", every, "Increments between remeshings. Units: none.", Integer(1));
-    prm.add_parameter("method",
-                      method,
-                      "local changes the mesh only where it is bad, and rebuilds it when cells are inverted; "
-                      "rebuild makes the whole inside anew each time. Units: none.",
-                      Selection("local|rebuild"));
+    add_enum<Method>(prm,
+                     "method",
+                     method,
+                     {{"local", Method::local}, {"rebuild", Method::rebuild}},
+                     "local changes the mesh only where it is bad, and rebuilds it when cells are inverted; "
+                     "rebuild makes the whole inside anew each time. Units: none.");
     prm.add_parameter("element size",
                       element_size,
                       "Wanted length of the edges; 0 for that of the billet. Units: mm.",
                       Double(0.));
-    prm.add_parameter(
-      "sizes",
-      sizes,
-      "dies: edges are shorter near curved dies, as their curvature and sharp edges ask for; "
-      "uniform: the same length everywhere; error: as many elements as a uniform mesh has, "
-      "where by the jumps of the strain rate they lessen the error of the power most, and near "
-      "curved dies as with dies. Units: none.",
-      Selection("uniform|dies|error"));
+    add_enum<Sizes>(prm,
+                    "sizes",
+                    sizes,
+                    {{"uniform", Sizes::uniform}, {"dies", Sizes::dies}, {"error", Sizes::error}},
+                    "dies: edges are shorter near curved dies, as their curvature and sharp edges ask for; "
+                    "uniform: the same length everywhere; error: as many elements as a uniform mesh has, "
+                    "where by the jumps of the strain rate they lessen the error of the power most, and near "
+                    "curved dies as with dies. Units: none.");
     prm.add_parameter(
       "chord error",
       chord_error,
@@ -152,7 +155,7 @@ namespace retroforge
                      MPI_Comm                  comm)
       : parameters_(parameters), element_size_(element_size), dies_(dies), comm_(comm), near_die_(dies.size())
   {
-    if (parameters_.sizes == "uniform")
+    if (parameters_.sizes == RemesherParameters::Sizes::uniform)
       return;
     const double largest = follows_errors() ? error_size_bounds().largest : element_size;
     const double chord_error =
@@ -183,7 +186,7 @@ namespace retroforge
   {
     if (increments == 0)
       return first && too_coarse(mesh, X, states);
-    if (parameters_.when == "increments" && increments >= parameters_.every)
+    if (parameters_.when == RemesherParameters::When::increments && increments >= parameters_.every)
       return true;
     if (needs_remeshing(mesh, X, parameters_.local, frozen))
       return true;
@@ -205,7 +208,7 @@ namespace retroforge
               !size.below(middle, length / coarse))
             continue;
           for (unsigned int d = 0; d < dies_.size(); ++d)
-            if (near_die_[d])
+            if (near_die_[d] && states[d].in_press != 0)
               if (const DieFeature feature = dies_[d].closest(middle, states[d].displacement, 0.5 * length);
                   feature.found())
                 return true;
@@ -222,7 +225,7 @@ namespace retroforge
   {
     double deepest = 0.;
     for (unsigned int d = 0; d < dies_.size(); ++d)
-      if (dies_[d].surface())
+      if (dies_[d].surface() && states[d].in_press != 0)
       {
         const double      touching = 0.1 * parameters_.fit * element_size_;
         std::vector<bool> on_die(mesh.n_nodes(), false);
@@ -261,12 +264,11 @@ namespace retroforge
 
   SizeField Remesher::size_field(const DieStates &states, std::shared_ptr<const ErrorSizes> errors) const
   {
-    return [this, states, errors = std::move(errors)](const Vec3 &x, const SizeQuestion &question) {
+    return [this, states, errors = std::move(errors)](const Vec3 &x, const SizeQuery &query) {
       double size = errors ? (*errors)(x) : element_size_;
-      for (unsigned int d = 0; d < dies_.size() && size >= question.enough; ++d)
-        if (near_die_[d])
-          size =
-            (*near_die_[d])(x - states[d].displacement, {question.enough, std::min(size, question.most)});
+      for (unsigned int d = 0; d < dies_.size() && size >= query.lower; ++d)
+        if (near_die_[d] && states[d].in_press != 0)
+          size = (*near_die_[d])(x - states[d].displacement, {query.lower, std::min(size, query.upper)});
       return size;
     };
   }
@@ -276,7 +278,8 @@ namespace retroforge
     return [this, &states](const Vec3 &x) {
       Vec3 moved = x;
       for (unsigned int d = 0; d < dies_.size(); ++d)
-        if (const DieFeature feature = dies_[d].closest(moved, states[d].displacement, 0.); feature.found())
+        if (const DieFeature feature = dies_[d].closest(moved, states[d].displacement, 0.);
+            feature.found() && states[d].in_press != 0)
         {
           const auto projection = dies_[d].project(moved, states[d].displacement, feature);
           if (projection.delta < 0. && dies_[d].surface())
@@ -292,7 +295,8 @@ namespace retroforge
       const double near = touching_distance * element_size_;
       for (unsigned int d = 0; d < dies_.size(); ++d)
         if (const DieFeature feature = dies_[d].closest(x, states[d].displacement, near);
-            feature.found() && dies_[d].project(x, states[d].displacement, feature).delta < near)
+            feature.found() && states[d].in_press != 0 &&
+            dies_[d].project(x, states[d].displacement, feature).delta < near)
           return true;
       return false;
     };
@@ -314,7 +318,7 @@ namespace retroforge
                               const SizeField            &size,
                               const DieStates            &states,
                               const double                repairable,
-                              double                     &repaired) const
+                              double                     &removed_volume) const
   {
     const PushOut    push_out = this->push_out(states);
     const TouchesDie touches  = this->touches(states);
@@ -326,7 +330,7 @@ namespace retroforge
     const auto use = [&](RepairedMesh &&made) {
       compose(start.old_node, made.mesh.old_node);
       start = std::move(made.mesh);
-      repaired += made.removed;
+      removed_volume += made.removed;
     };
     // What remeshing moves can cross again beside what was taken away.
     constexpr unsigned int n_tries = 3;
@@ -334,7 +338,8 @@ namespace retroforge
     {
       if (auto uncrossed = uncross(start.mesh, start.mesh.X, size))
         use(std::move(*uncrossed));
-      if (parameters_.method != "local" || minimum_quality(start.mesh.cells, start.mesh.X) <= 0.)
+      if (parameters_.method != RemesherParameters::Method::local ||
+          minimum_quality(start.mesh.cells, start.mesh.X) <= 0.)
       {
         RebuiltMesh rebuilt = rebuild_inside(start.mesh, start.mesh.X, size, "Remeshing");
         compose(start.old_node, rebuilt.old_node);
@@ -345,7 +350,7 @@ namespace retroforge
       compose(start.old_node, local.old_node);
       if (i == n_tries)
         return local;
-      auto peeled = without_slivers(local.mesh, local.mesh.X, size, repairable - repaired);
+      auto peeled = without_slivers(local.mesh, local.mesh.X, size, repairable - removed_volume);
       if (!peeled && self_crossings(local.mesh, local.mesh.X).empty())
         return local;
       start = {std::move(local.mesh), std::move(local.old_node)};
@@ -367,7 +372,7 @@ namespace retroforge
       const NodalVectors<double> rounded = on_grid(X);
       const SizeField            size =
         size_field(states, errors ? std::make_shared<ErrorSizes>(*errors, error_size_bounds()) : nullptr);
-      RemeshedMesh made = make(mesh, rounded, size, states, repairable, record->repaired);
+      RemeshedMesh made = make(mesh, rounded, size, states, repairable, record->removed_volume);
       for (NodeIndex k = 0; k < made.mesh.n_nodes(); ++k)
         if (const NodeIndex old = made.old_node[k]; old != invalid_index)
           made.mesh.X[k] += X[old] - rounded[old];
@@ -379,7 +384,7 @@ namespace retroforge
       return std::move(made.mesh);
     };
     record->mesh = make_on_root("Remeshing", make_numbered, comm_, &old_node);
-    MPI_Bcast(&record->repaired, 1, MPI_DOUBLE, 0, comm_);
+    MPI_Bcast(&record->removed_volume, 1, MPI_DOUBLE, 0, comm_);
     record->X_before  = X;
     const auto timing = timings.scope("transfer");
     record->transfer  = make_transfer(mesh, X, record->mesh, old_node);

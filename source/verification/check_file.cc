@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/output/json_number.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/verification/check_file.h>
 
@@ -12,12 +13,6 @@ namespace retroforge
   {
     using Json = nlohmann::json;
 
-    /// JSON has no NaN: a free difference that failed, or an order of nothing over nothing.
-    Json number(const double x)
-    {
-      return std::isfinite(x) ? Json(x) : Json();
-    }
-
     double as_number(const Json &json)
     {
       return json.is_null() ? NAN : json.get<double>();
@@ -27,7 +22,7 @@ namespace retroforge
     {
       Json json = Json::array();
       for (const double x : values)
-        json.push_back(number(x));
+        json.push_back(json_number<Json>(x));
       return json;
     }
 
@@ -40,13 +35,13 @@ namespace retroforge
       return {{"objective", row.objective},
               {"parameter", row.parameter},
               {"unit", row.unit},
-              {"adjoint", number(row.adjoint)},
-              {"tangent", number(row.tangent)},
+              {"adjoint", json_number<Json>(row.adjoint)},
+              {"tangent", json_number<Json>(row.tangent)},
               {"steps", steps},
               {"taylor_orders", numbers(row.taylor_orders)},
               {"passed", row.passed},
-              {"magnitude", number(row.magnitude)},
-              {"least_difference", number(row.least_difference)},
+              {"magnitude", json_number<Json>(row.magnitude)},
+              {"least_difference", json_number<Json>(row.least_difference)},
               {"is_zero", row.is_zero}};
     }
 
@@ -83,7 +78,7 @@ namespace retroforge
     const Json json = {{"program", program},
                        {"parameters", parameters},
                        {"n_increments", n_increments},
-                       {"stroke", number(stroke)},
+                       {"stroke", json_number<Json>(stroke)},
                        {"rows", all}};
     write_file(file, json.dump(1) + "\n");
   }

@@ -41,7 +41,7 @@ namespace retroforge
   {
     const double                      begin = timings_.seconds("total");
     std::optional<unsigned int>       before; // directions that were done
-    const DifferenceEvaluator         evaluator     = make_difference_evaluator(case_, forging_, recorded());
+    const DifferenceEvaluator         evaluator     = make_difference_evaluator(case_, run_);
     std::vector<ObjectiveSensitivity> sensitivities = sensitivities_;
     if (case_.command.resume)
     {
@@ -76,7 +76,8 @@ namespace retroforge
     summarise(rows, remaining, summary_);
     write_summary();
     if (root_)
-      CheckFile{program, case_.echo, forged_.increments, forged_.stroke, rows}.write(path_of("check.json"));
+      CheckFile{program, case_.echo, run_.state().increments, run_.state().stroke, rows}.write(
+        path_of("check.json"));
   }
 
   std::vector<CheckRow> DerivativeCheck::kept() const
@@ -85,8 +86,9 @@ namespace retroforge
       return {};
     CheckFile found = CheckFile::read(path_of("check.json"));
     MPI_Barrier(case_.comm); // all have read before it is written again
-    const bool is_of_this = found.program == program && found.n_increments == forged_.increments &&
-                            found.stroke == forged_.stroke && make_same_check(found.parameters, case_.echo);
+    const bool is_of_this = found.program == program && found.n_increments == run_.state().increments &&
+                            found.stroke == run_.state().stroke &&
+                            make_same_check(found.parameters, case_.echo);
     return is_of_this ? std::move(found.rows) : std::vector<CheckRow>();
   }
 } // namespace retroforge

@@ -9,13 +9,14 @@ namespace retroforge
   /// A recorded run, to be differentiated. What is referred to must live as long.
   struct RecordedForging
   {
-    const ForgingModel    &model;
-    std::shared_ptr<Leg>   first; ///< the leg in which the run began
-    const Process<double> &process;
-    Forging::Source        source;
-    unsigned int           n; ///< increments
-    const Objectives      &objectives;
-    Timings               &timings;
+    const ForgingModel        &model;
+    std::shared_ptr<MeshEpoch> first; ///< the epoch in which the run began
+    const Process<double>     &process;
+    Forging::RecordAccess      record;
+    unsigned int               n; ///< increments
+    const Objectives          &objectives;
+    const RecordedObjectives  &traced; ///< of these; they have decided
+    Timings                   &timings;
   };
 
   /// dPhi/dX_0 and dPhi/d(process) of one combination of objectives.
@@ -27,19 +28,16 @@ namespace retroforge
 
   struct AdjointSweep
   {
-    std::vector<AdjointResult> of; ///< each combination
+    std::vector<AdjointResult> gradients; ///< of each combination
     unsigned int               linear_solves = 0;
   };
 
   /// The backward sweep over all recorded increments: per combination one linear solve per stage, J^T at each
-  /// remeshing. Two meshes are in memory while one is left for the other. Objectives of the end keep the
-  /// features they decided on.
-  /// @param rows  of each objective, as the run was traced
+  /// remeshing. Two meshes are in memory while one is left for the other.
   /// @param end   where it ended; earlier positions and strains follow from the recorded velocities
-  AdjointSweep adjoint_sweep(const RecordedForging               &run,
-                             const std::vector<PathRows<double>> &rows,
-                             const ForgingState                  &end,
-                             const std::vector<Combination>      &combinations);
+  AdjointSweep adjoint_sweep(const RecordedForging          &run,
+                             const ForgingState             &end,
+                             const std::vector<Combination> &combinations);
 
   /// The direct method: all objectives and their derivatives along one direction of (X_0, process), by the
   /// same kernels run forward on dual numbers.

@@ -20,11 +20,12 @@ namespace retroforge
   TetMesh make_billet(const BilletParameters &parameters, MPI_Comm communicator);
 
   /// Moves the nodes of the faces of a mesh onto the shape that the measures give, each by the shortest way
-  /// onto all patches it belongs to. Of the mesh faces and patches count, which are those of make_billet().
-  /// Of a billet from a file nothing moves.
+  /// onto all patches it belongs to. The faces and patches of the mesh are those of make_billet(). Nodes of a
+  /// billet from a file do not move.
   void snap_to_shape(const BilletParameters &parameters, TetMesh &mesh);
 
-  /// What the measures and cuts of a billet that is not from a file bound: more than its mesh where that has
-  /// chords for round sides. To be called on one rank only.  Units: mm^3.  @throws Error
+  /// Returns the volume that the measures and cuts of a billet bound, unless it is from a file: more than
+  /// that of its mesh where that has chords for round sides. To be called on one rank only.  Units: mm^3.
+  /// @throws Error
   double shape_volume(const BilletParameters &parameters);
 } // namespace retroforge

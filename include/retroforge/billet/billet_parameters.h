@@ -23,16 +23,25 @@ namespace retroforge
     double                   length = 0.; ///< l [mm]; 0: a quarter of the root of the patches' area
   };
 
-  /// The workpiece before forging: its shape, what symmetry leaves of it, where it stands, and how fine its
-  /// mesh is.
+  /// The workpiece before forging: its shape, its symmetry, its position, and the fineness of its mesh. The
+  /// section Billet.
   struct BilletParameters
   {
-    std::string shape = "box";
-    Vec3        base_centre;
-    Vec3        size         = Vec3({50, 50, 50});
-    double      radius       = 25;
-    double      height       = 50;
-    double      element_size = 5;
+    enum class Shape
+    {
+      box,
+      cylinder,
+      ring,    ///< a body of revolution whose section has seven portions
+      profile, ///< a body of revolution whose contour is a B-spline
+      file     ///< a mesh from a Gmsh file
+    };
+
+    Shape  shape = Shape::box;
+    Vec3   base_centre;
+    Vec3   size         = Vec3({50, 50, 50});
+    double radius       = 25;
+    double height       = 50;
+    double element_size = 5;
 
     RingProfile   ring;
     SplineProfile profile;
@@ -42,10 +51,10 @@ namespace retroforge
     double            sector_angle   = 0;
 
     std::string              file_name;
-    double                   scale = 1; ///< of the file's lengths to mm
+    double                   scale = 1; ///< factor of the file's lengths to mm
     std::vector<std::string> symmetry_patches;
 
-    Rotations rotations; ///< of the finished mesh
+    Rotations rotations; ///< rotations of the finished mesh
     Vec3      translation;
 
     FreeFormParameters free_form;
@@ -56,10 +65,15 @@ namespace retroforge
     void          check() const;
     static ReadBy read_by_shape();
 
-    bool   is_revolved() const { return shape == "ring" || shape == "profile"; }
+    /// Returns the word for the shape in a parameter file.
+    std::string shape_word() const;
+
+    bool is_from_file() const { return shape == Shape::file; }
+    /// Returns whether the body has a section that is revolved.
+    bool   is_revolved() const { return shape == Shape::ring || shape == Shape::profile; }
     double whole_height() const; ///< before cuts; 0 for a mesh from a file
     double whole_width() const;  ///< along x, before cuts; 0 for a mesh from a file
-    /// Whether only a sector of a body of revolution is kept.
+    /// Returns whether only a sector of a body of revolution is kept.
     bool is_sector() const;
     /// Planes of the sector's faces, if any.
     std::vector<Plane> sector_planes() const;

@@ -14,16 +14,16 @@ namespace retroforge
   /// A box, cylinder or body of revolution standing along z on the centre of its base, cut by planes.
   struct CutSolid
   {
-    Section section;             ///< of the body of revolution; none for box and cylinder
-    double  section_angle = 360; ///< by which it is revolved, from the direction +x towards +y [degrees]
-    bool    is_cylinder   = false;
-    Vec3    base_centre;
-    Vec3    size;       ///< lengths of the box
-    double  radius = 0; ///< of the cylinder
-    double  height = 0; ///< of each
-    /// What is on the side of a plane its normal points to is cut away.
+    Section section;            ///< section of the body of revolution; none for box and cylinder
+    double section_angle = 360; ///< angle by which it is revolved, from the direction +x towards +y [degrees]
+    bool   is_cylinder   = false;
+    Vec3   base_centre;
+    Vec3   size;       ///< lengths of the box
+    double radius = 0; ///< radius of the cylinder
+    double height = 0; ///< height before cuts, of any of them
+    /// Cutting planes: the side that the normal points to is cut away.
     std::vector<Plane> cuts;
-    /// So many of the cuts, the first ones, are made by `section_angle` already.
+    /// Number of the first cuts that are made by `section_angle` already.
     unsigned int n_cuts_of_section = 0;
   };
 

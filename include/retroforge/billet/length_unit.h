@@ -15,14 +15,14 @@ namespace retroforge
     /// @param longest  side of the body, > 0 [mm]
     explicit LengthUnit(double longest);
 
-    /// One rounding each, none where the unit is 1 mm.
+    /// Convert with one rounding each, none where the unit is 1 mm.
     double from_mm(double x) const { return exponent_ >= 0 ? x / power_ : x * power_; }
     Vec3   from_mm(const Vec3 &x) const { return exponent_ >= 0 ? x / power_ : x * power_; }
     double to_mm(double x) const { return exponent_ >= 0 ? x * power_ : x / power_; }
     Vec3   to_mm(const Vec3 &x) const { return exponent_ >= 0 ? x * power_ : x / power_; }
 
-    /// From mm, and rounded to the fifteen digits that the decimal numbers of a parameter file keep: measures
-    /// that differ by a power of ten become the same to the last bit.
+    /// Convert from mm, rounded to the fifteen digits that the decimal numbers of a parameter file keep:
+    /// measures that differ by a power of ten become the same to the last bit.
     double rounded_from_mm(double x) const;
     Vec3   rounded_from_mm(Vec3 x) const;
 
@@ -31,12 +31,12 @@ namespace retroforge
     double power_    = 1.; ///< 10^|e|
   };
 
-  /// Of box, cylinder or body of revolution.
+  /// Returns the unit of a box, cylinder or body of revolution.
   LengthUnit unit_of(const CutSolid &solid);
 
-  /// The solid in the unit, its measures rounded.
+  /// Returns the solid in the unit, its measures rounded.
   CutSolid in_unit(const LengthUnit &unit, const CutSolid &solid);
 
-  /// Nodes and symmetry planes back in mm.
+  /// Converts nodes and symmetry planes back to mm.
   void put_in_mm(const LengthUnit &unit, TetMesh &mesh);
 } // namespace retroforge

@@ -27,6 +27,6 @@ namespace retroforge
 
   MshElement msh_element(int type);
 
-  /// Of volume elements, in the plural.
+  /// Returns the name of volume elements of a shape, in the plural.
   std::string name_of(MshElement::Shape shape);
 } // namespace retroforge

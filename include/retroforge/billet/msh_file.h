@@ -11,7 +11,7 @@
 
 namespace retroforge
 {
-  /// What a Gmsh file says of a mesh of tetrahedra and its surface, nodes by the file's tags.
+  /// Contents of a Gmsh file: a mesh of tetrahedra and its surface, nodes by the file's tags.
   struct MshFile
   {
     using Tags = std::vector<std::size_t>;
@@ -22,12 +22,12 @@ namespace retroforge
       Tags        triangles; ///< three nodes for each
     };
 
-    Tags                   tags;       ///< of the nodes
+    Tags                   tags;       ///< tags of the nodes
     NodalVectors<double>   X;          ///< and their positions
     Tags                   tetrahedra; ///< four nodes for each, by ascending number of their volume
     std::map<int, Surface> surfaces;   ///< physical surfaces by their number
 
-    std::vector<std::string> remarks; ///< what was left out or taken together, a sentence each
+    std::vector<std::string> remarks; ///< a sentence on each thing left out or merged
   };
 
   /// Reads a Gmsh file of version 2 or 4.1, ASCII or binary with this machine's order of bytes, or of version

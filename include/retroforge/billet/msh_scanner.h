@@ -41,10 +41,10 @@ namespace retroforge
     /// so that no memory is asked for in vain.
     std::size_t count(std::size_t numbers);
     std::size_t count_in_text(std::size_t numbers);
-    /// Whether there is room left for this many numbers.
+    /// Checks that there is room left for this many numbers.
     void check_room(std::size_t things, std::size_t numbers) const;
 
-    /// Goes past so many numbers of 4 or 8 bytes.
+    /// Skips the given number of numbers of 4 or 8 bytes.
     void skip_integers(std::size_t n);
     void skip_reals(std::size_t n);
 

@@ -34,7 +34,7 @@ namespace retroforge
 
     void add_parameters(dealii::ParameterHandler &prm);
 
-    /// Which rule the measures break with these mu, in words; empty when none.
+    /// Returns the rule that the measures break with these mu, in words; empty when none.
     std::string complaint(const std::array<double, 4> &mu) const;
 
     Section section() const;

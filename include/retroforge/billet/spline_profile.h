@@ -22,7 +22,7 @@ namespace retroforge
 
     void add_parameters(dealii::ParameterHandler &prm);
 
-    /// Which rule the contour breaks with these control points, in words; empty when none.
+    /// Returns the rule that the contour breaks with these control points, in words; empty when none.
     std::string complaint(const std::vector<Vec2> &control_points) const;
 
     SplineCurve contour() const { return {control_points, 3}; }

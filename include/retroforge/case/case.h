@@ -19,11 +19,11 @@ namespace retroforge
     Parameters    parameters;
   };
 
-  /// What a run begins with: all that follows from the command and the case's parameters. Members stand in
-  /// the order in which data flows through them.
+  /// The data that a run begins with: all that follows from the command and the case's parameters. Members
+  /// stand in the order in which data flows through them.
   struct Case
   {
-    /// @param timings  gets what it takes to mesh the billet
+    /// @param timings  gets the time to mesh the billet
     /// @throws Error
     Case(const CommandLine &asked, Timings &timings, MPI_Comm comm);
     Case(const Case &) = delete; // its members refer to each other
@@ -32,10 +32,10 @@ namespace retroforge
     const MPI_Comm                  comm;
     std::string                     echo; ///< the parameters as understood
     Parameters                      parameters;
-    const std::optional<Resumption> resumption; ///< of a run that goes on
+    const std::optional<Resumption> resumption; ///< record of a run that goes on
     const TetMesh         nominal_billet; ///< meshed at the nominal design: what is left open follows from it
     const FirstMesh       first;          ///< meshed there or at Design/meshed at
-    const TetMesh        &billet;         ///< that mesh
+    const TetMesh        &billet;         ///< the mesh of `first`
     const Process<double> nominal;
     const Design          design;
 
@@ -44,9 +44,10 @@ namespace retroforge
     const NodalVectors<double> X_0;
     const ForgingModel         model;
 
-    const Objectives               objectives;
-    const std::vector<Combination> combinations; ///< of the objectives, each of which is differentiated
-    std::vector<NumericsSegment>   segments;     ///< one more where a run that goes on changes its numerics
+    const Objectives objectives;
+    /// Combinations of the objectives, each of which is differentiated.
+    const std::vector<Combination> combinations;
+    std::vector<NumericsSegment>   segments; ///< one more where a run that goes on changes its numerics
 
     BilletSize size() const { return parameters.size_of(nominal_billet); }
 

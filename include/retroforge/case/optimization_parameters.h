@@ -10,7 +10,7 @@
 
 namespace retroforge
 {
-  /// What `optimize` makes small, by which parameters and within which limits: the section `Optimisation`.
+  /// Objective, parameters and limits of `optimize`: the section `Optimisation`.
   struct OptimizationParameters
   {
     using Values = std::multimap<std::string, double>; ///< by name
@@ -37,7 +37,7 @@ namespace retroforge
 
     std::string         scattered;       ///< a design parameter that is not known exactly; empty: none
     std::vector<double> scatter_range;   ///< from, to
-    unsigned int        samples    = 3;  ///< of it
+    unsigned int        samples    = 3;  ///< number of samples of it
     double              deviations = 1.; ///< lambda in mean + lambda sigma
 
     std::vector<std::string> operations; ///< files of other cases that are forged with each design

@@ -18,19 +18,20 @@
 #include <retroforge/output/output_parameters.h>
 #include <retroforge/time/forging.h>
 
+#include <functional>
 #include <iosfwd>
 #include <optional>
 
 namespace retroforge
 {
-  /// What parameters that are left open follow from.
+  /// Size of the billet, from which parameters left open follow.
   struct BilletSize
   {
     double side;   ///< cube root of the mesh's volume [mm]
-    double height; ///< of the whole billet; of one from a file, along the way of the leading die [mm]
+    double height; ///< height of the whole billet; for one from a file, along the way of the leading die [mm]
   };
 
-  /// All that a parameter file says.
+  /// All settings of a parameter file.
   struct Parameters
   {
     BilletParameters           billet;
@@ -52,10 +53,13 @@ namespace retroforge
 
     std::vector<std::string> without_effect; ///< a sentence on each setting that nothing reads
 
-    /// Declares everything; dies and objectives are those of the names given.
-    void add_parameters(dealii::ParameterHandler       &prm,
-                        const std::vector<std::string> &die_names,
-                        const std::vector<std::string> &objective_names);
+    /// The names in a list, as `Dies/names`, each of which has a section of a kind, as `Die NAME`.
+    using NamesOf = std::function<std::vector<std::string>(const std::string &kind,
+                                                           const std::string &list,
+                                                           const std::string &by_default)>;
+
+    /// Declares everything, with a section for each name.
+    void add_parameters(dealii::ParameterHandler &prm, const NamesOf &names_of);
 
     /// Reads a file and overrides, and checks all of it.  @throws Error
     static Parameters read(const std::string                                      &file,
@@ -107,7 +111,7 @@ namespace retroforge
     /// @param file  of the case, beside which other files are looked for
     static Parameters of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo);
 
-    double edge_stiffness_ = 1.; ///< of edges' penalty over the nodes', once defaults are resolved
+    double edge_stiffness_ = 1.; ///< penalty of edges over that of nodes, once defaults are resolved
 
     /// By which the dies close over the stroke [mm]: the stroke itself, where one die moves.
     double                        closing_path() const;

@@ -30,11 +30,10 @@ namespace retroforge
     RecordHeader                header;
     std::vector<RecordedInput>  inputs;
     unsigned int                n_increments;
-    double                      stroke;  ///< where the record ends [mm]
-    std::vector<ChangedSetting> changes; ///< of numerics, against those the record ends with
+    std::vector<ChangedSetting> changes; ///< changes of numerics, against those the record ends with
 
     /// @param parameters  the complete input of the run that is to go on
-    /// @param stroke      the whole of it [mm]
+    /// @param stroke      that of the first operation [mm]
     /// @throws Error  that names all settings of the scene that differ; also for a record that is missing or
     /// damaged
     Resumption(const std::string &directory, const std::string &parameters, double stroke);

@@ -17,8 +17,8 @@ namespace retroforge
   /// A place as messages have it: (x, y, z).
   std::string in_brackets(const Vec3 &x);
 
-  /// How each die stands to the billet at the start, and what becomes of it: of the billet as its measures
-  /// give it, whatever its mesh.
+  /// Returns for each die of the first operation its position relative to the billet at the start and its
+  /// first contact, for the billet as its measures define it, whatever its mesh.
   /// @param X  positions of the billet's nodes
   std::vector<DieApproach> find_approaches(const Parameters           &parameters,
                                            const Scene                &scene,
@@ -26,8 +26,8 @@ namespace retroforge
                                            const NodalVectors<double> &X);
 
   /// Checks whether a forging can come of billet and dies as they stand, before the first increment: sizes
-  /// that fit each other, a billet outside of all dies, a die that comes against it, a stroke that ends
-  /// before planes meet, and no rigid motion left free.
+  /// that fit each other, a billet outside of all dies of the first operation, a die that comes against it, a
+  /// stroke that ends before planes meet, and no rigid motion left free.
   /// @param X  positions of the billet's nodes
   /// @return a sentence on each thing that is doubtful     @throws Error
   std::vector<std::string> check_scene(const Parameters           &parameters,

@@ -6,7 +6,7 @@
 
 namespace retroforge
 {
-  /// What a forging comes to, to a factor of two and without solving anything.
+  /// Estimates of a forging, to a factor of two and without solving anything.
   ///
   /// Forces are those of the slab method on a disc of the billet's volume V between flat dies, of the whole
   /// part:  F = A (sigma + sum over the faces of tau R / ((m + 3) h)),  A = V/h,  R^2 = A/pi,  with the
@@ -16,13 +16,13 @@ namespace retroforge
   struct SceneEstimate
   {
     double speed  = 0.; ///< at which the dies close, in the direction in which they face the billet [mm/s]
-    double height = 0.; ///< of the model in that direction [mm]
+    double height = 0.; ///< height of the model in that direction [mm]
     double strain_rate = 0.; ///< e = speed / height [1/s]
     double flow_stress = 0.; ///< sigma, of the law at that rate [MPa]
-    double first_force = 0.; ///< where the dies first press [N]
+    double first_force = 0.; ///< force where the dies first press [N]
     double final_force = 0.; ///< at the height that the dies leave it, if the metal is free to spread [N]
 
-    /// What is out of all proportion, a sentence each, which begins with the name of the setting.
+    /// A sentence on each quantity out of all proportion, which begins with the name of the setting.
     std::vector<std::string> warnings;
   };
 

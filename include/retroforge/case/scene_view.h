@@ -9,9 +9,9 @@
 
 namespace retroforge
 {
-  /// The command scene: how billet and dies stand before the first increment, checked as for a run, listed
-  /// and drawn: scene.json, and scene.pvd with scene_billet.vtu and scene_die_NAME.vtu. Of a scene that is
-  /// refused, all that can be made.
+  /// The command scene: billet and dies before the first increment, checked as for a run, listed and drawn:
+  /// scene.json, and scene.pvd with scene_billet.vtu and scene_die_NAME.vtu. Of a scene that a run would
+  /// reject, all that can be made.
   ///
   /// The first rank does it alone: on several ranks the files are those of one.
   class SceneView
@@ -24,17 +24,17 @@ namespace retroforge
     int run();
 
   private:
-    /// What could be made of the case: all of it, or some.
+    /// The parts of the case that could be made: all of it, or some.
     struct Parts
     {
-      Parameters             parameters; ///< of the dies that could be made
+      Parameters             parameters; ///< parameters of the dies that could be made
       std::optional<TetMesh> mesh;
-      NodalVectors<double>   X; ///< of its nodes [mm]
+      NodalVectors<double>   X; ///< positions of its nodes [mm]
       std::vector<Die>       dies;
-      Process<double>        process; ///< of these
+      Process<double>        process; ///< process of these dies
       std::string            leading_die;
-      Vec3                   path;         ///< of that die over the stroke [mm]
-      double                 seconds = 0.; ///< that it takes
+      Vec3                   path;         ///< path of the leading die over the stroke [mm]
+      double                 seconds = 0.; ///< duration of the stroke [s]
     };
 
     void look();
@@ -43,9 +43,9 @@ namespace retroforge
     void make_all(const Case &made);
     void make_some();
 
-    /// Who leads, how far and how long, while all dies are there.
+    /// Finds the leading die, its path and duration, while all dies are there.
     static void lead(Parts &parts);
-    /// Whether the number of increments is left to the program.
+    /// Returns whether the number of increments is left to the program.
     bool chooses_increments() const;
     void warn(const std::vector<std::string> &warnings);
 
@@ -54,7 +54,7 @@ namespace retroforge
     void describe_dies();
     void describe_approaches(const Scene &scene);
     void describe_sizes();
-    /// What pictures of planes cover.
+    /// Returns the points that pictures of planes cover.
     NodalVectors<double> drawn_around() const;
     void                 draw() const;
 

@@ -13,7 +13,7 @@
 /// corner has a twelfth of the area, a middle a quarter.
 namespace retroforge
 {
-  /// S, of edges times their stiffness, and S^f [mm^2] of each pair.
+  /// For each pair S, for edges times their stiffness, and S^f [mm^2].
   template <typename Number>
   struct ContactAreas
   {
@@ -26,8 +26,8 @@ namespace retroforge
                                      const ContactSet<Number>   &contact,
                                      const NodalVectors<Number> &X);
 
-  /// A third of the surface at a node over the S of its pair: where velocities are quadratic, a vertex has
-  /// only a twelfth of a face.
+  /// Returns a third of the surface area at a node over the S of its pair: for quadratic velocities a vertex
+  /// has only a twelfth of each face.
   template <typename Number>
   double surface_over_S(const ContactSet<Number> &contact)
   {

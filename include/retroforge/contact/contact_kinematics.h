@@ -23,26 +23,27 @@
 /// ContactSet. What belongs to a stage, the areas, is computed from the stage's positions (contact_areas.h).
 namespace retroforge
 {
-  /// How fast a gap closes, beyond its time tau.
+  /// The speed at which a gap closes, besides its approach time tau: see approach_speed().
   struct ApproachLaw
   {
-    double layer = 0.; ///< of the approach speed [mm]; 0: none
-    double part  = 1.; ///< of a whole increment, where it was cut
+    double layer = 0.; ///< layer l of the approach speed [mm]; 0: none
+    double part  = 1.; ///< part of a whole increment, 1 unless it was cut
 
     ApproachLaw(const double layer = 0., const double part = 1.) : layer(layer), part(part) {}
   };
 
-  /// What of the numerics stands in an increment's equations of contact. It is recorded with the increment,
-  /// since a run may go on with other numerics: the backward sweep and the replay use what was used.
+  /// Numerical settings that stand in an increment's equations of contact. They are recorded with the
+  /// increment, since a run may go on with other numerics: the backward sweep and the replay use what was
+  /// used.
   struct ContactNumerics
   {
     double       approach = 1.; ///< approach time in increments: tau = approach * dt
-    double       layer    = 0.; ///< of the approach speed [mm]
+    double       layer    = 0.; ///< layer l of the approach speed [mm]; 0: none
     double       step     = 0.; ///< stroke of a whole increment [mm]
     FrictionRamp ramp;
-    double       edge_stiffness = 1.; ///< of edges' penalty over the nodes'
+    double       edge_stiffness = 1.; ///< penalty of edges over that of nodes, dimensionless
 
-    /// Of an increment of a given stroke.
+    /// Returns the approach law of an increment with the given stroke [mm].
     ApproachLaw approach_law(const double stroke) const
     {
       return {layer, step > 0. ? std::min(1., stroke / step) : 1.};
@@ -69,25 +70,26 @@ namespace retroforge
     };
 
     std::vector<ContactPair>        pairs;
-    std::vector<Projection<Number>> projections; ///< of each pair, at X_i
-    /// w(delta) of each pair; of a node, where edges at it may touch in its place, 1 - (1 - w) product (1 -
+    std::vector<Projection<Number>> projections; ///< for each pair, at X_i
+    /// w(delta) for each pair; for a node at which edges may touch in its place, 1 - (1 - w) product (1 -
     /// w_edge).
     std::vector<Number> ramps;
-    /// (pair of a node, pair of an edge at it) of this product's factors.
+    /// The factors of this product: (pair of a node, pair of an edge at it).
     std::vector<std::array<unsigned int, 2>> touched_by_edges;
     /// Faces or, where velocities are quadratic, the four equal triangles that the middles of its edges cut
     /// each into.
     std::vector<Face> friction_faces;
-    /// Where velocities are quadratic: of each pair of a vertex, the pairs of its surface edges' middles, if
-    /// all of them are in reach of its die, and the die is smooth there; else, and of middles, none.
+    /// For quadratic velocities: for each pair of a vertex, the pairs of its surface edges' middles, provided
+    /// that all of them are in reach of its die and the die is smooth there; none otherwise, and none for
+    /// middles.
     std::vector<std::vector<unsigned int>> middles_around;
-    /// Where velocities are quadratic: edges at a curved die, and all gaps before they were levelled [mm].
+    /// For quadratic velocities: edges at a curved die, and all gaps before they were levelled [mm].
     std::vector<Chord>  chords;
     std::vector<Number> own_gaps;
     bool                quadratic = false;
     Number              tau       = 1.; ///< approach time [s]
     ApproachLaw         approach;
-    double              edge_stiffness = 1.; ///< of edges' penalty over the nodes'
+    double              edge_stiffness = 1.; ///< penalty of edges over that of nodes, dimensionless
   };
 
   /// Derivatives in the increment's data: what ContactSet depends on is filled in later, by
@@ -100,14 +102,14 @@ namespace retroforge
     explicit ContactSetBar(const std::size_t n_pairs) : delta(n_pairs, 0.), ramp(n_pairs, 0.), n(n_pairs) {}
   };
 
-  /// How points approach the dies in an increment, and where friction sets in.
+  /// The laws by which points approach the dies in an increment, and by which friction sets in.
   template <typename Number>
   struct ContactApproach
   {
     FrictionRamp ramp;
     Number       tau; ///< approach time [s]
     ApproachLaw  law            = {};
-    double       edge_stiffness = 1.; ///< of edges' penalty over the nodes'
+    double       edge_stiffness = 1.; ///< penalty of edges over that of nodes, dimensionless
   };
 
   /// Gaps, normals and ramps of given pairs. Collective: each rank projects its share of them.
@@ -125,7 +127,7 @@ namespace retroforge
                            NodalVectors<double>          &X_bar,
                            std::vector<DieState<double>> &dies_bar);
 
-  /// One point with all that its force depends on.
+  /// A contact point with everything that its force depends on.
   template <typename Number>
   struct ContactNode
   {
@@ -135,7 +137,7 @@ namespace retroforge
     Number          alpha;
     bool            active; ///< counts as h > 0
     ApproachLaw     approach;
-    unsigned int    interface_law = 0; ///< of the die (interface_law.h)
+    unsigned int    interface_law = 0; ///< number of the die's law (interface_law.h)
   };
 
   /// Speed at which a gap may close: delta/tau, so that what is in reach arrives within tau; with a layer l
@@ -160,7 +162,7 @@ namespace retroforge
     return -law.layer / tau * A / sqrt(Number(1. + a * a));
   }
 
-  /// Its derivative in delta.
+  /// Returns the derivative of approach_speed() in delta [1/s].
   inline double approach_slope(const double delta, const double tau, const ApproachLaw &law)
   {
     if (law.layer == 0.)
@@ -172,7 +174,7 @@ namespace retroforge
     return slope / std::pow(1. + a * a, 1.5);
   }
 
-  /// The gap whose approach speed is `speed`, which is positive: the reverse function.
+  /// Returns the gap whose approach speed is `speed` > 0: the inverse function of approach_speed() [mm].
   inline double approach_distance(const double speed, const double tau, const ApproachLaw &law)
   {
     return law.layer == 0. ? speed * tau : law.layer * std::sinh(speed * tau / law.layer);

@@ -25,7 +25,7 @@ namespace retroforge
 
     static std::vector<NumberInfo> info() { return {{"rho", "MPa s/mm"}, {"v0", "mm/s", true}}; }
 
-    /// Whether contact depends on a number, called as in info().
+    /// Returns whether contact depends on the number with a name of info().
     static bool depends_on(const std::string &name, const bool with_friction)
     {
       return name != "v0" || with_friction;

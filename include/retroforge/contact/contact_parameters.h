@@ -9,7 +9,7 @@ namespace retroforge
   /// The section Contact.
   struct ContactParameters
   {
-    /// How friction and the force on a node set in as it arrives.
+    /// The way in which friction and the force on a node set in as the node arrives at a die.
     enum class Arrival
     {
       smooth, ///< over a ramp of the gap

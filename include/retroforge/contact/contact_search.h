@@ -41,17 +41,18 @@ namespace retroforge
     ContactPoint point;
     unsigned int die;
     bool         touching; ///< delta <= width of the friction ramp
-    DieFeature   feature;  ///< of the die, closest to the point
+    DieFeature   feature;  ///< feature of the die closest to the point
   };
 
-  /// What contact depends on, but for decisions and laws: the workpiece at positions X, and the dies.
+  /// The geometry that contact depends on: the workpiece at positions X, and the dies. Decisions and laws are
+  /// apart from it.
   template <typename Number>
   struct ContactView
   {
     const TetMesh                       &mesh;
     const Topology                      &topology;
     const std::vector<Die>              &dies;
-    const std::vector<DieState<Number>> &states; ///< of each die
+    const std::vector<DieState<Number>> &states; ///< for each die
     const NodalVectors<Number>          &X;
     const MiddleNodes                   *edges = nullptr;       ///< null where velocities are linear
     MPI_Comm                             comm  = MPI_COMM_SELF; ///< ranks that look for contacts together

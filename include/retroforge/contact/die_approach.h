@@ -5,14 +5,14 @@
 #include <retroforge/contact/die_overlap.h>
 
 /// @file
-/// How a die stands to the billet and comes against it, found from all of both surfaces: vertices and edges
-/// of the die against faces of the metal as well as the metal's nodes against the die.
+/// Position of a die relative to the billet, and its first contact with it, found from both surfaces:
+/// vertices and edges of the die against faces of the metal, and nodes of the metal against the die.
 namespace retroforge
 {
-  /// Where a die that moves along a line comes against metal that stands.
+  /// First contact of a die that moves along a line with metal at rest.
   struct Meeting
   {
-    double travel; ///< [mm]
+    double travel; ///< path of the die until then [mm]
     Vec3   place;  ///< on the metal
   };
 
@@ -27,18 +27,25 @@ namespace retroforge
                                        const MetalSurface &metal,
                                        double              touching);
 
-  /// How far a die must go along a way for its facets and the metal's to be apart from there on, however far
-  /// it goes [mm]; 0 where they are. Infinite for a plane that does not move away from the metal.
+  /// Returns the least distance that a die must move along a way, so that its facets and the metal's stay
+  /// apart from there on [mm]; 0 where they are apart already, infinite for a plane that does not move away
+  /// from the metal.
   /// @param way  of length one
   double
   travel_to_be_free(const Die &die, const Vec3 &displacement, const Vec3 &way, const MetalSurface &metal);
 
-  /// The shortest distance between a die's facets and the metal's [mm], and the end of it on the metal. Of
-  /// those that are in one another it means nothing.
+  /// Returns how much of the metal that looks against a way has the die in front of it: seen along the way, the part
+  /// of its area. Facets of the die count wherever along the way they are; where several lie over one another
+  /// in front of a face, it is at most as much as they have together. A plane that looks along the way covers all.
+  double covered_part(const Die &die, const Vec3 &displacement, const Vec3 &way, const MetalSurface &metal);
+
+  /// Returns the shortest distance between a die's facets and the metal's [mm], and its end on the metal;
+  /// meaningless where they overlap.
   std::pair<double, Vec3>
   shortest_distance(const Die &die, const Vec3 &displacement, const MetalSurface &metal);
 
-  /// How a die stands to the billet at the start, and what becomes of it as it moves.
+  /// Position of a die relative to the billet at the start: overlap or gap, and the contact that its motion
+  /// leads to.
   struct DieApproach
   {
     Overlap overlap;
@@ -47,7 +54,7 @@ namespace retroforge
     Vec3   freeing;
     double gap = 0.;  ///< shortest distance to the billet; 0 where they overlap or touch [mm]
     Vec3   gap_place; ///< the end of it on the billet
-    /// Along its velocity; none for a die that stands, or never comes against the billet.
+    /// First contact along the die's velocity; none for a die at rest, or one that never meets the billet.
     std::optional<Meeting> meeting;
     bool                   moves_away = false; ///< it would meet the billet if it went back
   };

@@ -17,9 +17,10 @@ namespace retroforge
   /// Metal and a die in one another.
   struct Overlap
   {
-    double depth = 0.;      ///< [mm]; 0 where they are apart or touch
-    Vec3   place;           ///< the deepest point
-    bool is_of_die = false; ///< whether that is a point of the die in the metal, else of the metal in the die
+    double depth = 0.; ///< [mm]; 0 where they are apart or touch
+    Vec3   place;      ///< the deepest point
+    /// True for a point of the die in the metal, false for one of the metal in the die.
+    bool is_of_die = false;
   };
 
   /// The deepest vertex of the metal in the die, or vertex or edge of the die in the metal.

@@ -16,13 +16,4 @@ namespace retroforge
     const auto     &x = surface.vertices();
     return {{x[t[0]] + displacement, x[t[1]] + displacement, x[t[2]] + displacement}};
   }
-
-  /// Smallest box around a triangle.
-  inline BoundingBox box_of(const Corners &x)
-  {
-    BoundingBox box(x[0]);
-    box.include(x[1]);
-    box.include(x[2]);
-    return box;
-  }
 } // namespace retroforge

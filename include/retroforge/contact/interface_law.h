@@ -13,12 +13,12 @@
 /// It acts on the residual, so that f is not negative: the traction on the metal is -f dv / S^f.
 namespace retroforge
 {
-  /// What the friction at a point depends on.
+  /// Arguments of the friction law at a point.
   template <typename Number>
   struct SlidingPoint
   {
     Number area;        ///< S^f [mm^2]
-    Number coefficient; ///< of the die: DieState::friction
+    Number coefficient; ///< friction coefficient of the die: DieState::friction
     Number slip2;       ///< |dv|^2 [mm^2/s^2]
     /// N/S [MPa]; 0 where the point is not pressed, less where it is held and pulls. To a law with a
     /// potential, which cannot follow it, it is not told: 0.

@@ -15,9 +15,10 @@
 /// belongs to the geometry and not to contact. Where its edges touch, a vertex is to stand off the die by the
 /// mean bulge around it, so that as much metal is missing as is in the die, and a middle where its ends want
 /// it:
-///   o_v      = sum_m w_m c_m b_m / (sum_m w_m + 1/4),   w_m = w(delta_m),  sums over the edges at v in the
-///   whole, delta'_v = delta_v - o_v, delta'_m = delta_m + w'_a w'_b c_m ((delta'_a + delta'_b)/2 - delta_m),
-///   w' = w(delta').
+///   o_v      = sum_m w_m c_m b_m / (sum_m w_m + 1/4),   w_m = w(delta_m),
+///   delta'_v = delta_v - o_v,
+///   delta'_m = delta_m + w'_a w'_b c_m ((delta'_a + delta'_b)/2 - delta_m),   w' = w(delta'),
+/// with sums over the edges at v in the whole.
 /// An edge that spans a sharp corner of the die is held out by its own gap: c_m falls from 1 at |b_m| = 0.06
 /// of the edge's length, that is a length of 0.48 radii, to 0 at 0.15. There a ripple remains, and a vertex
 /// that is pressed because the middles around it are would take part in it by pulling: where c_m < 1,
@@ -47,18 +48,18 @@ namespace retroforge
     return chords;
   }
 
-  /// How well straight edges follow the dies they touch.
+  /// Statistics of the misfit between straight edges and the curved dies they touch.
   struct EdgeFit
   {
-    unsigned int touching =
-      0; ///< edges whose middle or both ends are at least half in contact, by their ramps
-    unsigned int spanning = 0;             ///< those of them that span a corner of the die: c_m = 0
+    /// Edges whose middle or both ends are at least half in contact, by their ramps.
+    unsigned int touching = 0;
+    unsigned int spanning = 0;             ///< touching edges that span a corner of the die: c_m = 0
     double       largest  = 0.;            ///< |b_m| over the length of the edge that spans most
-    unsigned int die      = invalid_index; ///< under that edge
+    unsigned int die      = invalid_index; ///< the die under that edge
     Vec3         place;                    ///< its middle
   };
 
-  /// Of levelled gaps.  @param X  the positions they were found at
+  /// Returns the statistics of a contact set with levelled gaps.  @param X  the positions it was found at
   EdgeFit
   edge_fit(const NodalVectors<double> &X, const FrictionRamp &ramp, const ContactSet<double> &contact);
 
@@ -68,8 +69,8 @@ namespace retroforge
   void level_gaps(const NodalVectors<Number> &X, const FrictionRamp &ramp, ContactSet<Number> &contact);
 
   /// Pull-back of level_gaps.
-  /// @param gaps_bar   of the levelled gaps; becomes that of the own ones
-  /// @param ramps_bar  of the ramps
+  /// @param gaps_bar   derivatives in the levelled gaps; become those in the own gaps
+  /// @param ramps_bar  derivatives in the ramps
   void reverse_level_gaps(const NodalVectors<double> &X,
                           const FrictionRamp         &ramp,
                           const ContactSet<double>   &contact,

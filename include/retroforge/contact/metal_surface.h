@@ -35,11 +35,11 @@ namespace retroforge
     };
     Foot closest(const Vec3 &x) const;
 
-    /// Whether x lies beyond a plane of symmetry, by more than rounding.
+    /// Returns whether x lies beyond a plane of symmetry, by more than rounding.
     bool is_beyond(const Vec3 &x) const;
 
-    /// How far a hollow surface that turns as the facets do would stand behind this one [mm]: the longest,
-    /// over its edges that turn inwards by up to 45 degrees, of height times angle over eight.
+    /// Returns the sagitta of a concave surface that turns as the facets do [mm]: the maximum over the edges
+    /// of the triangle that turn inwards by up to 45 degrees, of height times angle over eight.
     double hollow(unsigned int triangle) const { return hollow_[triangle]; }
 
   private:
@@ -52,7 +52,7 @@ namespace retroforge
     NodalVectors<double>               vertices_;
     std::vector<Triangle>              triangles_;
     std::vector<Plane>                 symmetry_;
-    double                             rounding_; ///< of places [mm]
+    double                             rounding_; ///< rounding error of positions [mm]
     std::vector<Vec3>                  face_normals_, vertex_normals_;
     std::vector<std::pair<Edge, Vec3>> edge_normals_; ///< by edge, ascending
     std::vector<double>                hollow_;
@@ -60,12 +60,13 @@ namespace retroforge
     BoxTree                            tree_;
   };
 
-  /// That of a mesh with its nodes at X.
+  /// Returns the surface of a mesh with its nodes at X.
   MetalSurface metal_surface(const TetMesh &mesh, const NodalVectors<double> &X);
 
-  /// That of a billet as it is meant: facets of a mesh are chords of a round side, and the finer ones of this
-  /// surface, with their corners on the shape that the measures give, follow it to `tolerance` [mm], as far
-  /// as half a million of them can. Of a billet from a file it is that of the mesh.
+  /// Returns the surface of a billet as its measures define it. The facets of a mesh are chords of a round
+  /// side; this surface has finer ones with their corners on the defined shape, which follow it to
+  /// `tolerance` [mm], as far as half a million of them can. For a billet from a file it is the surface of
+  /// the mesh.
   /// @param mesh  as make_billet() made it       @param X  positions of its nodes, in the design
   MetalSurface billet_surface(const BilletParameters     &billet,
                               const TetMesh              &mesh,

@@ -22,11 +22,11 @@ namespace retroforge
                                                    const std::string                 &chooser,
                                                    const ReadBy                      &read_by);
 
-  /// A thing of one of several kinds that users choose by name. Each kind is a class of its own that derives
-  /// from Kind, with
+  /// An object of one of several kinds that users choose by name. Each kind is a class of its own that
+  /// derives from Kind, with
   ///   void add_parameters(dealii::ParameterHandler &prm);
-  /// for the settings it reads. All stand in the section of the thing, and kinds may share some, declared
-  /// alike. A table of makers is all that knows the kinds there are.
+  /// for the settings it reads. All stand in the section of the object, and kinds may share some, declared
+  /// alike. Only a table of makers knows all kinds.
   template <typename Kind>
   class Choice
   {
@@ -34,7 +34,7 @@ namespace retroforge
     struct Maker
     {
       std::string name;
-      /// With its default settings, or as another of that kind.
+      /// Makes a kind with its default settings, or as a copy of another of that kind.
       std::unique_ptr<Kind> (*make)(const Kind *other);
     };
     using Makers = std::vector<Maker>;
@@ -84,7 +84,7 @@ namespace retroforge
       throw;
     }
 
-    /// The chooser itself.
+    /// Declares the chooser itself.
     void add_name(dealii::ParameterHandler &prm, const std::string &chooser, const std::string &documentation)
     {
       std::string all;
@@ -93,7 +93,7 @@ namespace retroforge
       prm.add_parameter(chooser, name, documentation, dealii::Patterns::Selection(all));
     }
 
-    /// The settings of all kinds.
+    /// Declares the settings of all kinds.
     void add_settings(dealii::ParameterHandler &prm)
     {
       for (auto &kind : kinds_)
@@ -125,10 +125,10 @@ namespace retroforge
     }
     const Kind *operator->() const { return &**this; }
 
-    /// Those not chosen, too.
+    /// Returns all kinds, those not chosen too.
     const std::vector<std::unique_ptr<Kind>> &kinds() const { return kinds_; }
 
-    std::string name; ///< of the kind chosen, as in the table of makers
+    std::string name; ///< name of the chosen kind, as in the table of makers
 
   private:
     const Makers                      *makers_;

@@ -2,19 +2,32 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace retroforge
 {
-  /// What the user asked for:  `retroforge COMMAND CASE.prm [--set Section/name=value]... [--output DIR]
-  /// [--at NAME=VALUE]... [--resume | --overwrite]`.
+  enum class Command
+  {
+    simulate,
+    gradient,
+    check,
+    scan,
+    optimize,
+    scene
+  };
+
+  /// Returns the word for a command.
+  std::string word_of(Command command);
+
+  /// The command line:  `retroforge COMMAND CASE.prm [--set Section/name=value]... [--output DIR] [--at
+  /// NAME=VALUE]... [--resume | --overwrite]`.
   struct CommandLine
   {
-    std::string command; ///< simulate, gradient, check, scan, optimize or scene; empty only with one of the
-                         ///< three questions below
-    std::string case_file;
+    std::optional<Command> command; ///< none only with one of the three questions below
+    std::string            case_file;
 
     /// Parameters that the case has instead of those of its file, which may change while a long run goes on;
     /// empty: those of the file.
@@ -48,6 +61,6 @@ namespace retroforge
   /// The commands, in the order of the help text.
   const std::vector<std::string> &known_commands();
 
-  /// What `--help` prints.
+  /// Returns the text that `--help` prints.
   std::string help_text();
 } // namespace retroforge

@@ -10,22 +10,33 @@
 
 namespace retroforge
 {
+  /// Words by which parameter files name the values of an enum.
+  template <typename Enum>
+  using EnumWords = std::vector<std::pair<std::string, Enum>>;
+
+  /// Returns the word that stands for a value.
+  template <typename Enum>
+  std::string word_of(const Enum value, const EnumWords<Enum> &words)
+  {
+    for (const auto &[word, meaning] : words)
+      if (meaning == value)
+        return word;
+    AssertThrow(false, dealii::ExcMessage("no word stands for this value"));
+    throw;
+  }
+
   /// Declares a setting whose words stand for the values of an enum; its present value is the default.
   template <typename Enum>
-  void add_enum(dealii::ParameterHandler                        &prm,
-                const std::string                               &entry,
-                Enum                                            &value,
-                const std::vector<std::pair<std::string, Enum>> &words,
-                const std::string                               &documentation)
+  void add_enum(dealii::ParameterHandler &prm,
+                const std::string        &entry,
+                Enum                     &value,
+                const EnumWords<Enum>    &words,
+                const std::string        &documentation)
   {
-    std::string all, present;
+    std::string all;
     for (const auto &[word, meaning] : words)
-    {
       all += (all.empty() ? "" : "|") + word;
-      if (meaning == value)
-        present = word;
-    }
-    prm.declare_entry(entry, present, dealii::Patterns::Selection(all), documentation);
+    prm.declare_entry(entry, word_of(value, words), dealii::Patterns::Selection(all), documentation);
     prm.add_action(entry, [&value, words](const std::string &text) {
       for (const auto &[word, meaning] : words)
         if (word == text)

@@ -9,7 +9,7 @@
 
 namespace retroforge
 {
-  /// Whether the text is valid UTF-8 without control characters; a tab is allowed.
+  /// Returns whether the text is valid UTF-8 without control characters; a tab is allowed.
   bool is_plain_text(const std::string &text);
 
   /// The text fit for one line of a terminal: control characters and what is not UTF-8 become '?', and of
@@ -28,7 +28,7 @@ namespace retroforge
           const std::string &rule,
           const std::string &remedy);
 
-    /// The same with one more remedy.
+    /// Returns the error with one more remedy.
     Error or_else(const std::string &remedy) const;
 
   private:

@@ -7,7 +7,7 @@
 
 namespace retroforge
 {
-  /// What a user reads of an exception, on one line: `where: what; rule; remedy`. Those that are no Error
-  /// come from libraries, which know nothing of the case.
+  /// Returns the message of an exception for users, on one line: `where: what; rule; remedy`. Exceptions that
+  /// are no Error come from libraries, which know nothing of the case.
   std::string message_of(const std::exception_ptr &exception);
 } // namespace retroforge

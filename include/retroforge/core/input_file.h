@@ -15,10 +15,10 @@ namespace retroforge
   /// bytes stay as they are.
   std::string as_plain_lines(std::string bytes);
 
-  /// Whether the length is that which the number of facets in a binary STL file makes.
+  /// Returns whether the length is that of a binary STL file with the number of facets in its head.
   bool has_length_of_binary_stl(const std::string &bytes);
 
-  /// What a file is read as.
+  /// The format that a file is read as.
   enum class Wanted
   {
     surface,    ///< triangles, from STL

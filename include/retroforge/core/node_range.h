@@ -14,7 +14,7 @@ namespace retroforge
     unsigned int n_owned() const { return end - begin; }
     bool         owns(const unsigned int number) const { return begin <= number && number < end; }
 
-    /// Of the degrees of freedom that are this rank's, `width` to a node.
+    /// Returns the degrees of freedom that are this rank's, `width` to a node.
     dealii::IndexSet dofs(const unsigned int width) const
     {
       dealii::IndexSet set(width * n);

@@ -35,19 +35,18 @@ namespace retroforge
     struct IsVector : std::false_type
     {
     };
-    template <typename Number>
-    struct IsVector<Vector3<Number>> : std::true_type
+    template <int dim, typename Number>
+    struct IsVector<dealii::Tensor<1, dim, Number>> : std::true_type
     {
     };
 
     template <typename T>
-    struct IsList : std::false_type
-    {
-    };
+    std::true_type  is_list(const std::vector<T> *);
+    std::false_type is_list(const void *);
+
+    /// A list is a std::vector or made from one.
     template <typename T>
-    struct IsList<std::vector<T>> : std::true_type
-    {
-    };
+    using IsList = decltype(is_list(static_cast<const T *>(nullptr)));
 
     template <std::size_t i, typename F, typename... Tuples>
     void visit_member(const F &f, const Tuples &...members)
@@ -82,7 +81,7 @@ namespace retroforge
     if constexpr (IsNumber<T>::value)
       f(a, others...);
     else if constexpr (internal::IsVector<T>::value)
-      for (unsigned int i = 0; i < 3; ++i)
+      for (unsigned int i = 0; i < T::dimension; ++i)
         for_each_number(f, a[i], others[i]...);
     else if constexpr (internal::IsList<T>::value)
     {
@@ -108,7 +107,7 @@ namespace retroforge
     else if constexpr (IsNumber<To>::value)
       to = To(from);
     else if constexpr (internal::IsVector<To>::value)
-      for (unsigned int i = 0; i < 3; ++i)
+      for (unsigned int i = 0; i < To::dimension; ++i)
         convert(from[i], to[i]);
     else if constexpr (internal::IsList<To>::value)
     {
@@ -120,7 +119,7 @@ namespace retroforge
       internal::for_each_member([](const auto &a, auto &b) { convert(a, b); }, from, to);
   }
 
-  /// The same aggregate of another number type.
+  /// Returns the aggregate with another number type.
   template <typename To, template <typename> class Aggregate, typename From>
   Aggregate<To> converted(const Aggregate<From> &from)
   {
@@ -129,8 +128,8 @@ namespace retroforge
     return to;
   }
 
-  /// How a number of an aggregate is known to users, who may choose it as a design parameter. An aggregate
-  /// with a static `info()` tells that of all its numbers, in their order.
+  /// Name, unit and range of a number of an aggregate, which users may choose as a design parameter. An
+  /// aggregate with a static `info()` returns those of all its numbers, in their order.
   struct NumberInfo
   {
     std::string name, unit;

@@ -16,7 +16,7 @@ namespace retroforge
   struct ParameterLine
   {
     std::string                where;              ///< file and line
-    std::string                path;               ///< of the parameter or section, as written
+    std::string                path;               ///< path of the parameter or section, as written
     std::optional<std::string> value;              ///< none where a section is opened
     unsigned int               file = 0, line = 0; ///< number of the file among those read, and of the line
   };

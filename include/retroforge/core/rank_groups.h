@@ -26,7 +26,7 @@ namespace retroforge
     MPI_Comm     all() const { return all_; }
     bool         is_first_rank() const { return dealii::Utilities::MPI::this_mpi_process(all_) == 0; }
 
-    /// What each group has, in their order, on all ranks. Collective.
+    /// Gathers a value of each group, in their order, on all ranks. Collective.
     /// @param mine  the same on all ranks of a group
     template <typename T>
     std::vector<T> gathered(const T &mine) const

@@ -25,7 +25,7 @@ namespace retroforge
 
     /// Entries of all ranks, one rank after the other.
     const std::vector<unsigned int> &in_order_of_ranks() const { return order_; }
-    /// Where those of this rank stand in that order.
+    /// Returns the range of this rank's entries in that order.
     const NodeRange &range() const { return range_; }
 
     /// Makes an array of `width` doubles per entry complete whose owned entries are right. Collective.
@@ -36,7 +36,7 @@ namespace retroforge
   private:
     std::vector<unsigned int> owned_, order_;
     NodeRange                 range_;
-    std::vector<unsigned int> begin_; ///< of each rank in the order, and the end
+    std::vector<unsigned int> begin_; ///< first entry of each rank in the order, and the end
     MPI_Comm                  comm_ = MPI_COMM_SELF;
   };
 } // namespace retroforge

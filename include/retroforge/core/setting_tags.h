@@ -10,18 +10,18 @@
 
 namespace retroforge
 {
-  /// What a setting decides.
+  /// The role of a setting.
   enum class SettingRole
   {
-    scene,    ///< what is forged: a run that goes on keeps it
-    numerics, ///< how the equations are solved and cut into increments and meshes
-    results,  ///< what is made of a forging: objectives and their derivatives
-    check,    ///< how derivatives are checked
-    report    ///< no number of a run: what is written, and which runs are made
+    scene,    ///< the forging itself: a run that goes on keeps it
+    numerics, ///< the solution of the equations, and their increments and meshes
+    results,  ///< evaluations of a forging: objectives and their derivatives
+    check,    ///< the check of derivatives
+    report    ///< output and the choice of runs: no number of a run depends on it
   };
 
-  /// What the rooms say of their settings where they declare them, by path (`Contact/layer`). Of sections
-  /// that stand once for each name, as `Die NAME`, the tags are those of the name `*`.
+  /// The tags that the rooms give their settings where they declare them, by path (`Contact/layer`). Of
+  /// sections that stand once for each name, as `Die NAME`, the tags are those of the name `*`.
   class SettingTags
   {
   public:
@@ -39,7 +39,7 @@ namespace retroforge
     /// Returns what each value reads of the settings beside it, for one that chooses; null for another.
     const ReadBy *choice(const std::string &path) const;
 
-    std::map<std::string, SettingRole> roles; ///< of settings, and of sections
+    std::map<std::string, SettingRole> roles; ///< roles of settings and of sections
     std::map<std::string, Files>       named_files;
     std::map<std::string, ReadBy>      choices;
   };

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <cctype>
 #include <sstream>
 #include <string>
 
@@ -14,5 +15,14 @@ namespace retroforge
     std::ostringstream text;
     text << x;
     return text.str();
+  }
+
+  /// Returns a name with underscores for all but letters and digits, as for a field or a folder.
+  inline std::string as_identifier(std::string name)
+  {
+    for (char &c : name)
+      if (std::isalnum(static_cast<unsigned char>(c)) == 0)
+        c = '_';
+    return name;
   }
 } // namespace retroforge

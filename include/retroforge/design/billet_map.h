@@ -25,7 +25,7 @@ namespace retroforge
     /// The free parameters. Those that would move nodes off a symmetry plane are not among them.
     const std::vector<ShapeParameter> &parameters() const { return free_; }
 
-    /// All, as FirstMesh has them.
+    /// All parameters of the shape, as FirstMesh has them.
     const std::vector<ShapeParameter> &shape_parameters() const { return shapes_.parameters; }
 
     /// X_0(mu), mu in the order of parameters().
@@ -41,13 +41,13 @@ namespace retroforge
     /// Smallest quality of the cells at X_0(mu), of a mesh turned inside out too: see tet_quality().
     double mesh_quality(const std::vector<double> &mu) const;
 
-    /// Where the nodes stand in the nominal shape, which the mesh need not be able to follow.
+    /// Returns the positions of the nodes in the nominal shape, which the mesh need not be able to follow.
     NodalVectors<double> nominal_positions() const;
 
     /// All parameters of the shape, in the order of FirstMesh, the held one included.
     std::vector<double> all_values(const std::vector<double> &mu) const;
 
-    /// The one that holds the volume; null where none does.
+    /// Returns the parameter that holds the volume; null where none does.
     const ShapeParameter *held() const { return held_ ? &shapes_.parameters[*held_] : nullptr; }
 
     /// f(mu), the value of the parameter that holds the volume.
@@ -68,9 +68,9 @@ namespace retroforge
     std::vector<std::array<NodeIndex, 4>> cells_;
     double                                volume_;
     BilletShapes                          shapes_;
-    std::vector<double>                   at_; ///< their values at X_
+    std::vector<double>                   at_; ///< values of all parameters at X_
     std::vector<ShapeParameter>           free_;
-    std::vector<unsigned int>             place_; ///< of each free parameter among those of the shape
-    std::optional<unsigned int>           held_;  ///< place of the held one
+    std::vector<unsigned int>   place_; ///< position of each free parameter among those of the shape
+    std::optional<unsigned int> held_;  ///< position of the held parameter
   };
 } // namespace retroforge

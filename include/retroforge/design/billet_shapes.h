@@ -27,9 +27,9 @@ namespace retroforge
   struct BilletShapes
   {
     std::vector<ShapeParameter> parameters;
-    /// Which rule the values of all parameters break, in words; empty when none.
+    /// Returns the rule that the values of all parameters break, in words; empty when none.
     std::function<std::string(const std::vector<double> &)> complaint;
-    /// The billet whose measures are such values; null where a shape has no measures.
+    /// Returns the billet whose measures are the given values; null where a shape has no measures.
     std::function<BilletParameters(const std::vector<double> &)> measured;
   };
 

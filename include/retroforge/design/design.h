@@ -5,23 +5,23 @@
 #include <retroforge/design/billet_map.h>
 #include <retroforge/design/die_free_form.h>
 #include <retroforge/design/open_contact.h>
-#include <retroforge/time/process.h>
+#include <retroforge/steps/process.h>
 
 namespace retroforge
 {
-  /// A number the forger can change, and what it acts on.
+  /// A number that a design can change, and the quantity it acts on.
   struct DesignParameter
   {
     enum class Kind
     {
       material,      ///< a number of the material law
       contact,       ///< a number of the contact law
-      friction,      ///< of one die, or of all that have friction
-      speed,         ///< of one die, along its velocity
-      offset,        ///< of one die, along its facing direction
+      friction,      ///< friction coefficient of one die, or of all that have friction
+      speed,         ///< speed of one die along its velocity
+      offset,        ///< offset of one die along its facing direction
       die_shape,     ///< a measure of one tripod or bell
       die_free_form, ///< a mode of one die's surface
-      billet         ///< of the billet's shape, see BilletMap
+      billet         ///< a parameter of the billet's shape, see BilletMap
     };
 
     std::string  name;
@@ -31,16 +31,16 @@ namespace retroforge
     double       scale      = 1.;            ///< a length or size that steps are relative to
     unsigned int die        = invalid_index; ///< invalid_index: all
     unsigned int number     = 0;             ///< in the law, among the modes, or in BilletMap
-    std::string  measure    = {};            ///< of a die's shape
+    std::string  measure    = {};            ///< measure of a die's shape
     bool         may_vanish = false;         ///< else it is positive, unless it is free
     double       largest    = std::numeric_limits<double>::infinity();
 
-    /// Whether it may have any sign: shapes are checked where they are made.
+    /// Returns whether values may have any sign: shapes are checked where they are made.
     bool is_free() const
     {
       return kind == Kind::offset || kind == Kind::die_free_form || kind == Kind::billet;
     }
-    /// Whether both set the same number.
+    /// Returns whether both set the same number.
     bool overlaps(const DesignParameter &other) const;
   };
 
@@ -56,18 +56,16 @@ namespace retroforge
   public:
     /// @param names   as in `material/K`, `die upper/friction`, `billet/stretch`; unknown ones throw Error
     /// @param contact  what numbers of the contact law follow from that are no parameters
-    /// @param stroke  of the leading die in the nominal design [mm]
     Design(const std::vector<std::string>   &names,
            const BilletParameters           &billet,
            const std::vector<DieParameters> &dies,
            const Process<double>            &nominal_process,
            const OpenContact                &contact,
-           const FirstMesh                  &first,
-           double                            stroke);
+           const FirstMesh                  &first);
 
     const std::vector<DesignParameter> &parameters() const { return parameters_; }
     std::vector<double>                 nominal() const;
-    /// The nominal values but for those given by name, which are among parameters().
+    /// Returns the nominal values with those given by name in their place; names are among parameters().
     /// @throws Error  for values that no process has, as a negative friction
     std::vector<double> at(const std::multimap<std::string, double> &values) const;
     /// @throws Error  as at()
@@ -84,8 +82,8 @@ namespace retroforge
     /// @throws Error  where no value of the parameter that holds the volume keeps it
     double mesh_quality(const std::vector<double> &mu) const;
 
-    /// The parameter of the billet that holds the volume, and so follows from the others; none where none
-    /// does.
+    /// Returns the parameter of the billet that holds the volume, and so follows from the others, if there is
+    /// one.
     std::optional<DesignParameter> held() const;
     /// Its value.  @throws Error  where none keeps the volume
     double              held_value(const std::vector<double> &mu) const;
@@ -103,9 +101,9 @@ namespace retroforge
     /// Returns the coefficient of the friction on die d, as its law has it.
     NumberInfo friction_of(unsigned int d) const;
 
-    /// All that this scene offers.
+    /// Returns all parameters that this scene offers.
     std::vector<DesignParameter> offered() const;
-    /// Names with `billet/free form` and `die NAME/free form` replaced by those of all their modes.
+    /// Returns names with `billet/free form` and `die NAME/free form` replaced by those of all their modes.
     std::vector<std::string> expanded(const std::vector<std::string> &names) const;
     /// @param where  the name stands, for the message     @throws Error  for a name that is not among them
     void check_offered(const std::string &name, const std::string &where) const;
@@ -130,12 +128,11 @@ namespace retroforge
     void shape_dies(const std::vector<Number> &mu, Process<Number> &process) const;
 
     std::vector<DieParameters>   dies_;
-    std::vector<DieFreeForm>     die_forms_; ///< of each die
+    std::vector<DieFreeForm>     die_forms_; ///< free form of each die
     Process<double>              process_;
     OpenContact                  contact_;
-    double                       stroke_;
     BilletMap                    billet_map_;
-    NodalVectors<double>         nominal_X_; ///< where the nodes stand in the nominal shape
+    NodalVectors<double>         nominal_X_; ///< positions of the nodes in the nominal shape
     std::vector<NodeIndex>       followed_;  ///< by each die: the billet's first node in its way; or none
     double                       width_;     ///< the billet's extent in x, before cuts; of a file, its mesh's
     std::vector<DesignParameter> parameters_;

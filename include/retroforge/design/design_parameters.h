@@ -15,7 +15,7 @@ namespace retroforge
   {
     std::vector<std::string>           names = {"material/K"};
     std::multimap<std::string, double> at;
-    /// Of the billet, where it is meshed anew, one after the other.
+    /// Values of the billet's parameters at which it is meshed anew, one set after the other.
     std::vector<std::multimap<std::string, double>> meshed_at;
 
     void add_parameters(dealii::ParameterHandler &prm);

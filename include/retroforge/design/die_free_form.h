@@ -36,7 +36,7 @@ namespace retroforge
     /// phi_i(k) e_k of each vertex: dx/dmu_i.
     const NodalVectors<double> &move(const unsigned int mode) const { return moves_[mode]; }
 
-    /// Of the die as made [mm].
+    /// Vertices of the die as made [mm].
     const NodalVectors<double> &vertices() const { return vertices_; }
 
     /// Moves vertices by some coefficients [mm].

@@ -10,14 +10,15 @@ namespace retroforge
   ///   X_0(mu) = X + sum_j (mu_j - at_j) dX_0/dmu_j.
   struct FirstMesh
   {
-    TetMesh             mesh;
-    BilletShapes        shapes; ///< of the billet's kind, then free form; in the axes of the mesh
-    std::vector<double> at;     ///< values of the shapes' parameters that the mesh was made with
+    TetMesh      mesh;
+    BilletShapes shapes; ///< parameters of the billet's kind, then of the free form; in the axes of the mesh
+    std::vector<double> at; ///< values of the shapes' parameters that the mesh was made with
   };
 
   /// A mesh made at the nominal values of the shape.   @throws Error  for a free form that cannot be
   FirstMesh first_mesh(const BilletParameters &billet, const TetMesh &mesh);
 
-  /// How nodes of another mesh of the same kind of billet, made with its measures, follow them.
+  /// Returns the parameters of a billet's measures with their directions at the nodes of a mesh at X, which
+  /// was made with these measures.
   std::vector<ShapeParameter> shape_parameters(const BilletParameters &billet, const NodalVectors<double> &X);
 } // namespace retroforge

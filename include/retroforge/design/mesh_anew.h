@@ -12,12 +12,12 @@ namespace retroforge
   /// Values of some parameters of a billet's shape by name, `billet/...`.
   using ShapeValues = std::multimap<std::string, double>;
 
-  /// Whether the billet has measures for every shape it can take, so that the mesher can make it as it is at
+  /// Returns whether the billet has measures for every shape it can take, so that the mesher can make it at
   /// any of them. One from a file, or with a free form, is known by the surface of its mesh only.
   bool has_measures(const BilletParameters &billet);
 
-  /// Of all parameters of the shape, in the order of FirstMesh: those given, and nominal ones; the one that
-  /// holds the volume follows from the others where it is not given.
+  /// Returns the values of all parameters of the shape, in the order of FirstMesh: the given ones, and
+  /// nominal ones; the parameter that holds the volume follows from the others where it is not given.
   /// @throws Error  for names that are not of the billet's shape, or values that no shape has
   std::vector<double>
   shape_values(const BilletParameters &billet, const FirstMesh &first, const ShapeValues &given);

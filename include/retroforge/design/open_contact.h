@@ -4,19 +4,22 @@
 
 #include <retroforge/contact/contact_law.h>
 
+#include <optional>
+
 namespace retroforge
 {
-  /// What the numbers of the contact law follow from: the metal and the speed at which the dies close, also
-  /// where a design changes these, and their derivatives with them. The height stays that of the nominal
-  /// billet, as increments and sizes of elements do.
+  /// The rule by which the numbers of the contact law follow from the metal and the speed at which the dies
+  /// close, also where a design changes these, and their derivatives with them. The height stays that of the
+  /// nominal billet, as increments and sizes of elements do.
   struct OpenContact
   {
-    double height        = 1.; ///< of the whole billet [mm]
-    double penetration   = 1.; ///< speed at which a node sinks in under the mean pressure, over the dies'
-    double penalty       = 0.; ///< where it is set: rho, which then stays [MPa s/mm]; 0: it follows
-    double slip_fraction = 0.; ///< v0 over the speed at which the dies close
+    double height      = 1.; ///< height of the whole billet [mm]
+    double penetration = 1.; ///< speed at which a node sinks in under the mean pressure, over the dies'
+    std::optional<double> penalty       = {}; ///< rho, where it is set and does not follow [MPa s/mm]
+    double                slip_fraction = 0.; ///< v0 over the speed at which the dies close
 
-    /// Of a frictionless upsetting,  p = factor(3/2 e^2) 3/2 e,  e = speed / height  [MPa].
+    /// Returns the mean pressure of a frictionless upsetting,  p = factor(3/2 e^2) 3/2 e,  e = speed / height
+    /// [MPa].
     template <typename Number>
     Number mean_pressure(const MaterialLaw<Number> &metal, const Number &speed) const
     {
@@ -29,7 +32,7 @@ namespace retroforge
     ContactLaw<Number> law(const MaterialLaw<Number> &metal, const Number &speed) const
     {
       const Number rho =
-        penalty > 0. ? Number(penalty) : Number(mean_pressure(metal, speed) / (penetration * speed));
+        penalty ? Number(*penalty) : Number(mean_pressure(metal, speed) / (penetration * speed));
       return {rho, Number(slip_fraction * speed)};
     }
   };

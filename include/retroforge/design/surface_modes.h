@@ -19,7 +19,7 @@ namespace retroforge
 
     bool                moves(const unsigned int point) const { return held.empty() || !held[point]; }
     unsigned int        n_moving() const;
-    std::vector<double> masses() const; ///< of the points: a third of the areas around [mm^2]
+    std::vector<double> masses() const; ///< masses of the points: a third of the areas around [mm^2]
     double              area() const;   ///< mass of the points that move [mm^2]
   };
 

@@ -22,25 +22,37 @@ namespace retroforge
     taylor_hood ///< P2; P1  (element/taylor_hood.h)
   };
 
-  /// How integrals over cells are computed.
+  /// The way in which integrals over cells are computed.
   enum class Assembly
   {
     closed_form, ///< by the kernels of the pair
     quadrature   ///< by those of any element (element/quadrature_cell.h), which are slower
   };
 
-  /// What a discretisation is made of, besides the mesh.
+  /// The choices that define a discretisation, besides the mesh.
   struct DiscretizationChoice
   {
     ElementPair       pair          = ElementPair::mini;
     TriangulationKind triangulation = TriangulationKind::shared;
     Assembly          assembly      = Assembly::closed_form;
+    Kinematics        kinematics    = Kinematics::three_dimensions;
+    /// Of positions as functions on a cell. Of degree 2 they have nodes in the middles of edges, too.
+    unsigned int geometry_degree = 1;
   };
+
+  /// Checks that the choice can be had in dim dimensions: three-dimensional kinematics there and the others
+  /// in the plane; closed forms of tetrahedra only, and of straight ones.
+  /// @throws Error  if it cannot
+  template <int dim>
+  void check_choice(const DiscretizationChoice &choice);
 
   /// A mesh and the spaces on it, as deal.II defines them: a triangulation whose cells METIS gives to ranks;
   /// the velocities, FESystem(FE_SimplexHat, dim) or FESystem(FE_SimplexP(2), dim), the pressures,
-  /// FE_SimplexP(1), and the positions, FESystem(FE_SimplexP(1), dim), each with its DoFHandler; and the
-  /// constraints of the symmetry planes. Made anew for each mesh of a run.
+  /// FE_SimplexP(1), each with its DoFHandler, and the positions, each component of FE_SimplexP(k) with the
+  /// degree k of the choice; and the constraints of the symmetry planes. Made anew for each mesh of a run.
+  ///
+  /// Of an axisymmetric flow the axis is the line x = 0, which needs no plane of symmetry: nodes on it do not
+  /// move away from it.
   ///
   /// Kernels work on tables that are taken from these once. Cells have the index of the mesh. This rank
   /// *visits* the cells that touch one of its nodes, and keeps what falls on its own nodes, so that sums are
@@ -51,6 +63,7 @@ namespace retroforge
   public:
     /// @param mesh  the same on all ranks, its cells sound (deal.II does not look)
     /// Collective.
+    /// @throws Error  if the choice cannot be had, or metal lies beyond the axis
     Discretization(const SimplexMesh<dim> &mesh, const DiscretizationChoice &choice, MPI_Comm comm);
 
     /// @name deal.II's objects
@@ -58,8 +71,13 @@ namespace retroforge
     const dealii::Triangulation<dim> &triangulation() const { return *triangulation_; }
     const dealii::DoFHandler<dim>    &velocity_dofs() const { return velocity_dofs_; }
     const dealii::DoFHandler<dim>    &pressure_dofs() const { return pressure_dofs_; }
-    const dealii::DoFHandler<dim>    &geometry_dofs() const { return geometry_dofs_; }
-    /// v·n = 0 on the planes of symmetry, of the velocities that this rank owns or reads.
+    /// Of each component of the positions. Linear ones are as pressures are, whose degrees of freedom serve
+    /// here, too.
+    const dealii::DoFHandler<dim> &geometry_dofs() const
+    {
+      return quadratic_geometry_dofs_ ? *quadratic_geometry_dofs_ : pressure_dofs_;
+    }
+    /// v·n = 0 on the planes of symmetry, v_r = 0 on an axis, of the velocities that this rank owns or reads.
     const dealii::AffineConstraints<double> &symmetry() const { return symmetry_; }
     /// @}
 
@@ -70,19 +88,17 @@ namespace retroforge
 
     /// @name Nodes
     /// @{
-    /// Of velocities, bubbles last.
+    /// Nodes of the velocities, bubbles last.
     const std::shared_ptr<const NodeNumbering> &velocity_nodes() const { return velocity_nodes_; }
-    /// The same without the bubbles, which are eliminated in their cells: those of matrices. Nodes of this
-    /// rank have the same places in both.
+    /// Nodes of the velocities without bubbles, which are eliminated in their cells: the nodes of matrices.
+    /// This rank's nodes have the same places in both numberings.
     const std::shared_ptr<const NodeNumbering> &condensed_nodes() const { return condensed_nodes_; }
     const std::shared_ptr<const NodeNumbering> &pressure_nodes() const { return pressure_nodes_; }
     unsigned int                                n_vertices() const { return n_vertices_; }
-    /// Whether a velocity node is this rank's.
+    /// Returns whether a velocity node is this rank's.
     bool owns(const NodeIndex k) const { return velocity_nodes_->owns(k); }
-    /// Whether one of them is.
-    bool sees(const std::array<NodeIndex, 2> &nodes) const { return owns(nodes[0]) || owns(nodes[1]); }
     /// Null where velocities are linear.
-    const MiddleNodes *middles() const { return middles_.size() > 0 ? &middles_ : nullptr; }
+    const MiddleNodes *middles() const { return choice_.pair == ElementPair::mini ? nullptr : &edges_; }
     bool               has_bubbles() const { return choice_.pair == ElementPair::mini; }
     /// The velocity node of a cell's bubble.
     NodeIndex bubble(const CellIndex c) const { return condensed_nodes_->n() + c; }
@@ -97,7 +113,7 @@ namespace retroforge
     /// @name Cells
     /// @{
     const ReplicatedEntries &cells() const { return cells_; }
-    /// Those that touch a node of this rank, ascending.
+    /// Cells that touch a node of this rank, ascending.
     const std::vector<CellIndex> &visited_cells() const { return visited_; }
     /// Velocity nodes of a cell without its bubble.
     unsigned int n_nodes_per_cell() const { return nodes_per_cell_; }
@@ -112,12 +128,15 @@ namespace retroforge
     {
       return &pressure_places_[(dim + 1) * place_of_cell(c)];
     }
-    /// Nodes of the positions of a visited cell, indices of arrays of all positions.
+    /// Nodes of the positions of a visited cell: its vertices, then the middles of its edges where the
+    /// geometry is quadratic, as the element of geometry_dofs() has them.
     const NodeIndex *geometry_nodes(const CellIndex c) const
     {
-      return &geometry_nodes_[(dim + 1) * place_of_cell(c)];
+      return &geometry_nodes_[positions_per_cell_ * place_of_cell(c)];
     }
-    /// Where a visited cell stands among them.
+    /// Returns the vertices between which a node of the positions is that is none.
+    const MiddleNodes::Ends &ends_of_geometry_node(const NodeIndex k) const { return edges_.ends_of(k); }
+    /// Returns the position of a visited cell in visited_cells().
     unsigned int place_of_cell(const CellIndex c) const
     {
       const unsigned int place = place_of_cell_.empty() ? c : place_of_cell_[c];
@@ -132,9 +151,12 @@ namespace retroforge
   private:
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
-    /// Nodes of a local cell in the order of its velocity element's scalar shape functions.
-    std::vector<NodeIndex> nodes_of(const SimplexMesh<dim> &mesh, const Cell &cell) const;
-    void                   number_middles(const SimplexMesh<dim> &mesh);
+    /// Nodes of a local cell in the order of an element's scalar shape functions.
+    std::vector<NodeIndex>
+    nodes_of(const SimplexMesh<dim> &mesh, const dealii::FiniteElement<dim> &element, const Cell &cell) const;
+    void number_edges(const SimplexMesh<dim> &mesh);
+    /// Of velocities, without bubbles.
+    unsigned int n_nodes() const { return n_vertices_ + (middles() ? middles()->size() : 0); }
     /// Numbers a handler's degrees of freedom by nodes, and returns the nodes of this rank.
     std::vector<NodeIndex> distribute(const SimplexMesh<dim>           &mesh,
                                       const dealii::FiniteElement<dim> &element,
@@ -144,13 +166,14 @@ namespace retroforge
     void                   make_tables(const SimplexMesh<dim> &mesh);
     void                   constrain(const SimplexMesh<dim> &mesh);
 
-    DiscretizationChoice                         choice_;
-    MPI_Comm                                     comm_;
-    unsigned int                                 n_vertices_, nodes_per_cell_, places_per_cell_;
-    std::unique_ptr<dealii::Triangulation<dim>>  triangulation_;
-    dealii::DoFHandler<dim>                      velocity_dofs_, pressure_dofs_, geometry_dofs_;
+    DiscretizationChoice choice_;
+    MPI_Comm             comm_;
+    unsigned int         n_vertices_, nodes_per_cell_, places_per_cell_, positions_per_cell_;
+    std::unique_ptr<dealii::Triangulation<dim>> triangulation_;
+    dealii::DoFHandler<dim>                     velocity_dofs_, pressure_dofs_;
+    std::unique_ptr<dealii::DoFHandler<dim>>    quadratic_geometry_dofs_; ///< null where positions are linear
     std::unique_ptr<const ReferenceElement<dim>> quadrature_;
-    MiddleNodes                                  middles_;
+    MiddleNodes                                  edges_; ///< where a space has nodes in their middles
     ReplicatedEntries                            cells_;
     std::vector<CellIndex>                       visited_;
     std::vector<NodeIndex>                       nodes_of_visited_; ///< velocities, numbers
@@ -159,6 +182,6 @@ namespace retroforge
     std::vector<unsigned int>            velocity_places_, pressure_places_;
     std::vector<NodeIndex>               geometry_nodes_;
     dealii::AffineConstraints<double>    symmetry_;
-    Rows<dealii::Tensor<1, dim>>         fixed_directions_; ///< of condensed_nodes(), by place
+    Rows<dealii::Tensor<1, dim>>         fixed_directions_; ///< by place of condensed_nodes()
   };
 } // namespace retroforge

@@ -8,13 +8,14 @@
 
 namespace retroforge
 {
+  /// The section Discretization.
   struct DiscretizationParameters
   {
-    std::string element       = "mini";
-    std::string triangulation = "shared";
-    std::string assembly      = "closed form";
+    DiscretizationChoice choice;
 
-    void                 add_parameters(dealii::ParameterHandler &prm);
-    DiscretizationChoice choice() const;
+    void add_parameters(dealii::ParameterHandler &prm);
+
+    /// @throws Error  if what is chosen does not go together
+    void check() const { check_choice<3>(choice); }
   };
 } // namespace retroforge

@@ -9,14 +9,15 @@
 
 /// @file
 /// Cells of fields. What is done cell by cell is written once, as a function of a pair,
-///   with_pair(discretization, [&](const auto pair) {
+///   dispatch_element(discretization, [&](const auto pair) {
 ///     const auto geometry = cell_geometry(pair.positions(discretization, X, c));
 ///     ... cell_residual(geometry, pair.on_cell(discretization, W, c), law) ...
 ///   });
-/// for the kernels of all pairs have the same names. A rank does so with the cells that it visits.
+/// for the kernels of all pairs have the same names. A rank does so with the cells that it visits. In two
+/// dimensions there are those by quadrature.
 namespace retroforge
 {
-  /// Where the geometry nodes of a visited cell are.
+  /// Returns the positions of the geometry nodes of a visited cell.
   template <typename Number>
   Four<Vector3<Number>>
   positions_of_cell(const Discretization<3> &discretization, const NodalVectors<Number> &X, const CellIndex c)
@@ -52,7 +53,7 @@ namespace retroforge
 
     static CellValues<double> no_values() { return {}; }
 
-    /// Of a cell, its bubble left out: zero.
+    /// Returns the values of a cell without its bubble, which is zero.
     template <typename Number>
     static CellValues<Number>
     at_nodes(const Discretization<3> &discretization, const Field<Number> &W, const CellIndex c)
@@ -146,42 +147,59 @@ namespace retroforge
     }
   };
 
-  /// Either of them by quadrature.
+  /// Where a node of the positions is. X has those of the vertices, and a middle lies halfway between the
+  /// ends of its edge, or X has all of them, and cells may be curved.
+  template <int dim, typename Number>
+  dealii::Tensor<1, dim, Number> position_of_node(const Discretization<dim>      &discretization,
+                                                  const CellVectors<dim, Number> &X,
+                                                  const NodeIndex                 k)
+  {
+    if (k < X.size())
+      return X[k];
+    const auto &[a, b] = discretization.ends_of_geometry_node(k);
+    return 0.5 * (X[a] + X[b]);
+  }
+
+  /// Either of them by quadrature, on cells of any geometry.
+  template <int dim>
   struct QuadraturePair
   {
     template <typename Number>
-    using Values = QuadratureValues<3, Number>;
+    using Values = QuadratureValues<dim, Number>;
 
-    const ReferenceElement<3> *element;
+    const ReferenceElement<dim> *element;
 
     template <typename Number>
-    QuadratureGeometry<3, Number>
-    positions(const Discretization<3> &discretization, const NodalVectors<Number> &X, const CellIndex c) const
+    QuadratureGeometry<dim, Number> positions(const Discretization<dim>      &discretization,
+                                              const CellVectors<dim, Number> &X,
+                                              const CellIndex                 c) const
     {
-      QuadratureGeometry<3, Number> geometry{element, {}};
+      QuadratureGeometry<dim, Number> geometry{element, {}};
       for (unsigned int a = 0; a < element->n_positions(); ++a)
-        geometry.X.push_back(X[discretization.geometry_nodes(c)[a]]);
+        geometry.X.push_back(position_of_node(discretization, X, discretization.geometry_nodes(c)[a]));
       return geometry;
     }
 
-    CellVectors<3, double> no_positions() const { return CellVectors<3, double>(element->n_positions()); }
-    QuadratureValues<3, double> no_values() const { return QuadratureValues<3, double>(*element); }
+    CellVectors<dim, double> no_positions() const { return CellVectors<dim, double>(element->n_positions()); }
+    QuadratureValues<dim, double> no_values() const { return QuadratureValues<dim, double>(*element); }
 
     template <typename Number>
-    QuadratureValues<3, Number>
-    at_nodes(const Discretization<3> &discretization, const Field<Number> &W, const CellIndex c) const
+    QuadratureValues<dim, Number> at_nodes(const Discretization<dim>    &discretization,
+                                           const FlowField<dim, Number> &W,
+                                           const CellIndex               c) const
     {
-      QuadratureValues<3, Number> w = on_cell(discretization, W, c);
+      QuadratureValues<dim, Number> w = on_cell(discretization, W, c);
       if (element->has_bubble())
-        w.V.back() = Vector3<Number>();
+        w.V.back() = dealii::Tensor<1, dim, Number>();
       return w;
     }
 
     template <typename Number>
-    QuadratureValues<3, Number>
-    on_cell(const Discretization<3> &discretization, const Field<Number> &W, const CellIndex c) const
+    QuadratureValues<dim, Number> on_cell(const Discretization<dim>    &discretization,
+                                          const FlowField<dim, Number> &W,
+                                          const CellIndex               c) const
     {
-      QuadratureValues<3, Number> w(*element);
+      QuadratureValues<dim, Number> w(*element);
       for (unsigned int a = 0; a < w.V.size(); ++a)
         w.V[a] = W.V.at_place(discretization.velocity_places(c)[a]);
       for (unsigned int a = 0; a < w.P.size(); ++a)
@@ -191,10 +209,10 @@ namespace retroforge
 
     /// The transpose of on_cell.
     template <typename Number>
-    void add(const Discretization<3>           &discretization,
-             const QuadratureValues<3, Number> &w,
-             const CellIndex                    c,
-             Field<Number>                     &W) const
+    void add(const Discretization<dim>           &discretization,
+             const QuadratureValues<dim, Number> &w,
+             const CellIndex                      c,
+             FlowField<dim, Number>              &W) const
     {
       for (unsigned int a = 0; a < w.V.size(); ++a)
         W.V.at_place(discretization.velocity_places(c)[a]) += w.V[a];
@@ -203,24 +221,32 @@ namespace retroforge
     }
   };
 
-  /// f(pair), of the one that the discretisation is made for.
-  template <typename F>
-  decltype(auto) with_pair(const Discretization<3> &discretization, const F &f)
+  template <int dim>
+  QuadraturePair(const ReferenceElement<dim> *) -> QuadraturePair<dim>;
+
+  /// Returns f(pair) for the velocity-pressure pair of the discretisation.
+  template <int dim, typename F>
+  decltype(auto) dispatch_element(const Discretization<dim> &discretization, const F &f)
   {
-    if (discretization.quadrature())
-      return f(QuadraturePair{discretization.quadrature()});
-    return discretization.pair() == ElementPair::mini ? f(MiniPair()) : f(TaylorHoodPair());
+    if constexpr (dim == 3)
+      if (!discretization.quadrature())
+        return discretization.pair() == ElementPair::mini ? f(MiniPair()) : f(TaylorHoodPair());
+    return f(QuadraturePair<dim>{discretization.quadrature()});
   }
 
-  /// The transpose of positions_of_cell.
-  template <typename CellPositions>
-  void add_to_positions(const Discretization<3> &discretization,
-                        const CellPositions     &of_cell,
-                        const CellIndex          c,
-                        NodalVectors<double>    &X)
+  /// The transpose of a pair's positions: of vertices, or of all nodes of the positions.
+  template <int dim, typename CellPositions>
+  void add_to_positions(const Discretization<dim>           &discretization,
+                        const CellPositions                 &of_cell,
+                        const CellIndex                      c,
+                        std::vector<dealii::Tensor<1, dim>> &X)
   {
     const NodeIndex *nodes = discretization.geometry_nodes(c);
     for (unsigned int a = 0; a < of_cell.size(); ++a)
-      X[nodes[a]] += of_cell[a];
+      if (nodes[a] < X.size())
+        X[nodes[a]] += of_cell[a];
+      else
+        for (const NodeIndex end : discretization.ends_of_geometry_node(nodes[a]))
+          X[end] += 0.5 * of_cell[a];
   }
 } // namespace retroforge

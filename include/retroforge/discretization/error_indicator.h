@@ -13,7 +13,8 @@ namespace retroforge
     return discretization.pair() == ElementPair::mini ? 1 : 2;
   }
 
-  /// What each cell adds to the error of the power, as far as it shows in jumps of the strain rate [mJ/s]:
+  /// Returns the contribution of each cell to the error of the power, as indicated by jumps of the strain
+  /// rate [mJ/s]:
   ///
   ///   eta_T = int_T (s(eps*) - s(eps)) : (eps* - eps) >= 0,
   ///
@@ -21,12 +22,12 @@ namespace retroforge
   /// around it, by their volumes, and linear between. The power functional is convex with the stress s as its
   /// gradient, so that this is twice its error to second order if eps* were exact.
   /// @param X, W    positions [mm] and velocities [mm/s]
-  /// @param strain  of each cell, dimensionless
+  /// @param points  state of the metal in each cell
   /// @return of all cells, on every rank. Collective.
   /// Cells that are inverted count as flat: nothing. @cite Zienkiewicz1987
-  std::vector<double> indicated_errors(const Discretization<3>    &discretization,
-                                       const NodalVectors<double> &X,
-                                       const Field<double>        &W,
-                                       const Material<double>     &material,
-                                       const std::vector<double>  &strain);
+  std::vector<double> indicated_errors(const Discretization<3>               &discretization,
+                                       const NodalVectors<double>            &X,
+                                       const Field<double>                   &W,
+                                       const Material<double>                &material,
+                                       const std::vector<PointState<double>> &points);
 } // namespace retroforge

@@ -33,24 +33,24 @@ namespace retroforge
                   unsigned int                  n,
                   MPI_Comm                      comm);
 
-    /// The same nodes with as many entries each.
+    /// Returns the same nodes with another number of entries each.
     std::shared_ptr<const NodeNumbering> of_width(unsigned int width) const;
 
-    /// Of degrees of freedom.
+    /// Returns deal.II's partitioner of the degrees of freedom.
     const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &partitioner() const
     {
       return partitioner_;
     }
 
-    /// How many nodes there are on all ranks.
+    /// Returns the number of nodes on all ranks.
     unsigned int n() const { return nodes_.range().n; }
-    /// How many entries a vector has on this rank.
+    /// Returns the number of nodes that a vector has entries for on this rank.
     unsigned int n_places() const { return n_owned() + index_of_ghost_.size(); }
     /// The indices of this rank's nodes, whose places are 0 … n_owned() - 1.
     const NodeRange &range() const { return nodes_.range(); }
     unsigned int     n_owned() const { return range().n_owned(); }
 
-    /// Where a node stands in vectors; invalid_index where this rank neither owns nor reads it.
+    /// Returns the place of a node in vectors, invalid_index where this rank neither owns nor reads it.
     unsigned int place(const NodeIndex k) const
     {
       AssertIndexRange(k, n());
@@ -75,7 +75,7 @@ namespace retroforge
       return range().owns(index) ? index - range().begin : place(nodes_.in_order_of_ranks()[index]);
     }
 
-    /// Whether a node is this rank's; invalid_index is nobody's.
+    /// Returns whether a node is this rank's; invalid_index is no rank's.
     bool owns(const NodeIndex k) const { return k != invalid_index && place(k) < n_owned(); }
 
     /// All nodes, rank by rank.
@@ -86,10 +86,10 @@ namespace retroforge
   private:
     void make_partitioner(unsigned int width);
 
-    ReplicatedEntries                                          nodes_;
-    std::vector<unsigned int>                                  place_;   ///< of each node; empty: its number
-    std::vector<NodeIndex>                                     node_at_; ///< the same backwards
-    std::vector<unsigned int>                                  index_of_ghost_; ///< ascending
+    ReplicatedEntries         nodes_;
+    std::vector<unsigned int> place_;          ///< by number; empty: the number itself
+    std::vector<NodeIndex>    node_at_;        ///< the same backwards
+    std::vector<unsigned int> index_of_ghost_; ///< ascending
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> partitioner_;
   };
 } // namespace retroforge

@@ -15,7 +15,7 @@ namespace retroforge
     entries.complete(values, width);
   }
 
-  /// Of dual numbers the values and the derivatives.
+  /// Completes values and derivatives of dual numbers.
   template <typename Number>
   void complete_entries(const ReplicatedEntries &entries, Number *values, const unsigned int width)
   {

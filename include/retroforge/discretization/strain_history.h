@@ -21,22 +21,23 @@ namespace retroforge
   /// q_np1 = q_n + dt ebar(X, W)  of the cells this rank owns, one value per cell, dimensionless; the others'
   /// stays.
   /// @param X, W   positions [mm] and velocities [mm/s] of the increment's last stage
-  template <typename Number>
-  std::vector<Number> accumulate_strain(const Discretization<3>    &discretization,
-                                        const NodalVectors<Number> &X,
-                                        const Field<Number>        &W,
-                                        const Number               &dt,
-                                        const std::vector<Number>  &q_n);
+  template <typename Number, int dim>
+  std::vector<Number> accumulate_strain(const Discretization<dim>      &discretization,
+                                        const CellVectors<dim, Number> &X,
+                                        const FlowField<dim, Number>   &W,
+                                        const Number                   &dt,
+                                        const std::vector<Number>      &q_n);
 
   /// Pull-back of accumulate_strain: adds dt q_bar_T debar_T of the cells this rank owns to W_bar (V) and
   /// X_bar.
   /// @param q_bar  adjoint of q_np1, and as it is that of q_n
   /// @return derivative in dt,  sum_T q_bar_T ebar_T
-  double reverse_accumulate_strain(const Discretization<3>    &discretization,
-                                   const NodalVectors<double> &X,
-                                   const Field<double>        &W,
-                                   double                      dt,
-                                   const std::vector<double>  &q_bar,
-                                   Field<double>              &W_bar,
-                                   NodalVectors<double>       &X_bar);
+  template <int dim>
+  double reverse_accumulate_strain(const Discretization<dim>      &discretization,
+                                   const CellVectors<dim, double> &X,
+                                   const FlowField<dim, double>   &W,
+                                   double                          dt,
+                                   const std::vector<double>      &q_bar,
+                                   FlowField<dim, double>         &W_bar,
+                                   CellVectors<dim, double>       &X_bar);
 } // namespace retroforge

@@ -11,7 +11,7 @@
 
 namespace retroforge
 {
-  /// How the cells of a mesh lie on the ranks.
+  /// The distribution of a mesh's cells over the ranks.
   enum class TriangulationKind
   {
     shared,           ///< every rank has the whole triangulation
@@ -34,7 +34,7 @@ namespace retroforge
                           const std::vector<dealii::Tensor<1, dim>> &X,
                           dealii::Triangulation<dim>                &triangulation);
 
-  /// The same with a surface: its triangles in their order, vertices with their numbers.
+  /// Makes a triangulation of a surface: triangles in their order, vertices with their numbers.
   void make_triangulation(const TriangleSurface &surface, dealii::Triangulation<2, 3> &triangulation);
 
   /// A mesh on all ranks of `comm`, whose cells METIS gives to them. The index of a cell in the mesh is its

@@ -43,7 +43,7 @@ namespace retroforge
   /// e_min
   inline constexpr double least_effective_normal = 0.1;
 
-  /// What the motion of the vertices depends on.
+  /// Arguments of the motion of the vertices.
   template <typename Number>
   struct VertexMotionInput
   {

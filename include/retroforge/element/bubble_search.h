@@ -35,7 +35,7 @@ namespace retroforge
 
     bool          done() const { return done_; }
     const Vector &beta() const { return beta_; }
-    /// Where the state is wanted.
+    /// Returns the bubble at which the state is wanted.
     const Vector &trial() const { return trial_; }
 
     void take(const BubbleState<dim, double> &state)

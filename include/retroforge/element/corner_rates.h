@@ -11,7 +11,8 @@ namespace retroforge
   /// has in common with its neighbours is linear, and its rates are constant.
   PointRates<double> corner_strain_rates(const CellGeometry<double> &geometry, const CellValues<double> &w);
 
-  /// The same of a quadratic velocity: linear in the cell, so that the corners say all of it.
+  /// Returns the strain rates of a quadratic velocity at the corners: they are linear in the cell, so that
+  /// the corners determine them.
   PointRates<double> corner_strain_rates(const CellGeometry<double>     &geometry,
                                          const TaylorHoodValues<double> &w);
 } // namespace retroforge

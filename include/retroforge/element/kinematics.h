@@ -4,7 +4,7 @@
 
 namespace retroforge
 {
-  /// Which flow of the metal in space a velocity with dim components stands for.
+  /// The flow of the metal in space that a velocity with dim components stands for.
   enum class Kinematics
   {
     three_dimensions, ///< all of it

@@ -74,7 +74,7 @@ namespace retroforge
                                            double                      weight,
                                            CellValues<double>         &w_bar);
 
-  /// What the elimination of a cell's bubble needs again when systems are solved.
+  /// Data of the elimination of a cell's bubble, which the solution of systems needs again.
   template <typename Number>
   struct BubbleElimination
   {
@@ -124,7 +124,7 @@ namespace retroforge
                     const CellValues<double>   &w,
                     const MaterialLaw<double>  &law);
 
-  /// The same of n_lanes cells: the bits of each are those of solve_bubble.
+  /// Solves for the bubbles of n_lanes cells: the bits of each are those of solve_bubble().
   std::array<Vec3, n_lanes> solve_bubbles(const std::array<CellGeometry<double>, n_lanes> &geometry,
                                           const std::array<CellValues<double>, n_lanes>   &w,
                                           const LaneLaws                                  &laws);

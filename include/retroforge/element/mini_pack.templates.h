@@ -84,7 +84,7 @@ namespace retroforge
         eps[i] = linear[i];
       add_dyad(cell.beta, 4., cell.g[a], eps);
       T factor, slope;
-      ask_law(law, square(eps), factor, slope);
+      evaluate_law(law, square(eps), factor, slope);
       factor            = quarter * factor;
       input.half[a]     = 0.5 * factor;
       input.rank_one[a] = 2. * slope * factor;

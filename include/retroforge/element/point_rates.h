@@ -13,7 +13,7 @@ namespace retroforge
   template <typename Number>
   using Symmetric = std::array<Number, 6>;
 
-  /// Of strain rates, of stresses, or of what is dual to them.
+  /// Strain rates, stresses, or derivatives in them, at the four points of a cell.
   template <typename Number>
   using PointRates = Four<Symmetric<Number>>;
 
@@ -39,6 +39,14 @@ namespace retroforge
   Number trace(const Symmetric<Number> &e)
   {
     return e[0] + e[1] + e[2];
+  }
+
+  /// Subtracts the mean of the diagonal.
+  inline void remove_trace(Symmetric<double> &e)
+  {
+    const double mean = trace(e) / 3.;
+    for (unsigned int k = 0; k < 3; ++k)
+      e[k] -= mean;
   }
 
   template <typename Number>

@@ -41,8 +41,8 @@ namespace retroforge
   template <int dim, typename Number>
   struct QuadratureValues
   {
-    CellVectors<dim, Number> V; ///< of velocity functions, a bubble last [mm/s]
-    std::vector<Number>      P; ///< of pressure functions [MPa]
+    CellVectors<dim, Number> V; ///< coefficients of velocity functions, a bubble last [mm/s]
+    std::vector<Number>      P; ///< coefficients of pressure functions [MPa]
 
     QuadratureValues() = default;
     /// Zeros.
@@ -152,8 +152,8 @@ namespace retroforge
                                       const MaterialLaw<double>             &law,
                                       Linearisation                          linearisation);
 
-  /// What the elimination of a cell's bubble needs again when systems are solved: BubbleElimination of any
-  /// pair.
+  /// Data of the elimination of a cell's bubble, which the solution of systems needs again: BubbleElimination
+  /// for any pair.
   template <int dim>
   struct EliminatedBubble
   {

@@ -8,7 +8,7 @@
 
 namespace retroforge
 {
-  /// What a point of a cell sees of positions and unknowns, or what is dual to that.
+  /// Positions and unknowns at a point of a cell, or derivatives in them.
   template <int dim, typename Number>
   struct PointState
   {

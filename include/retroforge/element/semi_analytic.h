@@ -8,9 +8,9 @@
 
 namespace retroforge
 {
-  /// How derivatives of a cell in the positions of its nodes are formed: in closed form, or by differences
-  /// inside the cell in its twelve coordinates, with a step relative to the cell's size.  @cite Laroussi2003,
-  /// Eq. (76)-(79)
+  /// The method of derivatives of a cell in the positions of its nodes: closed form, or differences inside
+  /// the cell in its twelve coordinates, with a step relative to the cell's size.  @cite Laroussi2003, Eq.
+  /// (76)-(79)
   struct ShapeDerivatives
   {
     enum class Method

@@ -28,8 +28,8 @@ namespace retroforge
     return law.is_linear();
   }
 
-  /// What stands for the derivative of the stresses: the derivative, or (Picard) the viscosity at the strain
-  /// rates of w alone. Both leave the solution where it is; Newton is the faster one close to it.
+  /// The linearisation of the stresses: their derivative (Newton), or the viscosity at the strain rates of w
+  /// alone (Picard). Both leave the solution where it is; Newton is the faster one close to it.
   enum class Linearisation
   {
     newton,

@@ -44,13 +44,13 @@ namespace retroforge
 
   /// Stress factor and d log(factor)/d(eps:eps), of one cell or lane by lane.
   RETROFORGE_INLINE void
-  ask_law(const MaterialLaw<double> &law, const double &eps2, double &factor, double &slope)
+  evaluate_law(const MaterialLaw<double> &law, const double &eps2, double &factor, double &slope)
   {
     factor = law(eps2);
     slope  = law.slope(eps2);
   }
 
-  RETROFORGE_INLINE void ask_law(const LaneLaws &laws, const Pack &eps2, Pack &factor, Pack &slope)
+  RETROFORGE_INLINE void evaluate_law(const LaneLaws &laws, const Pack &eps2, Pack &factor, Pack &slope)
   {
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
     {
@@ -61,12 +61,12 @@ namespace retroforge
 
   /// The law's potential over its factor.
   RETROFORGE_INLINE void
-  ask_potential_ratio(const MaterialLaw<double> &law, const double &eps2, double &ratio)
+  evaluate_potential_ratio(const MaterialLaw<double> &law, const double &eps2, double &ratio)
   {
     ratio = law.potential_ratio(eps2);
   }
 
-  RETROFORGE_INLINE void ask_potential_ratio(const LaneLaws &laws, const Pack &eps2, Pack &ratio)
+  RETROFORGE_INLINE void evaluate_potential_ratio(const LaneLaws &laws, const Pack &eps2, Pack &ratio)
   {
     for (unsigned int lane = 0; lane < n_lanes; ++lane)
       ratio[lane] = laws[lane].potential_ratio(eps2[lane]);

@@ -31,7 +31,7 @@ namespace retroforge
   template <typename Number>
   struct TaylorHoodRates
   {
-    Four<Four<Vector3<Number>>> U; ///< of corner c at point q [mm/s]
+    Four<Four<Vector3<Number>>> U; ///< velocity of corner c at point q [mm/s]
     PointRates<Number>          eps;
 
     TaylorHoodRates(const CellGeometry<Number> &geometry, const VelocityNodes<Vector3<Number>> &V)

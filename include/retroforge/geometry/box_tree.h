@@ -17,10 +17,16 @@ namespace retroforge
     Vec3 lower, upper;
 
     explicit BoundingBox(const Vec3 &x) : lower(x), upper(x) {}
+    template <std::size_t n>
+    explicit BoundingBox(const std::array<Vec3, n> &points) : BoundingBox(points[0])
+    {
+      for (const Vec3 &x : points)
+        include(x);
+    }
     void include(const Vec3 &x);
     bool intersects(const BoundingBox &other) const;
 
-    /// Of its closest point, 0 inside.
+    /// Returns the square distance of x to the closest point of the box, 0 inside.
     double square_distance(const Vec3 &x) const
     {
       double square = 0.;
@@ -96,7 +102,7 @@ namespace retroforge
 
     std::vector<Branch>       branches_;
     std::vector<unsigned int> items_;
-    std::vector<BoundingBox>  boxes_; ///< of items_
+    std::vector<BoundingBox>  boxes_; ///< boxes of items_
   };
 
   template <typename Lower, typename Visit>

@@ -16,7 +16,7 @@ namespace retroforge
     unsigned char kind  = 0; ///< 0 the face, 1 + e its edge e, 4 + c its corner c, or `flat_face`
 
     static constexpr unsigned char n_kinds   = 8;
-    static constexpr unsigned char flat_face = 7; ///< of a smooth surface: the face as a plane, see Die
+    static constexpr unsigned char flat_face = 7; ///< the face of a smooth surface as a plane, see Die
 
     static constexpr DieFeature none() { return {invalid_index, 0}; }
     bool                        found() const { return facet != invalid_index; }
@@ -47,6 +47,6 @@ namespace retroforge
     BoxTree                tree_;
   };
 
-  /// The same by looking at every facet: what the search is tested against.
+  /// Finds the closest feature by looking at every facet: the reference that the search is tested against.
   DieFeature closest_feature_of_all(const TriangleSurface &surface, const Vec3 &X, double within);
 } // namespace retroforge

@@ -27,16 +27,16 @@ namespace retroforge
     /// @param largest_sagitta  of the surface's diagonal
     CornerNormals(const TriangleSurface &surface, double feature_angle, double largest_sagitta = 3e-3);
 
-    /// Which normal a corner of a facet has. Corners of one fan share theirs.
+    /// Returns the number of a corner's normal. Corners of one fan share theirs.
     unsigned int of_corner(const unsigned int facet, const unsigned int corner) const
     {
       return normal_of_corner_[facet][corner];
     }
 
-    /// Whether the surface ends or turns by more than the feature angle at an edge.
+    /// Returns whether the surface ends or turns by more than the feature angle at an edge.
     bool is_sharp(const unsigned int facet, const unsigned int edge) const { return sharp_[facet][edge]; }
 
-    /// Whether the vertex lies on such an edge.
+    /// Returns whether the vertex lies on a sharp edge.
     bool is_on_sharp_edge(const unsigned int vertex) const { return on_sharp_edge_[vertex]; }
 
     /// The corners of facets that a normal sums up.
@@ -48,7 +48,7 @@ namespace retroforge
     /// A normal at the vertices the surface has.
     const Vec3 &operator[](const unsigned int normal) const { return values_[normal]; }
 
-    /// The same normals with the surface's vertices elsewhere.
+    /// Recomputes the normals with the surface's vertices elsewhere.
     void update(const TriangleSurface &surface);
 
     /// A normal with the vertices at x.

@@ -10,27 +10,29 @@
 
 namespace retroforge
 {
-  /// What of a die can change with time or design. Everything else about it is geometry.
+  /// State of a die: the quantities that change with time or design. Everything else about it is geometry.
   template <typename Number>
   struct DieState
   {
     Vector3<Number> velocity;              ///< [mm/s]
     Vector3<Number> displacement;          ///< from the position at the start of the run [mm]
     Number          friction = Number(0.); ///< coefficient of its law of friction, in the law's unit
-    /// Of its surface, where a design has moved them or a derivative in them is wanted; empty: as made [mm].
+    /// Vertices of its surface, where a design has moved them or a derivative in them is wanted; empty: as
+    /// made [mm].
     NodalVectors<Number> vertices = {};
-    /// Which law of friction the coefficient is of (contact/interface_law.h); 0: Norton's.
+    /// Number of the friction law that the coefficient belongs to (contact/interface_law.h); 0: Norton's.
     unsigned int interface_law = 0;
+    unsigned int in_press      = 1; ///< whether it stands in the press: 0 or 1
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[velocity, displacement, friction, vertices, interface_law] = self;
-      return std::tie(velocity, displacement, friction, vertices, interface_law);
+      auto &[velocity, displacement, friction, vertices, interface_law, in_press] = self;
+      return std::tie(velocity, displacement, friction, vertices, interface_law, in_press);
     }
   };
 
-  /// How the facets of a triangulated die are understood.
+  /// The surface that the facets of a triangulated die stand for.
   struct DieSurfaceLaw
   {
     bool   smooth        = true; ///< they stand for a smooth surface; else they are the surface
@@ -65,13 +67,13 @@ namespace retroforge
     DieFeature
     closest(const Vec3 &X, const Vec3 &displacement, double reach = std::numeric_limits<double>::max()) const;
 
-    /// Signed distance however far or deep [mm]; infinite behind the rim of an open surface.
+    /// Returns the signed distance, however far or deep [mm]; infinite behind the rim of an open surface.
     double signed_distance(const Vec3 &X, const Vec3 &displacement) const;
 
-    /// The same of the facets as they are, whatever surface they stand for [mm].
+    /// Returns the signed distance to the facets as they are, whatever surface they stand for [mm].
     double facet_distance(const Vec3 &X, const Vec3 &displacement) const;
 
-    /// How deep X is inside [mm]; 0 outside, and where it is deeper than `within`.
+    /// Returns the depth of X inside the die [mm]; 0 outside, and where it is deeper than `within`.
     double depth_of(const Vec3 &X, const Vec3 &displacement, double within) const;
 
     /// Signed distance and normal of a feature seen from X. Of a plane:  delta = n·(point + displacement -
@@ -93,7 +95,7 @@ namespace retroforge
       return projection;
     }
 
-    /// The same of a die in a given state, its vertices included.
+    /// Projects onto the die in a given state, its vertices included.
     template <typename Number>
     Projection<Number>
     project(const Vector3<Number> &X, const DieState<Number> &state, const DieFeature &feature) const
@@ -106,7 +108,7 @@ namespace retroforge
       return project_on_surface(&state.vertices, feature, X, state.displacement);
     }
 
-    /// The same die with its surface's vertices elsewhere [mm].
+    /// Returns the die with its surface's vertices elsewhere [mm].
     Die moved(NodalVectors<double> vertices) const;
 
     /// Adds the pull-back of project to X_bar and displacement_bar, and to vertices_bar if given. The normal
@@ -137,7 +139,7 @@ namespace retroforge
       TriangleSurface              shape;
       ClosestFeature               closest;
       double                       depth, feature_angle;
-      std::optional<CornerNormals> normals; ///< of a smooth surface
+      std::optional<CornerNormals> normals; ///< normals of a smooth surface
 
       Surface(TriangleSurface              made,
               const double                 depth,

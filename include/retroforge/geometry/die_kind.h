@@ -10,9 +10,11 @@
 
 #include <deal.II/base/tensor.h>
 
+#include <optional>
+
 namespace retroforge
 {
-  /// Whose die it is and where it stands.
+  /// Name and position of a die.
   struct DiePlace
   {
     std::string name;
@@ -38,10 +40,10 @@ namespace retroforge
     /// @throws Error  for a file or measures that make no surface
     virtual Die make(const DiePlace &place) const = 0;
 
-    /// How deep contact reaches, where the user says so [mm]; 0: not said.
-    virtual double depth_of_contact() const { return 0.; }
+    /// Returns the depth of contact, where the user sets it [mm].
+    virtual std::optional<double> depth_of_contact() const { return {}; }
 
-    /// Of dies whose vertices can move; else null.
+    /// Returns the free form of dies whose vertices can move, else null.
     virtual const DieFreeFormParameters *free_form() const { return nullptr; }
 
     /// The measures that a design can vary.
@@ -55,34 +57,43 @@ namespace retroforge
                                           const std::map<std::string, Dual> &changed) const;
   };
 
-  /// The kinds there are: to add one, add a line to this table.
+  /// The table of kinds: to add one, add a line to it.
   const Choice<DieKind>::Makers &die_kinds();
 
   /// A die of facets.
   class SurfaceDie : public DieKind
   {
   public:
+    enum class Surface
+    {
+      smooth, ///< facets stand for a smooth surface, interpolated between their corners
+      facets  ///< the surface is its facets
+    };
+
     double depth = 0.; ///< 0: a tenth of the surface's diagonal [mm]
 
-    std::string surface_law     = "smooth";
-    double      feature_angle   = 25.;  ///< [degrees]
-    double      largest_sagitta = 3e-3; ///< of the surface's diagonal
+    Surface surface_law     = Surface::smooth;
+    double  feature_angle   = 25.;  ///< [degrees]
+    double  largest_sagitta = 3e-3; ///< part of the surface's diagonal
 
-    Rotations rotations; ///< of a die by measures only the angle, about its own axis
+    Rotations rotations; ///< for a die by measures only the angle, about its own axis
 
     DieFreeFormParameters free_form_parameters;
 
-    void   add_parameters(dealii::ParameterHandler &prm) override;
-    void   check(const std::string &section, const std::string &chosen) const override;
-    Die    make(const DiePlace &place) const override;
-    double depth_of_contact() const override { return depth; }
+    void                  add_parameters(dealii::ParameterHandler &prm) override;
+    void                  check(const std::string &section, const std::string &chosen) const override;
+    Die                   make(const DiePlace &place) const override;
+    std::optional<double> depth_of_contact() const override
+    {
+      return depth > 0. ? std::optional(depth) : std::nullopt;
+    }
 
     const DieFreeFormParameters *free_form() const override { return &free_form_parameters; }
 
   protected:
     void add_angle(dealii::ParameterHandler &prm);
 
-    /// Where the die stands.
+    /// Returns the surface at the die's place.
     virtual TriangleSurface surface(const DiePlace &place) const = 0;
   };
 

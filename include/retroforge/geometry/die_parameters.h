@@ -6,8 +6,8 @@
 
 namespace retroforge
 {
-  /// What a parameter file says about a die: the section `Die NAME`. A plane goes through `point`; DieKind
-  /// says where dies of other shapes stand.
+  /// The settings of a die: the section `Die NAME`. A plane goes through `point`; DieKind says where dies of
+  /// other shapes stand.
   struct DieParameters
   {
     std::string     name;

@@ -76,8 +76,9 @@ namespace retroforge::die_rings
   struct Section
   {
     Points2<Number> points;
-    Number          reach_out = Number(0.); ///< of the edge, outwards on the face
-    Number reach_in = Number(0.); ///< of the fillet, inwards on the floor, or of a punch's edge on its end
+    Number          reach_out = Number(0.); ///< reach of the edge, outwards on the face
+    /// Reach of the fillet, inwards on the floor, or of a punch's edge on its end.
+    Number reach_in = Number(0.);
   };
 
   template <typename Number>

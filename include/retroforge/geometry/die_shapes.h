@@ -27,14 +27,14 @@ namespace retroforge
     std::vector<Triangle> triangles;
   };
 
-  /// What users call a number of a shape, and what it means.
+  /// A number of a shape: its name in parameter files and its meaning.
   struct Measure
   {
     std::string name, meaning, unit;
     double      value = 0.;
   };
 
-  /// Of a shape whose design is told by measures alone.
+  /// Base of shapes that are defined by measures alone, without a count as of teeth.
   struct NoCounts
   {
     template <typename Self, typename F>
@@ -43,12 +43,12 @@ namespace retroforge
     }
   };
 
-  /// What a cavity looks like in section.
+  /// The section of a cavity.
   template <typename Number>
   struct CavityProfile
   {
-    Number depth  = 9.5; ///< of the floor below the face [mm]
-    Number draft  = 7.;  ///< of the wall against the z axis [degrees]
+    Number depth  = 9.5; ///< depth of the floor below the face [mm]
+    Number draft  = 7.;  ///< angle of the wall against the z axis [degrees]
     Number edge   = 2.;  ///< radius of the edge between face and wall [mm]
     Number fillet = 2.;  ///< radius between wall and floor [mm]
 
@@ -70,7 +70,7 @@ namespace retroforge
   struct TripodShape : NoCounts
   {
     Number                hub    = 24.; ///< radius [mm]
-    Number                width  = 24.; ///< of an arm, whose end is a half circle [mm]
+    Number                width  = 24.; ///< width of an arm, whose end is a half circle [mm]
     Number                length = 56.; ///< from the axis to the end of an arm [mm]
     Number                corner = 8.;  ///< radius in plan between hub and arm [mm]
     Number                outer  = 80.; ///< radius of the face [mm]
@@ -118,15 +118,15 @@ namespace retroforge
   template <typename Number>
   struct GearShape
   {
-    unsigned int          teeth     = 10;
-    Number                root      = 25.8; ///< radius between the teeth [mm]
-    Number                tip       = 38.9; ///< radius of the teeth's ends [mm]
-    Number                reference = 31.5; ///< radius at which a tooth's angle is measured [mm]
-    Number                tooth     = 18.;  ///< angle that a tooth takes there [degrees]
-    Number                flank = 15.; ///< of a flank against the radius through the tooth's middle [degrees]
-    Number                root_round = 2.;  ///< radius in plan at a tooth's foot [mm]
-    Number                tip_round  = 1.5; ///< radius in plan at a tooth's end [mm]
-    Number                outer      = 55.; ///< radius of the face [mm]
+    unsigned int teeth     = 10;
+    Number       root      = 25.8; ///< radius between the teeth [mm]
+    Number       tip       = 38.9; ///< radius of the teeth's ends [mm]
+    Number       reference = 31.5; ///< radius at which a tooth's angle is measured [mm]
+    Number       tooth     = 18.;  ///< angle that a tooth takes there [degrees]
+    Number       flank = 15.; ///< angle of a flank against the radius through the tooth's middle [degrees]
+    Number       root_round = 2.;  ///< radius in plan at a tooth's foot [mm]
+    Number       tip_round  = 1.5; ///< radius in plan at a tooth's end [mm]
+    Number       outer      = 55.; ///< radius of the face [mm]
     CavityProfile<Number> profile{46., 0., 0.5, 1.5};
 
     static const char *section() { return "Gear"; } ///< in parameter files
@@ -159,9 +159,9 @@ namespace retroforge
   struct PunchShape : NoCounts
   {
     Number radius = 10.; ///< [mm]
-    Number length = 60.; ///< of its side, along the axis [mm]
-    Number draft  = 0.;  ///< of its side against the axis, wider with the distance from the end [degrees]
-    Number edge   = 1.;  ///< radius of the edge between end and side [mm]
+    Number length = 60.; ///< length of the side along the axis [mm]
+    Number draft = 0.; ///< angle of the side against the axis, wider with the distance from the end [degrees]
+    Number edge  = 1.; ///< radius of the edge between end and side [mm]
 
     static const char *section() { return "Punch"; } ///< in parameter files
 

@@ -15,13 +15,13 @@ namespace retroforge
   /// About an axis through the origin, of any length, counter-clockwise seen against it.
   dealii::Tensor<2, 3> rotation(const Vec3 &axis, double degrees);
 
-  /// How a body is turned about the origin: once, by `rotation axis` and `rotation angle`, or several times,
-  /// by `rotations`, one after the other about axes that stay where they are.
+  /// The rotation of a body about the origin: once, by `rotation axis` and `rotation angle`, or several
+  /// times, by `rotations`, one after the other about axes that stay where they are.
   struct Rotations
   {
     Vec3                             axis  = Vec3({0., 0., 1.});
     double                           angle = 0.; ///< [degrees]
-    std::vector<std::vector<double>> list;       ///< of each the axis and the angle [degrees]
+    std::vector<std::vector<double>> list;       ///< axis and angle of each [degrees]
 
     /// Declares `rotations`, in the present section.  @param of  whose, for the documentation
     void add_list(dealii::ParameterHandler &prm, const std::string &of);

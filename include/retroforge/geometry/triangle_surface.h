@@ -35,7 +35,7 @@ namespace retroforge
     /// other, and cracks: vertices of the rim that nearly touch another part of it
     TriangleSurface(const std::string &where, NodalVectors<double> vertices, std::vector<Triangle> triangles);
 
-    /// The same surface, with vertices elsewhere: for differences. Nothing is checked.
+    /// Moves the vertices, for differences. Nothing is checked.
     void move_vertices(NodalVectors<double> vertices);
 
     const NodalVectors<double>  &vertices() const { return vertices_; }
@@ -62,7 +62,7 @@ namespace retroforge
     /// bounding box's diagonal as the surface was made.
     double rounding() const { return rounding_; }
 
-    std::vector<std::string> remarks; ///< what of its file was mended or left out, a sentence each
+    std::vector<std::string> remarks; ///< a sentence on each thing in its file that was mended or left out
 
   private:
     void check_facets(const std::string &where) const;

@@ -27,6 +27,22 @@ namespace retroforge
     return sqrt(Number(a * a));
   }
 
+  /// Returns the angle between two vectors, 0 to pi [rad].
+  inline double angle_between(const Vec3 &a, const Vec3 &b)
+  {
+    return std::atan2(cross(a, b).norm(), a * b);
+  }
+
+  /// Returns the sum over nodes of a_k·b_k.
+  inline double dot(const NodalVectors<double> &a, const NodalVectors<double> &b)
+  {
+    AssertDimension(a.size(), b.size());
+    double sum = 0.;
+    for (std::size_t k = 0; k < a.size(); ++k)
+      sum += a[k] * b[k];
+    return sum;
+  }
+
   /// a / |a|.
   template <typename Number>
   Vector3<Number> unit(const Vector3<Number> &a)

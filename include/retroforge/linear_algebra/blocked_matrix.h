@@ -39,8 +39,9 @@ namespace retroforge
     ///@}
 
   private:
-    const la::SparseMatrix             &matrix_;
-    NodeBlocks<double>                  blocks_;
-    std::unique_ptr<Epetra_MultiVector> columns_; ///< of x, with what other ranks own; null on one rank
+    const la::SparseMatrix &matrix_;
+    NodeBlocks<double>      blocks_;
+    /// Entries of x in the columns of A, with those of other ranks; null on one rank.
+    std::unique_ptr<Epetra_MultiVector> columns_;
   };
 } // namespace retroforge

@@ -21,7 +21,7 @@ namespace retroforge
 
   private:
     void take_diagonal();
-    /// Of D^(-1) A, from below, by the power method.
+    /// Returns an estimate from below of the largest eigenvalue of D^(-1) A, by the power method.
     float largest_eigenvalue() const;
     /// defect_ = D^(-1) (r - A z)
     void compute_defect() const;

@@ -26,7 +26,7 @@ namespace retroforge
                               Transposition           transposition = Transposition::plain,
                               int                     spare         = 20);
 
-  /// The same of a matrix of blocks.
+  /// Solves a system with a matrix of blocks.
   unsigned int solve_by_mumps(const la::BlockSparseMatrix &A,
                               const la::BlockVector       &b,
                               la::BlockVector             &x,

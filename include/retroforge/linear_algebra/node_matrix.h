@@ -23,7 +23,7 @@ namespace retroforge
     const std::vector<unsigned int> &column_nodes() const { return column_nodes_; }
     /// The columns that row node `local` (counted from rows().begin) meets, by local number, ascending.
     dealii::ArrayView<const unsigned int> row(const unsigned int local) const { return of_row_[local]; }
-    /// Where a column node, by its global number, stands in that list.
+    /// Returns the position of a column node, by its global number, in the list of a row.
     /// @throws dealii::ExcMessage where the two do not meet
     unsigned int position(unsigned int local_row, unsigned int column) const;
 

@@ -29,8 +29,8 @@ namespace retroforge
 
     void vmult(la::BlockVector &z, const la::BlockVector &r) const;
 
-    /// That of the transposed system,  [A^T D^T; 0 -S^T]^(-1),  with what approximates A and S as it is: most
-    /// of both is symmetric.
+    /// Applies the preconditioner of the transposed system,  [A^T D^T; 0 -S^T]^(-1),  with what approximates
+    /// A and S as it is: most of both is symmetric.
     void Tvmult(la::BlockVector &z, const la::BlockVector &r) const;
 
   private:

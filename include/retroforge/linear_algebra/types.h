@@ -18,7 +18,7 @@ namespace retroforge::la
 
 namespace retroforge
 {
-  /// Which of the two systems of a matrix M is solved: M x = b, or M^T x = b.
+  /// Selects one of the two systems of a matrix M: M x = b, or M^T x = b.
   enum class Transposition
   {
     plain,

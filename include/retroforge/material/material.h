@@ -29,8 +29,8 @@ namespace retroforge
   template <typename Number>
   struct Material
   {
-    MaterialLaw<Number> law;      ///< of metal in its initial state: q = 0
-    std::vector<Number> numbers;  ///< what its sort has beyond these, by MaterialType::info
+    MaterialLaw<Number> law;      ///< law of metal in its initial state: q = 0
+    std::vector<Number> numbers;  ///< further numbers of its type, by MaterialType::info
     unsigned int        type = 0; ///< sort of metal, as material_type() counts them; 0: Norton-Hoff
 
     Material() = default;

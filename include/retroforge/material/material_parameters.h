@@ -11,8 +11,8 @@ namespace retroforge
   struct MaterialParameters
   {
     std::string         type = "Norton-Hoff";
-    MaterialLaw<double> law{1.693, 0.139, 0.}; ///< of metal in its initial state
-    std::vector<double> numbers;               ///< of the type, beyond these
+    MaterialLaw<double> law{1.693, 0.139, 0.}; ///< law of metal in its initial state
+    std::vector<double> numbers;               ///< further numbers of the type
 
     void add_parameters(dealii::ParameterHandler &prm);
 

@@ -31,10 +31,10 @@ namespace retroforge
       return {{"K", "MPa s^m"}, {"m", "", false, 1.}, {"e0", "1/s", true}};
     }
 
-    /// Whether the stress depends on a number, called as in info().
+    /// Returns whether the stress depends on the number with a name of info().
     bool depends_on(const std::string &name) const { return name != "e0" || !is_linear(); }
 
-    /// Whether the stress is proportional to the strain rate.
+    /// Returns whether the stress is proportional to the strain rate.
     bool is_linear() const { return value_of(m) == 1.; }
 
     /// Factor  2 K chi^((m-1)/2)  of  s = factor * eps  [MPa s] at  eps2 = eps:eps  [1/s^2].

@@ -19,7 +19,7 @@ namespace retroforge
   {
     std::vector<NodeIndex> nodes;
     std::vector<double>    weights;
-    PatchSet               patches; ///< of the node, edge or face it lies in
+    PatchSet               patches; ///< patches of the node, edge or face it lies in
   };
 
   /// Finds the closest point of the boundary that belongs to given patches.

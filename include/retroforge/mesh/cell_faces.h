@@ -4,6 +4,7 @@
 
 #include <retroforge/core/types.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -16,6 +17,13 @@ namespace retroforge
   /// Three nodes in ascending order: what two cells that share a face agree on.
   using FaceKey = std::array<NodeIndex, 3>;
   FaceKey face_key(const std::array<NodeIndex, 3> &nodes);
+
+  /// Two nodes in ascending order: what cells that share an edge agree on.
+  using EdgeKey = std::array<NodeIndex, 2>;
+  inline EdgeKey edge_key(const NodeIndex a, const NodeIndex b)
+  {
+    return {{std::min(a, b), std::max(a, b)}};
+  }
 
   /// One face of one cell, turned outwards.
   struct CellFace

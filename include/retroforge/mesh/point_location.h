@@ -19,7 +19,7 @@ namespace retroforge
   /// Barycentric coordinates of x, for inverted tetrahedra too; not finite when the volume is zero.
   std::array<double, 4> barycentric_coordinates(const Vec3 &x, const TetCorners &p);
 
-  /// Where a point is in a mesh: the position is  sum_a weights_a X_a  over the corners of the cell.
+  /// The location of a point in a mesh: its position is  sum_a weights_a X_a  over the corners of the cell.
   struct CellPoint
   {
     CellIndex             cell;

@@ -43,7 +43,7 @@ namespace retroforge
   {
     std::vector<std::size_t>            tags;  ///< their numbers in the file
     std::vector<NodeIndex>              nodes; ///< and in the mesh; invalid_index: of no cell
-    std::vector<dealii::Tensor<1, dim>> X;     ///< where the mesh was made [mm]
+    std::vector<dealii::Tensor<1, dim>> X;     ///< positions at which the mesh was made [mm]
   };
 
   /// The simplex mesh of a workpiece as Gmsh, the remesher, the record and the transfer exchange it:
@@ -58,7 +58,7 @@ namespace retroforge
     std::vector<std::array<NodeIndex, dim + 1>> cells;
     std::vector<SimplexFace<dim>>               faces;
     std::vector<BoundaryPatch<dim>>             patches;
-    /// What of its file was mended or left out, a sentence each; where the mesh was made, on one rank.
+    /// A sentence on each thing in its file that was mended or left out; on the one rank that made the mesh.
     std::vector<std::string> remarks = {};
     NodesOfFile<dim>         of_file; ///< empty, unless it is the mesh of a file as it stands there
 

@@ -9,7 +9,8 @@
 
 namespace retroforge
 {
-  /// Who touches whom: lists that depend on the connectivity and the patches only, not on positions.
+  /// The adjacency of nodes, edges, faces and cells: lists that depend on connectivity and patches only, not
+  /// on positions.
   struct Topology
   {
     /// Indices into TetMesh::faces of the surface faces (those not on a symmetry plane) at each node,
@@ -17,8 +18,9 @@ namespace retroforge
     Rows<unsigned int> surface_faces;
     /// The edges of these faces, each once, the smaller node first, ascending.
     std::vector<std::array<NodeIndex, 2>> surface_edges;
-    /// How often each of these edges stands at its first and at its second node in the whole that the planes
-    /// of symmetry cut: once away from planes, twice where the node lies on a plane and the edge does not.
+    /// The number of images of each of these edges at its first and at its second node, in the whole that the
+    /// planes of symmetry cut: once away from planes, twice where the node lies on a plane and the edge does
+    /// not.
     std::vector<std::array<unsigned int, 2>> edge_images;
     /// Cells at each node, ascending.
     Rows<CellIndex> cells;

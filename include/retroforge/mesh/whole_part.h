@@ -6,15 +6,15 @@
 
 namespace retroforge
 {
-  /// How often a model cut by symmetry planes stands in the whole part; dimensionless, NaN where it repeats
-  /// without end, or in no simple way.
+  /// The number of copies of a model cut by symmetry planes in the whole part; dimensionless, NaN where it
+  /// repeats without end, or in no simple way.
   struct WholePart
   {
-    /// Of energies, volumes and surfaces: the full angle over that between the planes.
+    /// Factor of energies, volumes and surfaces: the full angle over that between the planes.
     double copies = 1.;
 
-    /// Of the force of one die: over the planes along its path only. Across a plane normal to it another die
-    /// presses.
+    /// Factor of the force of one die: over the planes along its path only. Across a plane normal to it
+    /// another die presses.
     double force = 1.;
 
     bool is_model() const { return copies == 1.; }
@@ -23,7 +23,7 @@ namespace retroforge
   /// The planes of symmetry among some patches of a mesh, each once.
   std::vector<Plane> symmetry_planes(const TetMesh &mesh, const std::vector<unsigned int> &patches);
 
-  /// Those of the mesh.
+  /// Returns the symmetry planes of the mesh.
   std::vector<Plane> symmetry_planes(const TetMesh &mesh);
 
   /// 1 for no plane, 2 for one; 2 pi over the angle between two, 4 pi over the solid angle between three.

@@ -28,15 +28,12 @@ namespace retroforge
     std::string name() const override { return "contact pressure"; }
     std::string unit() const override { return "MPa"; }
 
-    /// The largest pressure on this rank's nodes, for the report [MPa].
-    double largest(const StageView<double> &view) const;
-
-    void reverse_integrals(const StageView<double>   &view,
-                           const std::vector<double> &weights,
-                           StageBar                  &bar) const override;
+    void reverse_integrals(const EquilibriumView<double> &view,
+                           const std::vector<double>     &weights,
+                           EquilibriumBar                &bar) const override;
 
     template <typename Number>
-    std::vector<Number> compute_integrals(const StageView<Number> &view) const;
+    std::vector<Number> compute_integrals(const EquilibriumView<Number> &view) const;
 
     template <typename Number>
     std::vector<Number> terms(const PathRow<Number> &row, double) const

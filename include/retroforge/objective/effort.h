@@ -30,7 +30,7 @@ namespace retroforge
     /// @throws Error
     void check(const std::string &where) const;
 
-    /// Length of the increment's part inside [s or mm].
+    /// Returns the length of the increment's part inside [s or mm].
     template <typename Number>
     Number overlap(const PathRow<Number> &row) const;
   };
@@ -42,18 +42,18 @@ namespace retroforge
     enum class By
     {
       power, ///< (int s:eps + int tau·dv) / |v_die|
-      force  ///< of the die on the workpiece, along its velocity: contact and friction
+      force  ///< force of the die on the workpiece along its velocity: contact and friction
     };
 
     /// @param die  the one that moves
     explicit Effort(const unsigned int die, const By by = By::power) : die_(die), by_(by) {}
 
-    /// This rank's part.
+    /// Returns this rank's part.
     template <typename Number>
-    Number operator()(const StageView<Number> &view) const;
+    Number operator()(const EquilibriumView<Number> &view) const;
 
     /// Adds the derivatives of weight times it, this rank's part.
-    void reverse(const StageView<double> &view, double weight, StageBar &bar) const;
+    void reverse(const EquilibriumView<double> &view, double weight, EquilibriumBar &bar) const;
 
   private:
     unsigned int die_;
@@ -73,12 +73,12 @@ namespace retroforge
     std::string name() const override { return "mean effort"; }
     std::string unit() const override { return "N"; }
 
-    void reverse_integrals(const StageView<double>   &view,
-                           const std::vector<double> &weights,
-                           StageBar                  &bar) const override;
+    void reverse_integrals(const EquilibriumView<double> &view,
+                           const std::vector<double>     &weights,
+                           EquilibriumBar                &bar) const override;
 
     template <typename Number>
-    std::vector<Number> compute_integrals(const StageView<Number> &view) const;
+    std::vector<Number> compute_integrals(const EquilibriumView<Number> &view) const;
     template <typename Number>
     std::vector<Number> terms(const PathRow<Number> &row, double) const;
     template <typename Number>
@@ -101,7 +101,8 @@ namespace retroforge
     std::string name() const override { return "maximum effort"; }
     std::string unit() const override { return "N"; }
 
-    /// The largest effort of an increment in the window, what value() stays below [N]; 0 if there is none.
+    /// Returns the largest effort of an increment in the window, what value() stays below [N]; 0 if there is
+    /// none.
     double true_maximum(const PathRows<double> &rows) const;
 
     std::map<std::string, double> details(const PathRows<double> &rows) const override
@@ -109,13 +110,13 @@ namespace retroforge
       return {{"true maximum", true_maximum(rows)}};
     }
 
-    void reverse_integrals(const StageView<double>   &view,
-                           const std::vector<double> &weights,
-                           StageBar                  &bar) const override;
+    void reverse_integrals(const EquilibriumView<double> &view,
+                           const std::vector<double>     &weights,
+                           EquilibriumBar                &bar) const override;
 
     double scale(const PathRows<double> &rows) const { return true_maximum(rows); }
     template <typename Number>
-    std::vector<Number> compute_integrals(const StageView<Number> &view) const;
+    std::vector<Number> compute_integrals(const EquilibriumView<Number> &view) const;
     template <typename Number>
     std::vector<Number> terms(const PathRow<Number> &row, double scale) const;
     template <typename Number>

@@ -21,7 +21,7 @@ namespace retroforge
     std::string name() const override { return "energy"; }
     std::string unit() const override { return "mJ"; }
 
-    /// Deformation and friction [mJ].
+    /// Returns what went into deformation and into friction [mJ].
     static std::pair<double, double> split(const PathRows<double> &rows);
 
     std::map<std::string, double> parts(const PathRows<double> &rows) const override
@@ -30,12 +30,12 @@ namespace retroforge
       return {{"deformation", deformation}, {"friction", friction}};
     }
 
-    void reverse_integrals(const StageView<double>   &view,
-                           const std::vector<double> &weights,
-                           StageBar                  &bar) const override;
+    void reverse_integrals(const EquilibriumView<double> &view,
+                           const std::vector<double>     &weights,
+                           EquilibriumBar                &bar) const override;
 
     template <typename Number>
-    std::vector<Number> compute_integrals(const StageView<Number> &view) const;
+    std::vector<Number> compute_integrals(const EquilibriumView<Number> &view) const;
 
     template <typename Number>
     std::vector<Number> terms(const PathRow<Number> &row, double) const

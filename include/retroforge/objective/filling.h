@@ -9,16 +9,6 @@
 
 namespace retroforge
 {
-  /// Which features the two projections of FillingObjective see, and the workpiece's surface at that moment.
-  struct FillingDecisions
-  {
-    std::vector<SeenFeature> by_workpiece; ///< this rank's nodes of the workpiece, features of the target
-    std::vector<SeenFeature>
-                     by_target; ///< its share of the target's vertices, features of the workpiece's surface
-    WorkpieceSurface workpiece;
-    std::vector<Triangle> target; ///< those of the target that face the model, by their centres
-  };
-
   /// Volume between the workpiece and the desired shape by double projection [mm^3],
   ///   1/2 ( sum_k |delta_k| S_k  +  sum_l |delta_l| S_l ),
   /// k the nodes of the workpiece's surface, delta_k their distance from the target, S_k a third of the areas
@@ -41,41 +31,56 @@ namespace retroforge
     std::string  unit() const override { return "mm^3"; }
     unsigned int target_die() const override { return target_.die(); }
 
+    /// Which features the two projections see, and the workpiece's surface at that moment.
+    struct Decisions
+    {
+      std::vector<SeenFeature> by_workpiece; ///< this rank's nodes of the workpiece, features of the target
+      std::vector<SeenFeature> by_target; ///< its share of the target's vertices, features of the workpiece
+      WorkpieceSurface         workpiece;
+      std::vector<Triangle>    target; ///< those of the target that face the model, by their centres
+      FreeNodes::Decisions     near;   ///< where free nodes count, what they see of the dies
+    };
+
     /// @throws Error  when the workpiece's surface is folded onto itself (see TriangleSurface)
-    void                    decide(const FinalView<double> &view) override;
-    const FillingDecisions &decisions() const { return decisions_; }
+    Decisions compute_decisions(const FinalView<double> &view) const;
 
     std::map<std::string, double> parts(const std::vector<double> &integrals) const override
     {
       return {{"workpiece onto target", 0.5 * integrals[0]}, {"target onto workpiece", 0.5 * integrals[1]}};
     }
 
-    /// The weights' meaning: integrals are the two sums, workpiece -> target and target -> workpiece.
-    void reverse_integrals(const FinalView<double>   &view,
-                           const std::vector<double> &weights,
-                           FinalBar                  &bar) const override;
+    /// Returns the two sums, workpiece -> target and target -> workpiece.
+    template <typename Number>
+    std::vector<Number> compute_integrals(const FinalView<Number> &view, const Decisions &decisions) const;
 
     template <typename Number>
-    std::vector<Number> compute_integrals(const FinalView<Number> &view) const;
-
-    template <typename Number>
-    Number combine(const std::vector<Number> &integrals) const
+    Number combine(const std::vector<Number> &integrals, const Decisions &) const
     {
       return 0.5 * (integrals[0] + integrals[1]);
     }
+
+    void reverse_integrals(const FinalView<double>   &view,
+                           const Decisions           &decisions,
+                           const std::vector<double> &weights,
+                           FinalBar                  &bar) const;
 
   private:
     template <typename Number>
     Number rounded(const Number &delta) const;
     double slope(double delta) const;
 
-    void reverse_by_workpiece(const FinalView<double> &view, double weight, FinalBar &bar) const;
-    void reverse_by_target(const FinalView<double> &view, double weight, FinalBar &bar) const;
+    void reverse_by_workpiece(const FinalView<double> &view,
+                              const Decisions         &decisions,
+                              double                   weight,
+                              FinalBar                &bar) const;
+    void reverse_by_target(const FinalView<double> &view,
+                           const Decisions         &decisions,
+                           double                   weight,
+                           FinalBar                &bar) const;
 
     TargetSurface            target_;
     double                   rounding_;
     std::optional<FreeNodes> free_;
-    FillingDecisions         decisions_;
   };
 
   /// Returns the type of this objective, as parameter files offer it.

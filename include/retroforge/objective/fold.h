@@ -23,13 +23,15 @@ namespace retroforge
     /// @param exponent  alpha >= 1 of e^alpha  @throws Error
     FoldIntegrals(double exponent, const std::optional<SmoothRegion> &region);
 
-    /// This rank's part of  int e^alpha dS [mm^2/s^alpha],  int dS [mm^2],  and the mean over all cells of e
-    /// [1/s] (each cell counts alike, as in the source).
+    /// Returns this rank's part of  int e^alpha dS [mm^2/s^alpha],  int dS [mm^2],  and the mean over all
+    /// cells of e [1/s] (each cell counts alike, as in the source).
     template <typename Number>
-    std::vector<Number> operator()(const StageView<Number> &view) const;
+    std::vector<Number> operator()(const EquilibriumView<Number> &view) const;
 
     /// Adds the derivatives of weights·integrals; those in the ramps go to ContactSetBar.
-    void reverse(const StageView<double> &view, const std::vector<double> &weights, StageBar &bar) const;
+    void reverse(const EquilibriumView<double> &view,
+                 const std::vector<double>     &weights,
+                 EquilibriumBar                &bar) const;
 
   private:
     double                      exponent_;
@@ -50,15 +52,15 @@ namespace retroforge
     std::string name() const override { return "fold"; }
     std::string unit() const override;
 
-    void reverse_integrals(const StageView<double>   &view,
-                           const std::vector<double> &weights,
-                           StageBar                  &bar) const override
+    void reverse_integrals(const EquilibriumView<double> &view,
+                           const std::vector<double>     &weights,
+                           EquilibriumBar                &bar) const override
     {
       fold_.reverse(view, weights, bar);
     }
 
     template <typename Number>
-    std::vector<Number> compute_integrals(const StageView<Number> &view) const
+    std::vector<Number> compute_integrals(const EquilibriumView<Number> &view) const
     {
       return fold_(view);
     }
@@ -97,15 +99,15 @@ namespace retroforge
     std::string name() const override { return "dimensionless fold"; }
     std::string unit() const override { return "none"; }
 
-    void reverse_integrals(const StageView<double>   &view,
-                           const std::vector<double> &weights,
-                           StageBar                  &bar) const override
+    void reverse_integrals(const EquilibriumView<double> &view,
+                           const std::vector<double>     &weights,
+                           EquilibriumBar                &bar) const override
     {
       fold_.reverse(view, weights, bar);
     }
 
     template <typename Number>
-    std::vector<Number> compute_integrals(const StageView<Number> &view) const
+    std::vector<Number> compute_integrals(const EquilibriumView<Number> &view) const
     {
       return fold_(view);
     }

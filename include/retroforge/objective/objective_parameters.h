@@ -6,7 +6,7 @@
 
 namespace retroforge
 {
-  /// What a parameter file says about one objective: the section `Objective NAME`.
+  /// The settings of one objective: the section `Objective NAME`.
   struct ObjectiveParameters
   {
     std::string           name;

@@ -7,7 +7,7 @@
 
 namespace retroforge
 {
-  /// What of a scene objectives refer to.
+  /// The parts of a scene that objectives refer to.
   struct ObjectiveContext
   {
     const std::vector<Die>              &dies;
@@ -16,7 +16,7 @@ namespace retroforge
     double                               stroke;      ///< [mm]
     double                               consistency; ///< K, a stress of the size to expect [MPa]
     const TetMesh                       &billet;
-    FrictionRamp                         ramp; ///< where nodes begin to touch
+    FrictionRamp ramp; ///< the friction ramp of contact, by which nodes begin to touch
   };
 
   /// A type of objective: its settings, and how an objective is made of them. doc/objectives.md says what
@@ -38,6 +38,6 @@ namespace retroforge
     make(const std::string &where, const ObjectiveContext &context, NamedObjective &objective) const = 0;
   };
 
-  /// The types there are: to add one, add a line to this table.
+  /// Returns the types there are; a line of its table adds one.
   const Choice<ObjectiveType>::Makers &objective_types();
 } // namespace retroforge

@@ -9,33 +9,32 @@
 
 namespace retroforge
 {
-  /// How the value of the whole part follows from that of the model that symmetry planes cut from it: of what
-  /// adds up over the part, of the force of a die, and of the rest, which says nothing of the whole or is the
-  /// same there.
+  /// The rule by which the value of the whole part follows from that of the model that symmetry planes cut
+  /// from it.
   enum class SymmetryScaling
   {
-    part,
-    force,
-    none
+    part,  ///< the value adds up over the part
+    force, ///< the value is in proportion to the force of a die
+    none   ///< the value is the same for the whole, or says nothing of it
   };
 
   /// An objective under the name that the user gave it: of one of the two kinds.
   struct NamedObjective
   {
-    std::string                     name;
-    double                          weight  = 1.; ///< in the combination
-    SymmetryScaling                 scaling = SymmetryScaling::none;
-    unsigned int                    die     = invalid_index; ///< of a scaling `force`
-    std::unique_ptr<PathObjective>  path;                    ///< null for one of the end
-    std::unique_ptr<FinalObjective> at_end;                  ///< null for one of the path
+    std::string                           name;
+    double                                weight  = 1.; ///< in the combination
+    SymmetryScaling                       scaling = SymmetryScaling::none;
+    unsigned int                          die     = invalid_index; ///< the die of a scaling `force`
+    std::unique_ptr<const PathObjective>  path;                    ///< null for an objective of the end
+    std::unique_ptr<const FinalObjective> at_end;                  ///< null for an objective of the path
 
     std::string unit() const { return path ? path->unit() : at_end->unit(); }
   };
 
-  /// What a run is judged by, in the user's order.
+  /// The objectives of a run, in the user's order.
   using Objectives = std::vector<NamedObjective>;
 
-  /// A weighted sum of objectives: what one costate of the backward sweep belongs to.
+  /// A weighted sum of objectives, differentiated by one costate of the backward sweep.
   struct Combination
   {
     std::string         name, unit;
@@ -52,9 +51,9 @@ namespace retroforge
     }
   };
 
-  /// Each objective by itself.
+  /// Returns one combination for each objective, of it alone.
   std::vector<Combination> each(const Objectives &objectives);
 
-  /// All by their weights, in one sum.
+  /// Returns the sum of all objectives by their weights.
   Combination combined(const Objectives &objectives);
 } // namespace retroforge

@@ -2,7 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/solver/stage.h>
+#include <retroforge/core/rank_sum.h>
+#include <retroforge/solver/equilibrium.h>
 
 #include <map>
 #include <string>
@@ -17,7 +18,7 @@
 /// largest value before they are summed.
 ///
 /// Backwards:  reverse_value() gives dPhi/d(a_i, dt_i, t_i) for all increments at once;  at increment i
-/// reverse_integrals() adds what follows from a_i, and dt_bar() is added to PhysicsBar::dt on one rank.
+/// reverse_integrals() adds what follows from a_i; what follows from dt_i and t_i the sweep adds once.
 namespace retroforge
 {
   /// One increment as objectives see it, the same on every rank.
@@ -34,13 +35,6 @@ namespace retroforge
   template <typename Number>
   using PathRows = std::vector<PathRow<Number>>;
 
-  /// Derivative in dt of what depends on dt and time: both are strokes over the one speed, so that
-  /// d time = stroke/step d dt.
-  inline double dt_bar(const PathRow<double> &row, const PathRow<double> &row_bar)
-  {
-    return row_bar.dt + row_bar.time * row.stroke / row.step;
-  }
-
   class PathObjective
   {
   public:
@@ -49,38 +43,36 @@ namespace retroforge
     virtual std::string name() const = 0;
     virtual std::string unit() const = 0;
 
-    /// a_i: this rank's part of the sums, to be completed by sum_over_ranks().
-    virtual std::vector<double> integrals(const StageView<double> &view) const = 0;
-    virtual std::vector<Dual>   integrals(const StageView<Dual> &view) const   = 0;
+    /// Returns what one stage of increment i gives to a_i.
+    virtual RankSum<std::vector<double>> integrals(const EquilibriumView<double> &view) const = 0;
+    virtual RankSum<std::vector<Dual>>   integrals(const EquilibriumView<Dual> &view) const   = 0;
 
     /// Adds the derivatives of weights·integrals, this rank's part.
-    virtual void reverse_integrals(const StageView<double>   &view,
-                                   const std::vector<double> &weights,
-                                   StageBar                  &bar) const = 0;
+    virtual void reverse_integrals(const EquilibriumView<double> &view,
+                                   const std::vector<double>     &weights,
+                                   EquilibriumBar                &bar) const = 0;
 
-    /// @throws Error  when Phi is not defined for these increments (an empty window)
+    /// Returns Phi.
+    /// @throws Error  when it is not defined for these increments (an empty window)
     virtual double value(const PathRows<double> &rows) const = 0;
     virtual Dual   value(const PathRows<Dual> &rows) const   = 0;
 
-    /// Summands of the value.
+    /// Returns the summands of the value.
     virtual std::map<std::string, double> parts(const PathRows<double> &) const { return {}; }
 
-    /// Other numbers told beside it: the true maximum beside a smooth one.
+    /// Returns other numbers told beside it: the true maximum beside a smooth one.
     virtual std::map<std::string, double> details(const PathRows<double> &) const { return {}; }
 
-    /// dPhi/d(a_i, dt_i, t_i) of each increment.
+    /// Returns dPhi/d(a_i, dt_i, t_i) of each increment.
     virtual PathRows<double> reverse_value(const PathRows<double> &rows) const = 0;
   };
 
-  /// Completes integrals: sums over the ranks of `comm`, the derivatives of dual numbers included.
-  std::vector<double> sum_over_ranks(std::vector<double> parts, MPI_Comm comm);
-  std::vector<Dual>   sum_over_ranks(std::vector<Dual> parts, MPI_Comm comm);
-
   /// Adds to a row what one stage of its increment gives to its integrals.
   template <typename Number>
-  void add_integrals(const PathObjective &objective, const StageView<Number> &view, PathRow<Number> &row)
+  void
+  add_integrals(const PathObjective &objective, const EquilibriumView<Number> &view, PathRow<Number> &row)
   {
-    const auto whole = sum_over_ranks(objective.integrals(view), view.stage.scene.discretization.comm());
+    const auto whole = objective.integrals(view).complete();
     row.integrals.resize(whole.size(), Number(0.));
     for (std::size_t k = 0; k < whole.size(); ++k)
       row.integrals[k] += view.weight * whole[k];
@@ -92,7 +84,7 @@ namespace retroforge
 
   /// A PathObjective made from class T, which has the number of its terms and for any Number
   ///   static constexpr unsigned int n_terms;
-  ///   std::vector<Number> compute_integrals(const StageView<Number> &) const;
+  ///   std::vector<Number> compute_integrals(const EquilibriumView<Number> &) const;                of this rank
   ///   std::vector<Number> terms(const PathRow<Number> &, double scale) const;                g
   ///   Number              combine(const std::vector<Number> &sums, double scale) const;      F
   /// and, if it needs one,  double scale(const PathRows<double> &) const:  a number that g and F use to avoid
@@ -101,18 +93,13 @@ namespace retroforge
   class PathObjectiveOf : public PathObjective
   {
   public:
-    std::vector<double> integrals(const StageView<double> &view) const override
+    RankSum<std::vector<double>> integrals(const EquilibriumView<double> &view) const override
     {
-      Assert(view.W.belongs_to(view.stage.scene.discretization),
-             dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
-      return self().template compute_integrals<double>(view);
+      return sum_integrals(view);
     }
-
-    std::vector<Dual> integrals(const StageView<Dual> &view) const override
+    RankSum<std::vector<Dual>> integrals(const EquilibriumView<Dual> &view) const override
     {
-      Assert(view.W.belongs_to(view.stage.scene.discretization),
-             dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
-      return self().template compute_integrals<Dual>(view);
+      return sum_integrals(view);
     }
 
     double value(const PathRows<double> &rows) const override { return evaluate(rows, self().scale(rows)); }
@@ -135,6 +122,15 @@ namespace retroforge
 
   private:
     const T &self() const { return static_cast<const T &>(*this); }
+
+    template <typename Number>
+    RankSum<std::vector<Number>> sum_integrals(const EquilibriumView<Number> &view) const
+    {
+      const auto &discretization = view.stage.scene.discretization;
+      Assert(view.W.belongs_to(discretization),
+             dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
+      return {self().template compute_integrals<Number>(view), discretization.comm()};
+    }
 
     template <typename Number>
     std::vector<Number> sum_terms(const PathRows<Number> &rows, const double scale) const

@@ -38,33 +38,34 @@ namespace retroforge
     std::string unit() const override { return statistic_ == RadiusStatistic::mean ? "mm" : "mm^2"; }
 
     /// The radius from which others are measured, to keep digits: Phi does not depend on it.
-    void decide(const FinalView<double> &view) override;
-
-    std::map<std::string, double> details(const std::vector<double> &integrals) const override
+    struct Decisions
     {
-      return {{"radius [mm]", radius(integrals)}};
+      double reference; ///< [mm]
+    };
+    Decisions compute_decisions(const FinalView<double> &view) const;
+
+    /// Returns the mean radius [mm].
+    std::map<std::string, double> details(const std::vector<double> &b,
+                                          const FinalDecisions      &decisions) const override
+    {
+      return {{"radius [mm]", std::any_cast<Decisions>(decisions).reference + b[1] / b[0]}};
     }
 
-    /// The mean radius [mm].
-    double radius(const std::vector<double> &integrals) const
+    template <typename Number>
+    std::vector<Number> compute_integrals(const FinalView<Number> &view, const Decisions &decisions) const;
+
+    template <typename Number>
+    Number combine(const std::vector<Number> &b, const Decisions &decisions) const
     {
-      return reference_ + integrals[1] / integrals[0];
+      const Number mean = b[1] / b[0];
+      return statistic_ == RadiusStatistic::mean ? Number(decisions.reference + mean)
+                                                 : Number(b[2] / b[0] - mean * mean);
     }
 
     void reverse_integrals(const FinalView<double>   &view,
+                           const Decisions           &decisions,
                            const std::vector<double> &weights,
-                           FinalBar                  &bar) const override;
-
-    template <typename Number>
-    std::vector<Number> compute_integrals(const FinalView<Number> &view) const;
-
-    template <typename Number>
-    Number combine(const std::vector<Number> &b) const
-    {
-      const Number mean = b[1] / b[0];
-      return statistic_ == RadiusStatistic::mean ? Number(reference_ + mean)
-                                                 : Number(b[2] / b[0] - mean * mean);
-    }
+                           FinalBar                  &bar) const;
 
   private:
     std::vector<Triangle> triangles(const TetMesh &mesh) const;
@@ -74,7 +75,6 @@ namespace retroforge
     RadiusStatistic          statistic_;
     std::vector<std::string> patches_;
     Vec3                     point_, axis_;
-    double                   reference_ = 0.;
   };
 
   /// Return the types of these objectives, as parameter files offer them.

@@ -7,21 +7,21 @@
 
 namespace retroforge
 {
-  /// What symmetry planes leave of space: of a target that is whole, the part that faces the model.
+  /// The sector of space that symmetry planes leave: the part of a whole target that faces the model.
   class Sector
   {
   public:
     Sector() = default; ///< all of space
     explicit Sector(const TetMesh &mesh);
 
-    /// Points on the planes belong to it, to rounding.
+    /// Returns whether a point belongs to it: those on the planes do, to rounding.
     bool contains(const Vec3 &x) const;
 
-    /// The part of a box of the given edges around x that belongs to it, 0 to 1: exact for a plane along the
-    /// axes, and linear in the distance of others.
+    /// Returns the part of a box of the given edges around x that belongs to it, 0 to 1: exact for a plane
+    /// along the axes, and linear in the distance of others.
     double share(const Vec3 &x, const Vec3 &edges) const;
 
-    /// The box without what planes along the axes cut off.
+    /// Returns the box without what planes along the axes cut off.
     Box clipped(Box box) const;
 
   private:

@@ -20,26 +20,31 @@ namespace retroforge
     std::string  unit() const override { return "mm^2"; }
     unsigned int target_die() const override { return target_.die(); }
 
-    void decide(const FinalView<double> &view) override { seen_ = target_.seen_by_workpiece(view); }
-    const std::vector<SeenFeature> &decisions() const { return seen_; }
-
-    void reverse_integrals(const FinalView<double>   &view,
-                           const std::vector<double> &weights,
-                           FinalBar                  &bar) const override;
+    /// This rank's nodes of the workpiece, features of the target.
+    using Decisions = std::vector<SeenFeature>;
+    Decisions compute_decisions(const FinalView<double> &view) const
+    {
+      return target_.seen_by_workpiece(view);
+    }
 
     template <typename Number>
-    std::vector<Number> compute_integrals(const FinalView<Number> &view) const;
+    std::vector<Number> compute_integrals(const FinalView<Number> &view,
+                                          const Decisions         &seen_features) const;
 
     /// 0 when no node sees the target.
     template <typename Number>
-    Number combine(const std::vector<Number> &b) const
+    Number combine(const std::vector<Number> &b, const Decisions &) const
     {
       return value_of(b[0]) > 0. ? Number(b[1] / b[0]) : Number(0.);
     }
 
+    void reverse_integrals(const FinalView<double>   &view,
+                           const Decisions           &seen_features,
+                           const std::vector<double> &weights,
+                           FinalBar                  &bar) const;
+
   private:
-    TargetSurface            target_;
-    std::vector<SeenFeature> seen_;
+    TargetSurface target_;
   };
 
   /// Returns the type of this objective, as parameter files offer it.

@@ -27,16 +27,16 @@ namespace retroforge
     /// @throws Error
     void check(const std::string &where) const;
 
-    /// One value's part of the sum; the weight's own sum is the caller's.
+    /// Returns one value's part of the sum; the weight's own sum is the caller's.
     /// @param scale  the largest value; it avoids overflow and cancels: not differentiated
     template <typename Number>
     Number term(const Number &x, const Number &weight, double scale) const;
 
-    /// The maximum from the completed sums, 0 for no weight at all.
+    /// Returns the maximum from the completed sums, 0 for no weight at all.
     template <typename Number>
     Number combine(const Number &sum, const Number &weights, double scale) const;
 
-    /// d term / dx  at weight one.
+    /// Returns  d term / dx  at weight one.
     double slope(double x, double scale) const;
   };
 } // namespace retroforge

@@ -20,7 +20,7 @@ namespace retroforge
     template <typename Number>
     Number operator()(const Vector3<Number> &x) const;
 
-    /// Gradient in x.
+    /// Returns the gradient in x.
     Vec3 gradient(const Vec3 &x) const;
   };
 } // namespace retroforge

@@ -7,8 +7,9 @@
 #include <retroforge/objective/smooth_maximum.h>
 
 /// @file
-/// How much, how evenly and how locally the workpiece was deformed: statistics of the accumulated equivalent
-/// strain q_N over the final volume, each cell weighted with its volume at X_N. Dimensionless.
+/// Statistics of the deformation of the workpiece, its mean, evenness and maximum: functions of the
+/// accumulated equivalent strain q_N over the final volume, each cell weighted with its volume at X_N.
+/// Dimensionless.
 namespace retroforge
 {
   enum class StrainStatistic
@@ -29,30 +30,34 @@ namespace retroforge
 
     /// The reference to which strains are taken: the mean for mean and variance (what is small would else be
     /// a difference of large numbers), the true maximum for the maximum. Phi does not depend on it; frozen.
-    void decide(const FinalView<double> &view) override;
+    struct Decisions
+    {
+      double reference;
+    };
+    Decisions compute_decisions(const FinalView<double> &view) const;
 
-    double true_maximum() const { return reference_; }
+    /// Returns the true maximum beside the smooth one.
+    std::map<std::string, double> details(const std::vector<double> &,
+                                          const FinalDecisions &decisions) const override;
 
-    std::map<std::string, double> details(const std::vector<double> &) const override;
+    template <typename Number>
+    std::vector<Number> compute_integrals(const FinalView<Number> &view, const Decisions &decisions) const;
+    template <typename Number>
+    Number combine(const std::vector<Number> &integrals, const Decisions &decisions) const;
 
     void reverse_integrals(const FinalView<double>   &view,
+                           const Decisions           &decisions,
                            const std::vector<double> &weights,
-                           FinalBar                  &bar) const override;
-
-    template <typename Number>
-    std::vector<Number> compute_integrals(const FinalView<Number> &view) const;
-    template <typename Number>
-    Number combine(const std::vector<Number> &integrals) const;
+                           FinalBar                  &bar) const;
 
   private:
-    /// What of a cell's strain is integrated: two functions and their slopes.
+    /// Returns the two functions of a cell's strain that are integrated; slopes() returns their derivatives.
     template <typename Number>
-    std::array<Number, 2> integrands(const Number &q) const;
-    std::array<double, 2> slopes(double q) const;
+    std::array<Number, 2> integrands(const Number &q, double reference) const;
+    std::array<double, 2> slopes(double q, double reference) const;
 
     StrainStatistic statistic_;
     SmoothMaximum   smooth_;
-    double          reference_ = 0.;
   };
 
   /// Return the types of these objectives, as parameter files offer them.

@@ -7,7 +7,7 @@
 
 namespace retroforge
 {
-  /// |(b - a) x (c - a)| / 2.
+  /// Returns |(b - a) x (c - a)| / 2.
   template <typename Number>
   Number triangle_area(const Triangle &triangle, const NodalVectors<Number> &x)
   {
@@ -22,7 +22,7 @@ namespace retroforge
                              double                      area_bar,
                              NodalVectors<double>       &x_bar);
 
-  /// One third of the areas of the triangles at each point.
+  /// Returns one third of the areas of the triangles at each point.
   template <typename Number>
   std::vector<Number> lumped_areas(const std::vector<Triangle> &triangles, const NodalVectors<Number> &x)
   {
@@ -42,9 +42,9 @@ namespace retroforge
                             const std::vector<double>   &areas_bar,
                             NodalVectors<double>        &x_bar);
 
-  /// The nodes of all surface faces, turned as they are.
+  /// Returns the nodes of all surface faces, turned as they are.
   std::vector<Triangle> surface_triangles(const TetMesh &mesh);
 
-  /// The cell that a face of the boundary belongs to.
+  /// Returns the cell that a face of the boundary belongs to.
   CellIndex cell_at(const Topology &topology, const BoundaryFace &face);
 } // namespace retroforge

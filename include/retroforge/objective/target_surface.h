@@ -31,11 +31,11 @@ namespace retroforge
     const TriangleSurface    &shape() const { return *shape_; }
     const std::optional<Box> &region() const { return region_; }
 
-    /// The features that this rank's nodes of the workpiece's surface see, ascending by node. Nodes behind
-    /// the rim of an open target, or outside the region, see none and are left out.
+    /// Returns the features that this rank's nodes of the workpiece's surface see, ascending by node. Nodes
+    /// behind the rim of an open target, or outside the region, see none and are left out.
     std::vector<SeenFeature> seen_by_workpiece(const FinalView<double> &view) const;
 
-    /// Signed distance of a feature from x, > 0 on the side that the normals point to [mm].
+    /// Returns the signed distance of a feature from x, > 0 on the side that the normals point to [mm].
     template <typename Number>
     Number distance(const FinalView<Number> &view, const Vector3<Number> &x, const DieFeature &feature) const;
 
@@ -49,14 +49,18 @@ namespace retroforge
                           Vec3                    &x_bar,
                           FinalBar                &bar) const;
 
+    /// Returns that of its die.
     template <typename Number>
     Vector3<Number> displacement(const FinalView<Number> &view) const;
 
-    /// The vertices of the view, or its own, without the displacement.
+    /// Returns the vertices of the view, or its own, without the displacement.
     template <typename Number>
     NodalVectors<Number> vertices(const FinalView<Number> &view) const;
-    TriangleSurface      moved(const FinalView<double> &view) const;
 
+    /// Returns the shape with its vertices there.
+    TriangleSurface moved(const FinalView<double> &view) const;
+
+    /// Adds the derivatives in the displacement to those of its die, if it follows one.
     void add_displacement_bar(const Vec3 &displacement_bar, FinalBar &bar) const;
 
   private:

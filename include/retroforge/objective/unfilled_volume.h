@@ -9,8 +9,8 @@
 
 namespace retroforge
 {
-  /// Where the material should be: within a closed surface (the shape desired, normals outwards), or in front
-  /// of a die's face.
+  /// The region that material should fill: within a closed surface (the desired shape, normals outwards), or
+  /// in front of a die's face.
   enum class Cavity
   {
     within,
@@ -39,45 +39,56 @@ namespace retroforge
     std::string  unit() const override { return "mm^3"; }
     unsigned int target_die() const override { return target_.die(); }
 
+    struct Sample
+    {
+      Vec3       x;
+      double     volume;            ///< volume that the sample stands for, in the sector [mm^3]
+      DieFeature target, workpiece; ///< a target of none: deep in a cavity within
+    };
+
+    /// The workpiece's surface at that moment, and what of the grid counts.
+    struct Decisions
+    {
+      double              width; ///< l [mm]
+      WorkpieceSurface    workpiece;
+      std::vector<Sample> samples; ///< of this rank's share
+    };
+
     /// @throws Error  when the workpiece's surface is folded onto itself
-    void decide(const FinalView<double> &view) override;
-
-    void reverse_integrals(const FinalView<double>   &view,
-                           const std::vector<double> &weights,
-                           FinalBar                  &bar) const override;
+    Decisions compute_decisions(const FinalView<double> &view) const;
 
     template <typename Number>
-    std::vector<Number> compute_integrals(const FinalView<Number> &view) const;
+    std::vector<Number> compute_integrals(const FinalView<Number> &view, const Decisions &decisions) const;
 
     template <typename Number>
-    Number combine(const std::vector<Number> &integrals) const
+    Number combine(const std::vector<Number> &integrals, const Decisions &) const
     {
       return integrals[0];
     }
 
+    void reverse_integrals(const FinalView<double>   &view,
+                           const Decisions           &decisions,
+                           const std::vector<double> &weights,
+                           FinalBar                  &bar) const;
+
   private:
-    struct Sample
+    struct Grid
     {
-      Vec3       x;
-      double     volume;            ///< that it stands for, in the sector [mm^3]
-      DieFeature target, workpiece; ///< a target of none: deep in a cavity within
+      std::array<unsigned int, 3> n;
+      Vec3                        origin, spacing;
+      double                      width; ///< l
+
+      unsigned int n_samples() const { return n[0] * n[1] * n[2]; }
+      Vec3         sample(unsigned int g) const;
     };
 
-    void   lay_grid(const FinalView<double> &view);
+    Grid   make_grid(const FinalView<double> &view) const;
     double sign() const { return cavity_ == Cavity::within ? -1. : 1.; }
 
-    template <typename Number>
-    Number step(const Number &x) const;
-    double slope(double x) const;
-
-    TargetSurface               target_;
-    Cavity                      cavity_;
-    unsigned int                n_samples_;
-    double                      layer_, width_ = 0.; ///< in spacings, and l [mm]
-    std::array<unsigned int, 3> n_ = {};
-    Vec3                        origin_, spacing_;
-    WorkpieceSurface            workpiece_;
-    std::vector<Sample>         samples_;
+    TargetSurface target_;
+    Cavity        cavity_;
+    unsigned int  n_samples_;
+    double        layer_; ///< in spacings
   };
 
   /// Returns the type of this objective, as parameter files offer it.

@@ -14,9 +14,8 @@ namespace retroforge
     std::string name() const override { return "volume"; }
     std::string unit() const override { return "mm^3"; }
 
-    void reverse_integrals(const FinalView<double>   &view,
-                           const std::vector<double> &weights,
-                           FinalBar                  &bar) const override;
+    void
+    reverse_integrals(const FinalView<double> &view, const std::vector<double> &weights, FinalBar &bar) const;
 
     template <typename Number>
     std::vector<Number> compute_integrals(const FinalView<Number> &view) const;
@@ -28,7 +27,7 @@ namespace retroforge
     }
   };
 
-  /// Volume of cell c, which this rank visits.
+  /// Returns the volume of cell c, which this rank visits.
   template <typename Number>
   Number cell_volume(const FinalView<Number> &view, CellIndex c);
 

@@ -9,7 +9,7 @@
 namespace retroforge
 {
   /// The surface of the workpiece, symmetry planes left out, as a TriangleSurface whose normals point
-  /// outwards. Who is next to whom, and the rounding at edges, stay as they were when it was made.
+  /// outwards. Its connectivity, and the rounding at edges, stay as they were when it was made.
   class WorkpieceSurface
   {
   public:
@@ -20,7 +20,7 @@ namespace retroforge
 
     const TriangleSurface &shape() const { return *shape_; }
 
-    /// Where its vertices are.
+    /// Returns the positions of its vertices.
     template <typename Number>
     NodalVectors<Number> vertices(const FinalView<Number> &view) const
     {
@@ -30,14 +30,14 @@ namespace retroforge
       return x;
     }
 
-    /// The shape with its vertices there.
+    /// Returns the shape with its vertices at the positions of a view.
     TriangleSurface moved(const FinalView<double> &view) const;
 
     /// Adds derivatives in its vertices to those in the nodes.
     void add(const NodalVectors<double> &vertices_bar, FinalBar &bar) const;
 
   private:
-    std::vector<NodeIndex>                 nodes_; ///< of each vertex
+    std::vector<NodeIndex>                 nodes_; ///< node of each vertex
     std::shared_ptr<const TriangleSurface> shape_;
   };
 } // namespace retroforge

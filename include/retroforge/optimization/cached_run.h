@@ -34,7 +34,8 @@ namespace retroforge
 
     const Case                    &case_;
     const std::vector<Combination> each_;
-    std::unique_ptr<ForwardRun>    trial_; ///< null where the last one failed
-    std::vector<double>            mu_;    ///< of it
+    Timings                        timings_;
+    std::unique_ptr<ForwardRun>    run_; ///< null where the last one failed
+    std::vector<double>            mu_;  ///< of it
   };
 } // namespace retroforge

@@ -11,12 +11,12 @@
 
 namespace retroforge
 {
-  /// How well data determine parameters, by the Jacobian  J_ij = (dv_i/dmu_j) / s_i  where they agree best:
-  /// covariance  D (D^T J^T J D)^-1 D^T,  for data whose errors are independent and normal, with D the
-  /// directions that bounds and relations leave free.
+  /// Confidence of parameters determined from data, by the Jacobian  J_ij = (dv_i/dmu_j) / s_i  where they
+  /// agree best: covariance  D (D^T J^T J D)^-1 D^T,  for data whose errors are independent and normal, with
+  /// D the directions that bounds and relations leave free.
   struct Confidence
   {
-    std::vector<unsigned int>        parameters;   ///< those that are inside their bounds
+    std::vector<unsigned int>        parameters;   ///< parameters inside their bounds
     std::vector<double>              deviations;   ///< standard ones, of each, in its unit
     std::vector<std::vector<double>> correlations; ///< between them
     double                           misfit = 0.;  ///< sum of ((v_i - d_i) / s_i)^2

@@ -20,7 +20,8 @@ namespace retroforge
 
     const Case        &now() const { return now_ ? *now_ : first_; }
     const std::string &made_at() const { return made_at_; } ///< Design/meshed at; empty on the first mesh
-    unsigned int       number() const { return number_; }   ///< of those in use so far, the first one 0
+    /// Number of the mesh among those used so far, the first one 0.
+    unsigned int number() const { return number_; }
 
     /// Returns the quality of the worst cell where cells are at a design: see tet_quality().
     double quality(const std::vector<double> &mu) const { return now().design.mesh_quality(mu); }
@@ -57,7 +58,7 @@ namespace retroforge
     std::string                 made_at_;
     unsigned int                number_ = 0;
     Candidate                   candidate_;
-    std::vector<double>         settled_at_; ///< where a new mesh does not help
+    std::vector<double>         settled_at_; ///< design at which a new mesh does not help
     unsigned int n_inverted_ = 0;            ///< designs tried since the last accepted one whose cells were
     std::string  complaint_;
   };

@@ -39,15 +39,15 @@ namespace retroforge
     const std::vector<DesignParameter> &parameters() const { return parameters_; }
     const std::vector<double>          &start() const { return start_; }
     const std::vector<double>          &scales() const { return scales_; }
-    const std::vector<double>          &lower() const { return lower_; } ///< of mu
+    const std::vector<double>          &lower() const { return lower_; } ///< in terms of mu
     const std::vector<double>          &upper() const { return upper_; }
 
     /// Bounds of x.
     std::vector<double> scaled_lower() const { return scaled(lower_); }
     std::vector<double> scaled_upper() const { return scaled(upper_); }
 
-    const std::vector<LinearRelation> &relations() const { return relations_; } ///< of mu
-    /// The same of x, each with weights of length 1.
+    const std::vector<LinearRelation> &relations() const { return relations_; } ///< in terms of mu
+    /// Relations in terms of x, each with weights of length 1.
     const std::vector<LinearRelation> &scaled_relations() const { return scaled_relations_; }
     /// Returns whether a relation holds as an equation at mu.
     bool holds_as_equation(const std::vector<double> &mu, std::size_t relation) const;
@@ -82,9 +82,9 @@ namespace retroforge
     void read_relations(const std::vector<std::string> &texts, const std::vector<std::string> &varied);
   };
 
-  /// What an objective changes by, per unit of the bound of each relation, at an optimum: the multipliers nu
-  /// with the least  |g - sum_r nu_r weights_r|  over variables that no bound holds; 0 of relations that do
-  /// not hold as equations.
+  /// Returns the change of an objective per unit of the bound of each relation, at an optimum: the
+  /// multipliers nu with the least  |g - sum_r nu_r weights_r|  over variables that no bound holds; 0 of
+  /// relations that do not hold as equations.
   /// @param by_mu  derivative of the objective, limits included, by mu
   std::vector<double> slopes_of_relations(const DesignSpace         &space,
                                           const std::vector<double> &mu,

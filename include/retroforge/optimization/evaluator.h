@@ -45,7 +45,7 @@ namespace retroforge
       return scenarios_.values(scenario, scatter_.sample(mu, scatter_.n_samples() / 2));
     }
 
-    /// From here on the main scenario has another mesh: what is kept of the one before is forgotten.
+    /// Discards what is kept of the main scenario's mesh, which is another one from here on.
     void renew_main();
 
     /// Forgings that were asked for, each once on each mesh.
@@ -80,7 +80,7 @@ namespace retroforge
     /// @return whether all of the wave succeeded
     bool forge(const Jobs &wave);
     void sweep(const Jobs &wave);
-    /// Does the open jobs of a wave, each by its group, and shares what comes of them.
+    /// Runs the open jobs of a wave, each by its group, and shares the results.
     std::vector<Evaluation> shared_out(const Jobs                                   &wave,
                                        const std::vector<bool>                      &is_open,
                                        const std::function<Evaluation(const Job &)> &work);

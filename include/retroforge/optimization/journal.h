@@ -9,21 +9,21 @@
 
 namespace retroforge
 {
-  /// A design that was forged: what came of it.
+  /// The result of forging a design.
   struct Evaluation
   {
     std::vector<double> mu;      ///< values of the design parameters
-    std::vector<double> values;  ///< of the objectives; empty where the forging failed
+    std::vector<double> values;  ///< values of the objectives; empty where the forging failed
     std::string         failure; ///< why, or empty
     unsigned int        increments = 0;
     double              seconds    = 0.;
-    /// Of each objective by the parameters; empty where nobody has asked.
+    /// Gradients of the objectives in the parameters; empty where they were not computed.
     std::vector<std::vector<double>> gradients;
-    std::string                      operation = {}; ///< that was forged; of the main one empty
+    std::string                      operation = {}; ///< operation that was forged; empty for the main one
 
     bool failed() const { return values.empty(); }
 
-    /// To another rank.
+    /// Serialises for another rank.
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
@@ -41,7 +41,7 @@ namespace retroforge
   class Journal
   {
   public:
-    /// Of the case and the program that forge.
+    /// Identification of the case and the program that forge.
     struct Header
     {
       std::string                        program, parameters;
@@ -54,7 +54,7 @@ namespace retroforge
     /// @throws Error  for what is no journal
     static Journal read(const std::string &file);
 
-    /// An empty one.
+    /// Makes an empty journal.
     explicit Journal(Header header) : header_(std::move(header)) {}
 
     void set_header(Header header) { header_ = std::move(header); }
@@ -72,10 +72,10 @@ namespace retroforge
     /// @return its number, 0 for the first one   @throws Error  if a new one cannot be written
     unsigned int use_mesh(const std::string &made_at);
 
-    /// Of the mesh in use in an operation; others than the main one stay on the meshes of their own.
+    /// Returns the number of the mesh in use in an operation; others than the main one keep their own meshes.
     unsigned int mesh_in(const std::string &operation) const { return operation.empty() ? mesh_ : 0; }
 
-    /// From here on what is added is written to `file`, too, which is made anew with what is here.
+    /// Writes the journal to `file`, and from here on what is added, too.
     /// @throws Error  if it cannot be written
     void write_to(const std::string &file);
 

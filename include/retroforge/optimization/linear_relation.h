@@ -16,7 +16,7 @@ namespace retroforge
 
     double value(const std::vector<double> &mu) const;
     bool   is_equation() const { return lower == upper; }
-    /// How far outside of its bounds; 0 within them.
+    /// Returns the excess over the bounds; 0 within them.
     double excess(const std::vector<double> &mu) const;
   };
 

@@ -30,12 +30,12 @@ namespace retroforge
     unsigned int objective;
     double       value, deviation;
 
-    /// Of the forging from it, in deviations.
+    /// Returns the misfit of a forging, in deviations.
     double misfit(const std::vector<double> &values) const { return (values[objective] - value) / deviation; }
   };
 
-  /// What is made small, and the limits, of all objectives of a case: a weighted sum of some, or the misfit
-  /// of data,  sum_i ((v_i - d_i) / s_i)^2 / 2.
+  /// The objective to minimise, and the limits, among all objectives of a case: a weighted sum of some, or
+  /// the misfit of data,  sum_i ((v_i - d_i) / s_i)^2 / 2.
   struct Criteria
   {
     Combination        objective; ///< without weights where there are data

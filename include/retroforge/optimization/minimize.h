@@ -25,7 +25,8 @@ namespace retroforge
     std::function<double(const Vector &x)> value;
     /// At a point whose value was finite.
     std::function<Vector(const Vector &x)> gradient;
-    /// What is known of the Hessian, times v, at the point whose gradient was asked for last; null: nothing.
+    /// Returns the known part of the Hessian times v, at the point of the last gradient; null: nothing is
+    /// known.
     std::function<Vector(const Vector &v)> known_hessian;
     bool                                   known_is_all = false; ///< else the rest is learned
     /// A point that was tried becomes the next one, or is refused: called after its value.
@@ -35,7 +36,7 @@ namespace retroforge
   /// A derivative along a direction, and its central difference.
   struct DifferenceCheck
   {
-    double step, derivative, difference, error; ///< of the two, absolute
+    double step, derivative, difference, error; ///< error: absolute, of the last two
   };
 
   /// At the start of a problem, by ROL's check of objectives.
@@ -43,20 +44,21 @@ namespace retroforge
                                                 const BoundedProblem::Vector &direction,
                                                 const std::vector<double>    &steps);
 
-  /// How far a minimisation has come.
+  /// State of a minimisation.
   struct MinimizerState
   {
     unsigned int iteration = 0; ///< points tried
     double       value     = 0.;
     double       gradient  = 0.; ///< length of  P(x - g) - x,  with P onto bounds and relations
-    double       radius    = 0.; ///< of the trust region
+    double       radius    = 0.; ///< radius of the trust region
   };
 
   struct MinimizerSettings
   {
     double first_radius   = 1.;
     double largest_radius = 4.;
-    double noise          = 0.; ///< of the values: what is added to both reductions before they are compared
+    /// Noise of the values, which is added to both reductions before they are compared.
+    double noise = 0.;
     /// Asked before each iteration; the minimisation ends where it says false.
     std::function<bool(const MinimizerState &)> go_on;
   };

@@ -9,8 +9,8 @@
 
 namespace retroforge
 {
-  /// What an optimisation is about: the scenarios that judge a design, the space of designs, the criteria,
-  /// and values and gradients by forgings that decide everything anew, on a mesh that may be renewed. Members
+  /// An optimisation problem: the scenarios that judge a design, the space of designs, the criteria, and
+  /// values and gradients by forgings that decide everything anew, on a mesh that may be renewed. Members
   /// stand in the order in which data flows through them. Collective over all ranks.
   class OptimizationProblem
   {
@@ -55,7 +55,7 @@ namespace retroforge
   public:
     const Case        main;       ///< on the ranks of this rank's group, and on the first mesh
     Scenarios         scenarios;  ///< the main one on the present mesh
-    const Objectives  objectives; ///< of all scenarios
+    const Objectives  objectives; ///< objectives of all scenarios
     const DesignSpace space;
     Criteria          criteria;
     const Scatter     scatter;

@@ -12,7 +12,7 @@ namespace retroforge
   class OptimizationReporter
   {
   public:
-    /// What is passed must live as long.
+    /// All arguments must live as long.
     OptimizationReporter(OptimizationProblem &problem, OptimizationResults &results);
 
     /// @throws Error  where results of something else are

@@ -26,9 +26,9 @@ namespace retroforge
 
     Decision     decision;
     Evaluation   evaluation;
-    double       merit  = 0.; ///< what the optimiser compares; infinite where the forging failed
-    double       radius = 0.; ///< of the trust region it was taken from, in scales
-    unsigned int mesh   = 0;  ///< that it was forged on, the first one 0
+    double       merit  = 0.; ///< merit that the optimiser compares; infinite where the forging failed
+    double       radius = 0.; ///< radius of the trust region it was taken from, in scales
+    unsigned int mesh   = 0;  ///< mesh that it was forged on, the first one 0
 
     bool becomes_the_next() const { return decision != Decision::noise && decision != Decision::refused; }
   };
@@ -36,15 +36,15 @@ namespace retroforge
   /// A mesh of the billet made anew at a design, which was forged on the one before and on this one.
   struct NewMesh
   {
-    std::size_t         row = 0; ///< of the second forging
+    std::size_t         row = 0; ///< row of the second forging
     std::string         made_at; ///< as in Design/meshed at
     unsigned int        n_nodes        = 0;
-    double              quality_before = 0., quality_after = 0.; ///< of the worst cell: tet_quality()
-    double              volume_before = 0., volume_after = 0.;   ///< of the billet [mm^3]
+    double              quality_before = 0., quality_after = 0.; ///< quality of the worst cell: tet_quality()
+    double              volume_before = 0., volume_after = 0.;   ///< volume of the billet [mm^3]
     std::vector<double> before, after;                           ///< values of the objectives
   };
 
-  /// What an optimisation found.
+  /// Results of an optimisation.
   struct OptimizationResults
   {
     const DesignSpace &space;
@@ -58,17 +58,18 @@ namespace retroforge
 
     double limit_tolerance = 0.; ///< part of a limit by which it may be exceeded
 
-    /// What values of objectives are where each design is forged several times; empty where it is once.
+    /// Meaning of the objectives' values where each design is forged several times; empty where it is once.
     std::string counted_as = {};
 
-    std::vector<TrialRow>       rows   = {};
-    std::vector<NewMesh>        meshes = {}; ///< after the first
-    double                      noise  = 0.; ///< of the objective, in its unit
-    SearchStop                  stop   = SearchStop::running;
-    Evaluation                  start = {}, best = {};   ///< with gradients
-    std::vector<double>         multipliers        = {}; ///< of the limits, per unit of the limit's excess
+    std::vector<TrialRow> rows   = {};
+    std::vector<NewMesh>  meshes = {}; ///< after the first
+    double                noise  = 0.; ///< noise of the objective, in its unit
+    SearchStop            stop   = SearchStop::running;
+    Evaluation            start = {}, best = {}; ///< with gradients
+    /// Multipliers of the limits, per unit of the limit's excess.
+    std::vector<double>         multipliers        = {};
     std::vector<double>         by_moving_relation = {}; ///< objective per unit of each relation's bound
-    std::optional<Confidence>   confidence         = {}; ///< where there are data
+    std::optional<Confidence>   confidence         = {}; ///< confidence, where there are data
     std::optional<Confirmation> confirmation       = {};
     /// Told beside values of the best design's forging, as the true maximum beside a smooth one: of each
     /// objective of the case itself, in its unit unless their names say other.
@@ -76,13 +77,14 @@ namespace retroforge
     unsigned int n_simulations = 0, n_sweeps = 0, n_failed = 0; ///< forgings, sweeps, designs
 
     double value(const Evaluation &evaluation) const { return criteria.value(evaluation.values); }
-    /// What the objective would change by, per unit by which a limit is relaxed; NaN where the search did not
+    /// Returns the change of the objective per unit by which a limit is relaxed; NaN where the search did not
     /// come to its end within all limits.
     double by_relaxing(std::size_t limit) const;
-    /// By how much the best design misses a limit, in its unit; 0 where it keeps it, to the tolerance.
+    /// Returns the amount by which the best design misses a limit, in its unit; 0 where it keeps it, to the
+    /// tolerance.
     double missed_by(std::size_t limit) const;
     bool   limits_are_kept() const { return criteria.largest_excess(best.values) <= limit_tolerance; }
-    /// How many designs were tried in vain since the last one that was taken, if all of them failed.
+    /// Returns the number of designs tried since the last accepted one, if all of them failed.
     std::size_t n_failed_at_the_end() const;
     /// Returns whether steps became too short because designs around the last one failed.
     bool ended_among_failures() const;
@@ -91,10 +93,11 @@ namespace retroforge
     /// Returns whether no design but the first could be forged.
     bool found_nothing() const;
 
-    /// Of the program: 0, or 2 where no design keeps the limits or none but the first could be forged.
+    /// Returns the exit status: 0, or 2 where no design keeps the limits or none but the first could be
+    /// forged.
     int exit_status() const { return limits_are_kept() && !found_nothing() ? 0 : 2; }
 
-    /// What new meshes changed of the objective, in all.
+    /// Returns the total change of the objective by new meshes.
     double by_meshes() const;
 
     void write_csv(const std::string &file) const;
@@ -104,7 +107,7 @@ namespace retroforge
     void print(const NewMesh &mesh, std::ostream &out) const;
 
   private:
-    /// What makes the result one that cannot be used, before all numbers of it.
+    /// Prints why the result cannot be used, before all numbers of it.
     void print_warning(std::ostream &out) const;
     void print_limits(std::ostream &out) const;
   };

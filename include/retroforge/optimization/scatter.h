@@ -23,7 +23,7 @@ namespace retroforge
             std::vector<bool>                   from_below);
 
     bool empty() const { return values_.empty(); }
-    /// What an objective is over the samples; empty without.
+    /// Returns the statistic of an objective over the samples; empty without samples.
     std::string in_words() const;
     std::size_t n_samples() const { return empty() ? 1 : values_.size(); }
     /// Returns the value of the scattered parameter in one sample.
@@ -32,8 +32,8 @@ namespace retroforge
     /// The design as it is forged in a sample.
     std::vector<double> sample(std::vector<double> mu, std::size_t i) const;
 
-    /// What of the samples counts. Where one has failed, all have. The derivative by the scattered parameter
-    /// is that of moving the whole range.
+    /// Combines the samples. Where one has failed, all have. The derivative by the scattered parameter is
+    /// that of moving the whole range.
     Evaluation combined(const std::vector<double> &mu, const std::vector<Evaluation> &samples) const;
 
   private:

@@ -56,7 +56,7 @@ namespace retroforge
     const Case                              *main_;
     std::vector<std::unique_ptr<const Case>> others_;
     std::vector<std::string>                 names_;
-    /// Of each scenario and each of its parameters, the parameter's number in the design, if it is there.
+    /// For each scenario and each of its parameters, the parameter's number in the design, if it is there.
     std::vector<std::vector<std::optional<std::size_t>>> places_;
   };
 

@@ -24,15 +24,15 @@ namespace retroforge
     mesh ///< which is to be made anew before the search goes on
   };
 
-  /// What a search asks for, and whom it tells.
+  /// Functions that a search evaluates, and observers that it notifies.
   struct SearchTask
   {
     using Forging = std::function<Evaluation(const std::vector<double> &mu)>;
 
     Forging                       evaluate;      ///< values, or why there are none
-    Forging                       differentiate; ///< of a design whose values are finite: with gradients
+    Forging                       differentiate; ///< forges a design whose values are finite, with gradients
     std::function<unsigned int()> n_evaluated;   ///< designs so far, however often each was asked for
-    /// Of each design that was tried, after its values.
+    /// Called for each design that was tried, after its values.
     std::function<void(const Evaluation &evaluation, bool accepted)> decided;
     /// Multipliers are renewed, and a round begins. @param excess  the largest one of the limits
     std::function<void(double excess)> renewed;
@@ -50,7 +50,7 @@ namespace retroforge
   class Search
   {
   public:
-    /// What is passed by reference must live as long.
+    /// Arguments passed by reference must live as long.
     Search(const DesignSpace            &space,
            const Criteria               &criteria,
            const OptimizationParameters &parameters,
@@ -72,13 +72,14 @@ namespace retroforge
     unsigned int      n_iterations() const { return iterations_; }
     /// Returns what designs are compared by; infinite where the forging failed.
     double merit_of(const Evaluation &evaluation) const;
-    /// Of the limits, in the objective's unit per unit of their excess.
+    /// Returns the multipliers of the limits, in the objective's unit per unit of their excess.
     std::vector<double> multipliers() const;
 
   private:
     /// The merit over scaled variables, from the present design.
     BoundedProblem problem();
-    /// Of a gradient over scaled variables, without parameters that the search does not vary.
+    /// Returns the length of a gradient over scaled variables, without parameters that the search does not
+    /// vary.
     double varied_length(const std::vector<double> &by_mu) const;
     /// The penalty that curves the merit by ten times as much as its first guess, across the limit that is
     /// felt most at the present design; none where none is felt.
@@ -103,11 +104,12 @@ namespace retroforge
     const OptimizationParameters &parameters_;
     const SearchTask              task_;
 
-    Merit                  merit_;
-    Minimizer              minimizer_;
-    Evaluation             now_;
-    BoundedProblem::Vector x_; ///< of the present design, as it was tried: its values come back bit for bit
-    double                 noise_      = 0.; ///< of the merit
+    Merit      merit_;
+    Minimizer  minimizer_;
+    Evaluation now_;
+    /// Variables of the present design, as it was tried: its values come back bit for bit.
+    BoundedProblem::Vector x_;
+    double                 noise_      = 0.; ///< noise of the merit
     double                 radius_     = 0.;
     double                 begun_with_ = 0.; ///< the merit's gradient where the present round began
     unsigned int           iterations_ = 0;  ///< designs tried, without those known before

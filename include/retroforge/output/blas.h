@@ -11,6 +11,6 @@ namespace retroforge
   /// links followed.
   std::string blas_in_use();
 
-  /// The same for the file name of a library.
+  /// Returns the name of the BLAS for the file name of a library.
   std::string blas_of_library(const std::string &file);
 } // namespace retroforge

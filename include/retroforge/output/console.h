@@ -17,9 +17,9 @@ namespace retroforge
   /// @param load   programs that want to run without this one
   std::string note_on_load(unsigned int n_ranks, double load, unsigned int n_cores);
 
-  /// Of what part the numbers are, where that is not the whole.
+  /// Prints which part the numbers belong to, where that is not the whole.
   void print_part(const WholePart &whole);
-  /// The same, and the head of the table of increments.
+  /// Prints the part, and the head of the table of increments.
   void print_head(const WholePart &whole);
 
   /// @param seconds_left  until the forging is done; NaN when unknown

@@ -2,11 +2,11 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/solver/stage.h>
+#include <retroforge/solver/equilibrium.h>
 
 namespace retroforge
 {
-  /// What the dies do to the nodes of the surface; zero at nodes that none presses.
+  /// Die, pressure and slip at each node of the surface; zero at nodes that no die presses.
   struct ContactFields
   {
     /// The die that presses, counted from 1 in the order of Dies/names; of several the strongest.
@@ -20,5 +20,6 @@ namespace retroforge
   };
 
   /// @param W, active  the stage's solution, on every rank, and who presses in it
-  ContactFields contact_fields(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
+  ContactFields
+  contact_fields(const Equilibrium<double> &stage, const Field<double> &W, const ActiveSet &active);
 } // namespace retroforge

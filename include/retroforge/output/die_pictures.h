@@ -6,8 +6,8 @@
 
 namespace retroforge
 {
-  /// What to draw of a die at its displacement: its surface, moved. Of a plane, the rectangle around the
-  /// points X projected onto it, a tenth of its longer side wider all around; its normals point to the
-  /// workpiece, too.
+  /// Returns the surface to draw for a die at its displacement; for a plane, the rectangle around the points
+  /// X projected onto it, a tenth of its longer side wider all around; its normals point to the workpiece,
+  /// too.
   TriangleSurface die_picture(const Die &die, const Vec3 &displacement, const NodalVectors<double> &X);
 } // namespace retroforge

@@ -86,7 +86,7 @@ namespace retroforge
     std::size_t                           n_nodes_, n_cells_;
     unsigned int                          n_points_per_cell_;
     std::vector<std::int32_t>             connectivity_;
-    std::vector<std::array<NodeIndex, 2>> edges_; ///< whose middles are points
+    std::vector<std::array<NodeIndex, 2>> edges_; ///< edges whose middles are points
     Array                                 X_;
     std::vector<Array>                    point_data_, cell_data_;
     std::string                           planes_;

@@ -2,7 +2,10 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/output/picture_series.h>
 #include <retroforge/time/forging.h>
+
+#include <set>
 
 namespace retroforge
 {
@@ -13,7 +16,7 @@ namespace retroforge
   class FieldWriter
   {
   public:
-    /// What is passed must live as long.
+    /// All arguments must live as long.
     /// @param comm  of the ranks that follow the run, of which the first writes
     FieldWriter(MPI_Comm                    comm,
                 const std::string          &directory,
@@ -34,8 +37,8 @@ namespace retroforge
     /// @throws Error  if a file cannot be written
     void add(const IncrementEvent &event);
 
-    /// The workpiece where the run failed, with the fields of the last equilibrium. The rank that calls this
-    /// writes it, for the others may have failed elsewhere.
+    /// The workpiece where the run failed, with the fields of the last equilibrium. For the first rank alone,
+    /// as others may have failed elsewhere.
     void add_failed(const ForgingState &state);
 
   private:
@@ -46,10 +49,12 @@ namespace retroforge
     /// @param suffix  of the file's name
     /// @param X       of the workpiece, which the picture of a plane covers
     /// @returns the file
-    std::string
-    write_die(unsigned int d, double stroke, const std::string &suffix, const NodalVectors<double> &X) const;
+    std::string write_die(unsigned int                d,
+                          const Vec3                 &displacement,
+                          const std::string          &suffix,
+                          const NodalVectors<double> &X);
     /// Replaces the last step where it is at the same time.
-    void add_step(double                      stroke,
+    void add_step(const StrokeStep           &at,
                   const std::string          &file,
                   const std::string          &suffix,
                   const NodalVectors<double> &X);
@@ -61,8 +66,8 @@ namespace retroforge
     const TetMesh              &billet_;
     const NodalVectors<double> &X_0_;
     NodalVectors<double>        displacement_;     ///< since the billet [mm]
-    std::size_t                 n_remeshings_ = 0; ///< that it has been carried through
-    /// Times and their files: the workpiece, then the dies.
-    std::vector<std::pair<double, std::string>> series_;
+    std::size_t                 n_remeshings_ = 0; ///< number of remeshings it has been carried through
+    PictureSeries               series_;           ///< at each time the workpiece, then the dies
+    std::set<unsigned int>      drawn_still_;      ///< dies that stand still and have their one picture
   };
 } // namespace retroforge

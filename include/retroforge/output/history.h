@@ -9,21 +9,23 @@
 
 namespace retroforge
 {
-  /// What is worth knowing of one increment, at its end.
+  /// Statistics of one increment, at its end.
   struct HistoryRow
   {
-    unsigned int increment   = 0; ///< counted from 1; 0 is the initial state
-    double       time        = 0; ///< s
-    double       stroke      = 0; ///< mm
-    double       force       = 0; ///< of the leading die along its path, in the last stage's equilibrium, N
-    double       energy      = 0; ///< spent so far, mJ
-    double       volume      = 0; ///< mm^3
-    double       min_quality = 0; ///< of the worst cell, dimensionless
-    double       depth       = 0; ///< of the surface's deepest point in a die, or of a die's in the metal, mm
-    unsigned int newton      = 0; ///< Newton iterations of the increment
-    unsigned int krylov      = 0; ///< iterations of its linear solves
+    unsigned int increment = 0; ///< counted from 1; 0 is the initial state
+    double       time      = 0; ///< s
+    double       stroke    = 0; ///< mm
+    /// Force of the leading die along its path, in the last stage's equilibrium, N.
+    double force       = 0;
+    double energy      = 0; ///< spent so far, mJ
+    double volume      = 0; ///< mm^3
+    double min_quality = 0; ///< quality of the worst cell, dimensionless
+    /// Depth of the surface's deepest point in a die, or of a die's in the metal, mm.
+    double       depth  = 0;
+    unsigned int newton = 0; ///< Newton iterations of the increment
+    unsigned int krylov = 0; ///< iterations of its linear solves
 
-    /// Of the whole part, of which symmetry may leave a sector: force, energy and volume.
+    /// Force, energy and volume of the whole part, of which symmetry may leave a sector.
     double whole_force = 0, whole_energy = 0, whole_volume = 0;
   };
 

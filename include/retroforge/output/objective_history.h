@@ -21,7 +21,7 @@ namespace retroforge
     /// @throws Error  if the file cannot be written
     explicit ObjectiveHistory(const std::string &file);
 
-    /// The same columns each time; what is not known yet (NaN) is left empty.
+    /// Writes a row. What is not known yet, which is NaN or is not among the columns, is left empty.
     /// @throws Error  if the row cannot be written
     void add(double stroke, const std::vector<NamedValue> &columns);
 
@@ -33,7 +33,7 @@ namespace retroforge
 
     std::string                       file_;
     std::unique_ptr<std::FILE, Close> stream_;
-    bool                              has_header_ = false;
+    std::vector<std::string>          titles_; ///< of the first row's columns
 
     void write(const std::string &text);
   };

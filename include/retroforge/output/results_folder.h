@@ -7,8 +7,8 @@
 
 namespace retroforge
 {
-  /// What a run, a scan or the report left in a folder, by names relative to it, sorted. Files that none of
-  /// them writes are not listed.
+  /// Returns the files that a run, a scan or the report left in a folder, by names relative to it, sorted.
+  /// Files that none of them writes are not listed.
   std::vector<std::string> results_in(const std::string &directory);
 
   /// Makes the folder of a new run, without results of an earlier one: they are removed where the user said

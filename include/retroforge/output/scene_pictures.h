@@ -33,9 +33,7 @@ namespace retroforge
     void write_list() const;
 
   private:
-    void add(const std::string &file) { files_.emplace_back(0., file); }
-
-    std::string                                 directory_;
-    std::vector<std::pair<double, std::string>> files_; ///< times and names
+    std::string              directory_;
+    std::vector<std::string> files_; ///< names
   };
 } // namespace retroforge

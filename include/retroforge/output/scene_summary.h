@@ -13,9 +13,8 @@
 
 namespace retroforge
 {
-  /// How billet and dies stand before the first increment, for people (`listing`) and programs (.json) to
-  /// read. The format is described in doc/summary_schema.md; whoever changes a key changes `schema` and that
-  /// page.
+  /// Billet and dies before the first increment, for people (`listing`) and programs (.json) to read. The
+  /// format is described in doc/summary_schema.md; whoever changes a key changes `schema` and that page.
   ///
   /// What is unknown is NaN here and null in the file; what could not be made is absent in both.
   struct SceneSummary
@@ -23,7 +22,7 @@ namespace retroforge
     static constexpr int    schema  = 1;
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-    using Corners = std::pair<Vec3, Vec3>; ///< of the box around something, lower and upper [mm]
+    using Corners = std::pair<Vec3, Vec3>; ///< lower and upper corner of a bounding box [mm]
 
     struct SymmetryPlane
     {
@@ -52,18 +51,18 @@ namespace retroforge
       std::string            name, shape;
       std::optional<Corners> extents; ///< not of a plane
       unsigned int           n_facets = 0;
-      Vec3                   point, facing; ///< of a plane: where it stands; facing of length one
+      Vec3                   point, facing; ///< position of a plane, and its facing of length one
       Vec3                   velocity;      ///< [mm/s]
       Vec3                   travel;        ///< over the stroke [mm]
       double                 friction      = 0.;
-      std::string            friction_name = "alpha"; ///< of the coefficient in its law
+      std::string            friction_name = "alpha"; ///< name of the coefficient in its law
       bool                   leads         = false;
-      double                 smallest_size = unknown; ///< of the edges wanted near it [mm]
+      double                 smallest_size = unknown; ///< smallest length of the edges wanted near it [mm]
 
       struct Place
       {
         double distance = unknown; ///< [mm]
-        Vec3   place;              ///< of the billet, at the start [mm]
+        Vec3   place;              ///< position on the billet at the start [mm]
       };
       /// Planes of symmetry on whose inner side all of it stands: the whole part has its images beside it.
       std::vector<std::string> mirrored_by;
@@ -71,14 +70,16 @@ namespace retroforge
       /// The nearest point of the billet, at the start.
       Place  gap;
       bool   touches      = false;
-      double contact_area = unknown; ///< of the faces of the billet that it touches [mm^2]
+      double contact_area = unknown; ///< area of the faces of the billet that it touches [mm^2]
+      /// Part of the billet's side that faces a surface which it covers, as seen along the way of the press.
+      double covered = unknown;
       /// The deepest point of the billet in it, or of it in the billet.
       std::optional<Place> overlap;
       bool                 is_of_die = false; ///< whether it is the latter
       Vec3                 frees;             ///< the travel of the die that ends the overlap [mm]
 
-      /// Of a die that moves: its own path until it touches the billet as that stands at the start, and
-      /// where; unknown where it does not within the stroke.
+      /// For a die that moves: its own path until it touches the billet in its initial position, and the
+      /// place; unknown where it does not within the stroke.
       Place  first_touch;
       double stroke_at_touch = unknown; ///< of the leading die, then [mm]
       bool   moves_away      = false;   ///< it would touch the billet if it went back
@@ -97,14 +98,15 @@ namespace retroforge
       bool         is_free    = false; ///< whether the increments are the program's choice
     };
 
-    /// What to expect, to a factor of two and without any forging.
+    /// Estimates to a factor of two, without any forging.
     struct Estimate
     {
-      std::string name;                                   ///< of the method
+      std::string name;                                   ///< name of the method
       double      speed = unknown, strain_rate = unknown; ///< at which the dies close [mm/s], [1/s]
-      double      stress      = unknown;                  ///< of the metal at that rate [MPa]
-      double      first_force = unknown;                  ///< where the dies first press, whole part [N]
-      double      final_force = unknown;                  ///< after the stroke, whole part [N]
+      double      stress = unknown;                       ///< stress of the metal at that rate [MPa]
+      /// Force where the dies first press, whole part [N].
+      double first_force = unknown;
+      double final_force = unknown; ///< after the stroke, whole part [N]
     };
 
     std::string              case_file, version, commit;
@@ -112,11 +114,11 @@ namespace retroforge
     std::vector<std::string> warnings;
 
     std::optional<Billet>   billet;
-    std::vector<Die>        dies; ///< those that could be made
+    std::vector<Die>        dies; ///< dies that could be made
     std::optional<Metal>    metal;
     std::optional<Press>    press;
-    std::optional<Estimate> estimate;          ///< of a sound scene
-    double                  seconds = unknown; ///< that it took to look
+    std::optional<Estimate> estimate;          ///< estimate for a sound scene
+    double                  seconds = unknown; ///< time that the inspection took
 
     /// The text of the file.
     std::string to_json() const;

@@ -14,7 +14,7 @@
 
 namespace retroforge
 {
-  /// What a run found, for programs to read (.json). The format is described in doc/summary_schema.md;
+  /// Results of a run, for programs to read (.json). The format is described in doc/summary_schema.md;
   /// whoever changes a key changes `Summary::schema` and that page.
   ///
   /// Numbers never set (and those that are not finite) become null; empty lists and maps are left out.
@@ -32,7 +32,7 @@ namespace retroforge
       std::string                   unit;
       std::map<std::string, double> parts;           ///< summands of the value, e.g. deformation and friction
       std::map<std::string, double> details;         ///< other numbers told beside it, e.g. the true maximum
-      double                        whole = unknown; ///< of the whole part, for what adds up over it
+      double                        whole = unknown; ///< value for the whole part, where it adds up over it
     };
 
     struct Parameter
@@ -40,8 +40,9 @@ namespace retroforge
       std::string                   name;
       double                        value = unknown;
       std::string                   unit;
-      std::map<std::string, double> gradient;        ///< by objective
-      double                        scale = unknown; ///< what per cent of the parameter are taken of
+      std::map<std::string, double> gradient; ///< by objective
+      /// Length or size that percentages of the parameter are taken of.
+      double scale = unknown;
     };
 
     /// Finite differences of one step: with the recorded decisions replayed, and free (decided anew).
@@ -117,7 +118,7 @@ namespace retroforge
     };
     std::vector<Restart> restarts;
 
-    /// What a user must know to trust the numbers: a sentence or two each.
+    /// Warnings that a user must know to trust the numbers: a sentence or two each.
     std::vector<std::string> warnings;
 
     std::map<std::string, double> wall_seconds;

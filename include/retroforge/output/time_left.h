@@ -4,10 +4,10 @@
 
 namespace retroforge
 {
-  /// How long the rest of a stroke takes at the pace of the last increments:  t = (S - s) T / D,  where T and
-  /// D are the seconds and millimetres of the increments solved, each counted exp(-(s - s_i) / l), s_i its
-  /// end and l a tenth of the stroke S. Long past increments no longer count, and short ones count by what
-  /// they take of the stroke.
+  /// Estimates the time for the rest of a stroke at the pace of the last increments:  t = (S - s) T / D,
+  /// where T and D are the seconds and millimetres of the increments solved, each counted exp(-(s - s_i) /
+  /// l), s_i its end and l a tenth of the stroke S. Long past increments no longer count, and short ones
+  /// count by what they take of the stroke.
   class TimeLeft
   {
   public:

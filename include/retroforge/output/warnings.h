@@ -6,8 +6,8 @@
 
 namespace retroforge
 {
-  /// What a user must know of a run that is done, to trust its numbers: each a sentence or two, with a
-  /// remedy.
+  /// Returns the warnings that a user must know to trust the numbers of a finished run: each a sentence or
+  /// two, with a remedy.
   /// @param largest_depth  of the surface in a die, over the element size, that needs no word
   /// @param untouched      dies that pressed no node
   std::vector<std::string>

@@ -6,6 +6,7 @@
 #include <retroforge/transfer/transfer.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace retroforge
@@ -15,11 +16,12 @@ namespace retroforge
   {
     NodalVectors<double> V; ///< of velocity nodes
     std::vector<double>  P;
-    std::vector<char>    active;        ///< h > 0 of each pair
-    NodalVectors<double> vertices = {}; ///< where they do not move with V: the velocities of the nodes
+    std::vector<char>    active; ///< h > 0 of each pair
+    /// The velocities of the nodes of the mesh, where they do not move with V.
+    std::optional<NodalVectors<double>> vertices = {};
 
     /// Of the nodes of the mesh.
-    const NodalVectors<double> &motion() const { return vertices.empty() ? V : vertices; }
+    const NodalVectors<double> &motion() const { return vertices ? *vertices : V; }
   };
 
   /// A change of mesh between two increments.
@@ -28,17 +30,18 @@ namespace retroforge
     NodalVectors<double> X_before; ///< positions on the old mesh [mm]
     TetMesh              mesh;     ///< the new one; its X are the positions after
     TransferOperator     transfer;
-    double               repaired = 0.; ///< metal thinner than an element taken away [mm^3]
+    double               removed_volume = 0.; ///< metal thinner than an element taken away [mm^3]
   };
 
   /// What the backward pass and a replay need of one increment. Positions follow from X_0 and the velocities.
   struct IncrementRecord
   {
-    double       stroke = 0.; ///< of the leading die at the start [mm]
-    double       step   = 0.; ///< [mm]
-    unsigned int cuts   = 0;  ///< times the step was halved
-    /// The complete input, where other settings hold from this increment on; else empty.
-    std::string parameters;
+    unsigned int operation = 0;
+    double       stroke    = 0.; ///< of the leading die in the operation, at the start [mm]
+    double       step      = 0.; ///< [mm]
+    unsigned int cuts      = 0;  ///< times the step was halved
+    /// The complete input, where other settings hold from this increment on.
+    std::optional<std::string> parameters;
     /// Made just before the increment; null when it goes on with the mesh there was.
     std::shared_ptr<const RemeshRecord> remesh;
     std::string                         scheme; ///< in time, by its name

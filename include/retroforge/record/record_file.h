@@ -68,12 +68,14 @@ namespace retroforge
     unsigned int n_increments_;
   };
 
-  /// The complete input of a run, and the increment, counted from 0, and stroke [mm] from which it holds.
+  /// The complete input of a run, and the increment, counted from 0, stroke [mm] and operation from which it
+  /// holds.
   struct RecordedInput
   {
     unsigned int first  = 0;
     double       stroke = 0.;
     std::string  parameters;
+    unsigned int operation = 0;
   };
 
   /// Reads the record of a run, finished or not, as it is at construction. Do not keep a reader of an
@@ -92,8 +94,8 @@ namespace retroforge
     /// Of the start of the run, and of each restart with other settings.  @throws Error
     std::vector<RecordedInput> inputs() const;
 
-    /// Where the record ends: the path of the leading die by then [mm].  @throws Error
-    double stroke() const;
+    /// Where the record ends: the operation, and the path of its leading die by then [mm].  @throws Error
+    std::pair<unsigned int, double> end() const;
 
     /// @throws Error  if the increment is damaged or of another run
     IncrementRecord read(unsigned int i) const;

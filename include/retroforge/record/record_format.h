@@ -19,7 +19,7 @@
 ///       cells                 [n_cells][4]      uint32
 ///       faces                 [n_faces][4]      uint32        three nodes, patch
 ///       patch_0 ...           name; of a symmetry plane also the attributes point, normal  [3] double
-///     /increment_000000 ...   attributes: run, n_nodes, n_velocity_nodes, stroke, step, cuts,
+///     /increment_000000 ...   attributes: run, n_nodes, n_velocity_nodes, operation, stroke, step, cuts,
 ///     deformation_energy,
 ///                             friction_energy, newton, krylov, linear_solves, sharp (the ramp is), and
 ///                             contact [5] double: approach, layer, step, width of the ramp, edge_stiffness
@@ -59,8 +59,9 @@ namespace retroforge
   /// What of an increment can be read without its arrays.
   struct IncrementHead
   {
-    double      stroke = 0., step = 0.; ///< [mm]
-    std::string parameters;
+    unsigned int               operation = 0;
+    double                     stroke = 0., step = 0.; ///< [mm]
+    std::optional<std::string> parameters;
   };
 
   /// What the increments of a run have in common.

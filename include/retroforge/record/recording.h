@@ -45,7 +45,7 @@ namespace retroforge
     }
 
     /// The increments, from memory or, one at a time, from the disk. Refers to this object.
-    std::function<const IncrementRecord &(unsigned int)> source() const;
+    std::function<const IncrementRecord &(unsigned int)> access() const;
 
     /// Size on the disk, of what this run wrote.
     std::optional<std::uint64_t> bytes() const;

@@ -12,9 +12,9 @@ namespace retroforge
   /// - the links of a and b meet in the link of the edge only, counting the outside as one more node (Dey and
   ///   others 1999): so no parts of the mesh or of its boundary are merged;
   /// - every changed cell is better than `bound` and no new edge is longer than `longest` times the wanted
-  /// length;
-  /// - every changed boundary face looks the same way as before, and what it leaves is within the deviation
-  ///   the parameters allow of where a was.
+  ///   length;
+  /// - every changed boundary face faces the same way as before, and stays within the deviation that the
+  ///   parameters allow of the position of a.
   std::optional<CavityChange>
   plan_collapse(const RemeshingContext &context, NodeIndex a, NodeIndex b, double bound, double longest);
 } // namespace retroforge

@@ -23,9 +23,10 @@ namespace retroforge
     unsigned int             curve;
   };
 
-  /// What one operation does: cells, boundary faces and ridges that go and come, and at most one node that is
-  /// new (its index is the number of nodes) or moves. Qualities are the smallest of the cells that go and of
-  /// those that come (1 when there are none). An operation computes and checks it; applying it is then safe.
+  /// The effect of one operation: cells, boundary faces and ridges that are removed and added, and at most
+  /// one node that is new (its index is the number of nodes) or moves. Qualities are the smallest of the
+  /// removed cells and of the added ones (1 when there are none). An operation computes and checks it;
+  /// applying it is then safe.
   struct CavityChange
   {
     std::vector<CellIndex>    removed_cells;
@@ -113,7 +114,7 @@ namespace retroforge
   TetMesh
   compacted(const EditableMesh &edited, const SurfaceFeatures &features, std::vector<NodeIndex> &old_node);
 
-  /// Whether a list of nodes contains a node.
+  /// Returns whether a list of nodes contains a node.
   template <std::size_t n>
   bool contains(const std::array<NodeIndex, n> &nodes, const NodeIndex node)
   {

@@ -7,10 +7,10 @@
 
 namespace retroforge
 {
-  /// What sizes may be [mm, growth dimensionless].
+  /// Bounds of sizes [mm], and of their growth, dimensionless.
   struct SizeBounds
   {
-    double uniform; ///< of a uniform mesh with as many cells as are wanted
+    double uniform; ///< edge length of a uniform mesh with the wanted number of cells
     double smallest, largest;
     double growth; ///< most by which they change per distance
   };
@@ -18,23 +18,23 @@ namespace retroforge
   /// Sizes of cells with which a mesh has the least error, where the cells of the present one are.
   struct OptimalSizes
   {
-    NodalVectors<double> centre; ///< of the present cells
-    std::vector<double>  volume; ///< of those [mm^3]
+    NodalVectors<double> centre; ///< centres of the present cells
+    std::vector<double>  volume; ///< volumes of the present cells [mm^3]
     std::vector<double>  size;   ///< wanted there [mm]
 
     /// By how much the error of the present mesh is larger than with these sizes and as many cells as it has.
     double gain = 1.;
   };
 
-  /// From what each cell adds to the error. With cells of size h the error per volume is d h^(2p), with d as
-  /// the present cell of size h_T = 2 |T|^(1/3) says, d = eta_T / (|T| h_T^(2p)). The sum is least, at a
-  /// given number of cells ~ int h^-3, for
+  /// Computes optimal sizes from the contribution of each cell to the error. With cells of size h the error
+  /// per volume is d h^(2p), with d as the present cell of size h_T = 2 |T|^(1/3) says, d = eta_T / (|T|
+  /// h_T^(2p)). The sum is least, at a given number of cells ~ int h^-3, for
   ///
   ///   h = c d^(-1/(2p+3)),   bounded,   c such that  int h^-3 = V / uniform^3.
   ///
-  /// What single cells say is noisy: d is the geometric mean over the cells around each node, and then over
-  /// the nodes of the cell. Sizes are rounded to parts of 1e-4: the last digits of a solution are others on
-  /// another number of ranks, and are not to show.
+  /// Contributions of single cells are noisy: d is the geometric mean over the cells around each node, and
+  /// then over the nodes of the cell. Sizes are rounded to parts of 1e-4: the last digits of a solution are
+  /// others on another number of ranks, and are not to show.
   /// @param errors  eta_T >= 0, of any unit; where all are zero, sizes are uniform
   /// @param degree  p
   OptimalSizes optimal_sizes(const TetMesh              &mesh,
@@ -48,7 +48,7 @@ namespace retroforge
   ///   h(x) = min( largest, min_T ( s h_T + growth * distance of x to the ball ) ),
   ///
   /// which changes by at most the growth per distance; s such that still  int h^-3 = V / uniform^3. Nothing
-  /// is tabulated: a question is a branch-and-bound search, as in GradedSize.
+  /// is tabulated: an evaluation is a branch-and-bound search, as in GradedSize.
   class ErrorSizes
   {
   public:

@@ -6,6 +6,7 @@
 #include <retroforge/remeshing/remeshing_parameters.h>
 #include <retroforge/remeshing/remeshing_report.h>
 
+#include <optional>
 #include <vector>
 
 namespace retroforge
@@ -17,8 +18,8 @@ namespace retroforge
     /// For each node the old node it is, or invalid_index when it is new or was moved by more than the volume
     /// correction is allowed to. Nodes that remeshing did not touch come first, in their old order.
     std::vector<NodeIndex> old_node;
-    /// How far the volume correction moved each kept node; zero for those that kept their position bit for
-    /// bit.
+    /// Displacement of each kept node by the volume correction; zero for those that kept their position bit
+    /// for bit.
     NodalVectors<double> correction;
     RemeshingReport      report;
   };
@@ -33,7 +34,7 @@ namespace retroforge
   /// @param size  wanted edge length, may vary in space
   /// @param push_out  keeps new surface nodes out of the dies; may be empty
   /// @param touches   nodes the volume correction leaves where they are; may be empty
-  /// @param wanted_volume  what the correction restores; 0: the volume of the mesh
+  /// @param wanted_volume  volume that the correction restores [mm^3]; by default that of the mesh
   /// Throws Error when a cell has no positive volume: then the mesh must be rebuilt from its surface.
   RemeshedMesh remesh_locally(const TetMesh              &mesh,
                               const NodalVectors<double> &X,
@@ -41,5 +42,5 @@ namespace retroforge
                               const RemeshingParameters  &parameters,
                               const PushOut              &push_out      = {},
                               const TouchesDie           &touches       = {},
-                              double                      wanted_volume = 0.);
+                              std::optional<double>       wanted_volume = {});
 } // namespace retroforge

@@ -32,7 +32,7 @@ namespace retroforge
     Vec3 on_region(unsigned int region, const Vec3 &x) const;
     Vec3 on_curve(unsigned int curve, const Vec3 &x) const;
 
-    /// How deep a point is inside a die; 0 outside.
+    /// Returns the depth of a point inside a die; 0 outside.
     double depth_in_dies(const Vec3 &x) const { return push_out_ ? (push_out_(x) - x).norm() : 0.; }
 
     /// The symmetry planes that a region or a ridge curve lies in.

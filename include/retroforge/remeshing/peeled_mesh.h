@@ -11,7 +11,7 @@
 
 namespace retroforge
 {
-  /// A mesh that metal too thin for it was taken away from.
+  /// A mesh from which metal too thin for it was removed.
   struct RepairedMesh
   {
     RebuiltMesh mesh;
@@ -28,7 +28,7 @@ namespace retroforge
 
     const TetMesh &mesh() const { return mesh_; }
 
-    /// Volume of what was taken away so far [mm^3].
+    /// Returns the volume removed so far [mm^3].
     double removed() const { return removed_; }
 
     double volume(CellIndex cell) const;
@@ -48,7 +48,7 @@ namespace retroforge
     /// @return false, and nothing changed, when none may go or it would be too much
     bool remove_first(const std::vector<CellIndex> &cells, double most);
 
-    /// What is left, without the nodes that no cell has any more.
+    /// Returns the remaining mesh, without the nodes that no cell has any more.
     RepairedMesh result() const;
 
   private:
@@ -59,7 +59,7 @@ namespace retroforge
 
     TetMesh                            mesh_;
     double                             removed_ = 0.;
-    std::map<FaceKey, CellIndex>       cell_behind_; ///< of faces of the boundary
+    std::map<FaceKey, CellIndex>       cell_behind_; ///< cell of each face of the boundary
     std::set<NodeIndex>                boundary_nodes_;
     std::set<std::array<NodeIndex, 2>> boundary_edges_;
   };

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/mesh/cell_faces.h>
 #include <retroforge/remeshing/remeshing_context.h>
 #include <retroforge/remeshing/remeshing_report.h>
 
@@ -47,8 +48,8 @@ namespace retroforge
     const double      goal_quality_;
     // Number of cells there were when nothing helped a cell, when a node could not be moved for the better,
     // nor an edge be split.
-    std::vector<CellIndex>                        cell_failed_at_, node_failed_at_;
-    std::map<std::array<NodeIndex, 2>, CellIndex> edge_failed_at_;
-    std::set<std::pair<double, CellIndex>>        queue_;
+    std::vector<CellIndex>                 cell_failed_at_, node_failed_at_;
+    std::map<EdgeKey, CellIndex>           edge_failed_at_;
+    std::set<std::pair<double, CellIndex>> queue_;
   };
 } // namespace retroforge

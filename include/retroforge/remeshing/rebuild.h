@@ -14,7 +14,7 @@ namespace retroforge
   struct RebuiltMesh
   {
     TetMesh                mesh;     ///< its X are the positions
-    std::vector<NodeIndex> old_node; ///< of each new node: the old node it is, or invalid_index
+    std::vector<NodeIndex> old_node; ///< for each new node: the old node it is, or invalid_index
   };
 
   /// Makes the inside of a mesh anew, for meshes whose cells are inverted or too bad for local remeshing.

@@ -9,8 +9,8 @@
 
 namespace retroforge
 {
-  /// What every operation of local remeshing looks at: the mesh as it is, the surface as it was, the wanted
-  /// edge lengths, and the limits.
+  /// The data that every operation of local remeshing reads: the mesh as it is, the surface as it was, the
+  /// wanted edge lengths, and the limits.
   struct RemeshingContext
   {
     EditableMesh              &mesh;
@@ -18,11 +18,12 @@ namespace retroforge
     const SizeField           &size;
     const RemeshingParameters &parameters;
 
-    /// Length of an edge over the wanted one at its middle.
+    /// Returns the length of an edge over the wanted one at its middle.
     double relative_length(NodeIndex a, NodeIndex b) const;
     double relative_length(const Vec3 &a, const Vec3 &b) const;
 
-    /// Whether that is larger, or smaller, than a limit: costs less than the length itself.
+    /// Return whether the relative length is larger, or smaller, than a limit: cheaper than the length
+    /// itself.
     bool is_longer(NodeIndex a, NodeIndex b, double limit) const;
     bool is_shorter(NodeIndex a, NodeIndex b, double limit) const;
   };
@@ -37,10 +38,10 @@ namespace retroforge
   /// Smallest quality of some cells; 1 when there are none.
   double minimum_quality(const EditableMesh &mesh, const std::vector<CellIndex> &cells);
 
-  /// Whether two triangles look the same way: cosine of the angle of their normals above 0.85.
+  /// Returns whether two triangles face the same way: cosine of the angle of their normals above 0.85.
   bool look_alike(const std::array<Vec3, 3> &a, const std::array<Vec3, 3> &b);
 
-  /// Where a point belongs that is to become a node of the given kind: anywhere in the interior, on the old
+  /// The set of positions allowed to a new node of the given kind: anywhere in the interior, on the old
   /// region or on the old curve on the boundary.
   struct Place
   {

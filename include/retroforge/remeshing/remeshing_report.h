@@ -6,7 +6,7 @@
 
 namespace retroforge
 {
-  /// What a remeshing did. Lengths are relative to the wanted edge length, volumes in length^3.
+  /// Statistics of a remeshing. Lengths are relative to the wanted edge length, volumes in length^3.
   struct RemeshingReport
   {
     unsigned int n_length_collapses  = 0;

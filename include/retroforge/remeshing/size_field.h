@@ -12,48 +12,47 @@
 
 namespace retroforge
 {
-  /// What is asked of a wanted length: its value where that lies between the two. Where it is smaller than
-  /// `enough`, any smaller length will do; where it is larger than `most`, any that is not smaller than that.
-  /// Remeshing mostly asks whether an edge is too long or too short, which a search answers much sooner.
-  struct SizeQuestion
+  /// Bounds between which a wanted length is needed exactly. Where it is smaller than `lower`, any value
+  /// smaller than that will do; where it is larger than `upper`, any that is not smaller than that. Remeshing
+  /// mostly needs to know whether an edge is too long or too short, which a search answers much sooner.
+  struct SizeQuery
   {
-    double enough = 0., most = std::numeric_limits<double>::max();
+    double lower = 0., upper = std::numeric_limits<double>::max();
   };
 
   /// Wanted edge length at a position [length].
   class SizeField
   {
   public:
-    /// @param of  a function of the position, or of the position and a SizeQuestion
+    /// @param of  a function of the position, or of the position and a SizeQuery
     template <typename F, typename = std::enable_if_t<!std::is_base_of_v<SizeField, std::decay_t<F>>>>
     SizeField(F of)
     {
-      if constexpr (std::is_invocable_v<F, const Vec3 &, const SizeQuestion &>)
+      if constexpr (std::is_invocable_v<F, const Vec3 &, const SizeQuery &>)
         of_ = std::move(of);
       else
-        of_ = [of = std::move(of)](const Vec3 &x, const SizeQuestion &) { return of(x); };
+        of_ = [of = std::move(of)](const Vec3 &x, const SizeQuery &) { return of(x); };
     }
 
     double operator()(const Vec3 &x) const { return of_(x, {}); }
 
-    /// Whether it is smaller than `bound` at x.
+    /// Returns whether the wanted length at x is smaller than `bound`.
     bool below(const Vec3 &x, const double bound) const { return of_(x, {bound, bound}) < bound; }
 
   private:
-    std::function<double(const Vec3 &, const SizeQuestion &)> of_;
+    std::function<double(const Vec3 &, const SizeQuery &)> of_;
   };
 
-  /// Wanted length of edges near a surface each facet f of which wants its own length s_f:
+  /// Wanted length of edges near a surface, each facet f of which has a wanted length s_f of its own:
   ///
   ///   h(x) = min( h_0, min_f ( s_f + g |x - f| ) ),    |x - f| the distance of x to the facet,
   ///
   /// the largest function that is nowhere above h_0, on no facet above its s_f, and changes by at most g per
-  /// distance. It moves with the surface, so that one field serves all positions of a die: ask for
-  /// h(x - displacement).
+  /// distance. It moves with the surface, so that h(x - displacement) serves all positions of a die.
   ///
-  /// Nothing is tabulated: a question is a branch-and-bound search among the facets with s_f < h_0. (An
-  /// octree that holds the same field answers faster, but a remeshing asks too few questions to pay for
-  /// making it.)
+  /// Nothing is tabulated: an evaluation is a branch-and-bound search among the facets with s_f < h_0. (An
+  /// octree that holds the same field is faster to evaluate, but a remeshing needs too few evaluations to pay
+  /// for making it.)
   class GradedSize
   {
   public:
@@ -69,7 +68,7 @@ namespace retroforge
                const std::vector<TriangleSurface::Edge> &ridges         = {},
                double                                    size_of_ridges = 0.);
 
-    double operator()(const Vec3 &x, const SizeQuestion &question = {}) const;
+    double operator()(const Vec3 &x, const SizeQuery &query = {}) const;
 
     /// Facets with s_f < h_0.
     unsigned int n_facets() const { return facets_.size(); }

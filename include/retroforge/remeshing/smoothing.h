@@ -9,7 +9,7 @@ namespace retroforge
   /// Faces seen from one point: with it as fourth corner each makes a positively oriented cell.
   using Cavity = std::vector<std::array<NodeIndex, 3>>;
 
-  /// What a node sees, and what the middle of an edge would see.
+  /// Return the faces seen from a node, and those that the middle of an edge would see.
   Cavity cavity_of_node(const EditableMesh &mesh, NodeIndex node);
   Cavity cavity_of_edge(const EditableMesh &mesh, NodeIndex a, NodeIndex b);
 

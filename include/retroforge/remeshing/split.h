@@ -6,12 +6,12 @@
 
 namespace retroforge
 {
-  /// Where the new node of a split edge goes.
+  /// The position of the new node of a split edge.
   enum class SplitAt
   {
     middle,  ///< on the boundary: the place of the middle on the old region or curve
     towards, ///< the same, or as far on the way there as the nodes behind let it; fit_pass() does the rest
-    best     ///< where the smallest quality of the new cells is greatest
+    best     ///< the position at which the smallest quality of the new cells is greatest
   };
 
   /// Puts a new node on the edge a-b. Refused unless every new cell is better than `bound` and new boundary

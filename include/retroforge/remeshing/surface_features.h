@@ -9,7 +9,7 @@
 
 namespace retroforge
 {
-  /// What of the boundary must survive remeshing, found from the patches and the positions.
+  /// The features of the boundary that must survive remeshing, found from the patches and the positions.
   ///
   /// A ridge is a boundary edge between two patches, or one whose faces turn by more than the ridge angle,
   /// unless one of them cuts into a die: then they are chords of the die's rounding, not an edge of the body.

@@ -36,7 +36,7 @@ namespace retroforge
     TriangleTree() = default;
     explicit TriangleTree(std::vector<std::array<Vec3, 3>> triangles);
 
-    /// Of several triangles that are equally close the first in the list.
+    /// Returns the closest triangle; of several that are equally close, the first in the list.
     Hit closest(const Vec3 &x) const;
 
   private:

@@ -13,9 +13,9 @@ namespace retroforge
   /// Pass them to needs_remeshing(), or it asks for the impossible again.
   std::vector<bool> frozen_cells(const TetMesh &mesh, const RemeshingParameters &parameters);
 
-  /// Whether a dihedral angle is below the trigger angle. Not counted are angles between two boundary faces
-  /// of one cell (the shape of the workpiece, which remeshing keeps), and frozen cells, unless they have lost
-  /// half the angle they had at mesh.X. `frozen` may be empty.
+  /// Returns whether a dihedral angle is below the trigger angle. Not counted are angles between two boundary
+  /// faces of one cell (the shape of the workpiece, which remeshing keeps), and frozen cells, unless they
+  /// have lost half the angle they had at mesh.X. `frozen` may be empty.
   bool needs_remeshing(const TetMesh              &mesh,
                        const NodalVectors<double> &X,
                        const RemeshingParameters  &parameters,

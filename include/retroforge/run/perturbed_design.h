@@ -3,8 +3,7 @@
 #pragma once
 
 #include <retroforge/adjoint/objective_sensitivity.h>
-#include <retroforge/adjoint/sweep.h>
-#include <retroforge/case/case.h>
+#include <retroforge/run/forward_run.h>
 
 namespace retroforge
 {
@@ -20,9 +19,9 @@ namespace retroforge
   positions_at(const Case &forging_case, const std::vector<Number> &mu, const ShapePerturbation &shift);
 
   /// Returns the derivatives of the combined objectives along (mu_dot, shift_dot) at the case's design, by
-  /// one tangent sweep (the direct method).
+  /// one tangent sweep (the direct method) along a run that is done.
   std::vector<double> directional_derivatives(const Case                &forging_case,
-                                              const RecordedForging     &recorded,
+                                              const ForwardRun          &run,
                                               const std::vector<double> &mu_dot,
                                               const ShapePerturbation   &shift_dot);
 } // namespace retroforge

@@ -3,8 +3,7 @@
 #pragma once
 
 #include <retroforge/adjoint/objective_sensitivity.h>
-#include <retroforge/adjoint/sweep.h>
-#include <retroforge/record/recording.h>
+#include <retroforge/run/forward_run.h>
 #include <retroforge/run/run_output.h>
 
 namespace retroforge
@@ -24,8 +23,7 @@ namespace retroforge
     /// Is called once objectives and gradients are known.  @return whether a check passed, or there was none
     virtual bool verify() { return true; }
 
-    void            write_summary();
-    RecordedForging recorded();
+    void        write_summary();
     std::string path_of(const std::string &file) const { return case_.command.output_directory + "/" + file; }
 
   private:
@@ -47,7 +45,6 @@ namespace retroforge
     void resume();
     /// Solves what is left of the stroke.
     void forge_on();
-    void follow(const IncrementEvent &event);
 
     void differentiate();
     void sweep_back();
@@ -58,13 +55,7 @@ namespace retroforge
     Case       case_;
     const bool root_; ///< this rank writes
 
-    const std::shared_ptr<Leg> first_leg_;
-    const Remesher             remesher_;
-    const Forging              forging_;
-
-    ForgingState                      forged_;
-    ObjectiveTrace                    trace_;
-    Recording                         recording_;
+    ForwardRun                        run_;
     const std::vector<std::string>    warnings_; ///< what is doubtful about the scene
     std::unique_ptr<RunOutput>        output_;
     std::vector<double>               values_;               ///< of the objectives

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/solver/stage.h>
+#include <retroforge/solver/equilibrium.h>
 
 namespace retroforge
 {
@@ -11,20 +11,20 @@ namespace retroforge
   class ContactPullback
   {
   public:
-    ContactPullback(const StageView<double> &view, StageBar &bar);
+    ContactPullback(const EquilibriumView<double> &view, EquilibriumBar &bar);
 
     /// Derivatives of a scalar in what contact_node(p) returned.
     void add(unsigned int p, const ContactNodeBar &node_bar);
 
-    /// The same, but none in the unknowns.
+    /// Adds the derivatives at fixed velocities: none in the unknowns.
     void add_at_fixed_velocity(unsigned int p, const ContactNodeBar &node_bar);
 
     /// Passes the areas' derivatives on to the positions. Once, at the end.
     void finish();
 
   private:
-    const StageView<double> &view_;
-    StageBar                &bar_;
-    ContactAreas<double>     areas_bar_;
+    const EquilibriumView<double> &view_;
+    EquilibriumBar                &bar_;
+    ContactAreas<double>           areas_bar_;
   };
 } // namespace retroforge

@@ -13,35 +13,35 @@ namespace retroforge
     LinearSystem(const Scene &scene, const LinearSolverParameters &parameters, Timings &timings);
 
     /// Matrix of `stage` at W; velocities fixed by symmetry are eliminated.
-    void assemble(const Stage<double> &stage,
-                  const Field<double> &W,
-                  const ActiveSet     &active,
-                  Linearisation        linearisation = Linearisation::newton);
+    void assemble(const Equilibrium<double> &stage,
+                  const Field<double>       &W,
+                  const ActiveChoice        &active,
+                  Linearisation              linearisation = Linearisation::newton);
 
     /// Solution of the uncondensed system, or of the transposed one, for the right-hand side rhs (owned
     /// entries), to `tolerance` relative to the scaled right-hand side. Returns the number of Krylov
     /// iterations (0 for a direct solve). A rank gets its own entries and those it reads.
-    /// @param guesses  fields, like the solutions of earlier systems, the best combination of which is the
-    /// start
+    /// @param guesses  fields, as the solutions of earlier systems: their best combination is the start
     unsigned int solve(const Field<double>              &rhs,
                        double                            tolerance,
                        Field<double>                    &solution,
                        const std::vector<Field<double>> &guesses       = {},
                        Transposition                     transposition = Transposition::plain);
 
-    /// As solve, for derivatives: of a residual, which a moving die makes large where it pushes, and of an
-    /// objective, which contact forces make large there (SaddleSolver::solve_penalised_first).
+    /// Solves as solve() does for right-hand sides that are derivatives: of a residual, which a moving die
+    /// makes large where it pushes, or of an objective, which contact forces make large there
+    /// (SaddleSolver::solve_penalised_first).
     unsigned int solve_derivative(const Field<double>              &rhs,
                                   double                            tolerance,
                                   Field<double>                    &solution,
                                   const std::vector<Field<double>> &guesses       = {},
                                   Transposition                     transposition = Transposition::plain);
 
-    /// Of a right-hand side as solve_derivative() sees it, scaled, without bubbles and penalised rows: what
-    /// its tolerance is relative to.
+    /// Returns the norm of a right-hand side that the tolerance of solve_derivative() is relative to: scaled,
+    /// without bubbles and penalised rows.
     double norm_of_derivative(const Field<double> &rhs, Transposition transposition) const;
 
-    /// Forget the preconditioner: the next solve makes a new one.
+    /// Discards the preconditioner: the next solve makes a new one.
     void reset() { solver_.reset(); }
 
     /// The scaled norm in which solves and Newton converge: of a residual's momentum rows, and of its

@@ -30,30 +30,30 @@ namespace retroforge
   };
 
   /// How well the start of Newton's method is known.
-  enum class Start
+  enum class Origin
   {
-    near, ///< the solution of the increment before, or of a longer one, on the same mesh
-    far   ///< interpolated from another mesh: strain rates are wrong here and there
+    previous,   ///< the solution of the increment before, or of a longer one, on the same mesh
+    transferred ///< interpolated from another mesh: strain rates are wrong here and there
   };
 
   /// Where Newton's method begins in the stages of an increment.
-  struct Guess
+  struct InitialGuess
   {
-    Field<double> W;
-    Start         known = Start::near;
-    Field<double> rate;       ///< of W over the stroke; empty: not known
-    double        ahead = 0.; ///< stroke from W to the first stage [mm]
+    Field<double>                W;
+    Origin                       origin = Origin::previous;
+    std::optional<Field<double>> rate;       ///< of W over the stroke, where it is known
+    double                       ahead = 0.; ///< stroke from W to the first stage [mm]
 
     /// Takes a solution ahead by `stroke`, as far as the rate tells.
     void advance(const double stroke, Field<double> &solution) const
     {
-      if (!rate.V.empty())
-        solution.add(stroke, rate);
+      if (rate)
+        solution.add(stroke, *rate);
     }
   };
 
   /// Solves the equilibrium of a stage for W by Newton's method, with a line search on the power functional
-  /// where the laws of contact have one (Stage::has_potential()): the step length is a root of its slope
+  /// where the laws of contact have one (Equilibrium::has_potential()): the step length is a root of its slope
   /// along the step, monotone because the functional is convex in V. Where they have none, as where friction
   /// follows the pressure, the search is for a fall of the residual's norm, which Newton's step promises as
   /// well. A step that must be cut tells that the power law bends more than its tangent knows. Steps at
@@ -70,37 +70,36 @@ namespace retroforge
     Newton(const Scene &scene, const NewtonParameters &parameters, LinearSystem &system);
 
     /// @param W       in: initial guess; out: the solution
-    /// @param frozen   empty, or the recorded active set of a replay, which ends with a step below the
-    /// tolerance
-    /// @param pressed  empty, or the active set of a solution nearby, with the same pairs
-    NewtonStatistics solve(const Stage<double> &stage,
-                           Field<double>       &W,
-                           const ActiveSet     &frozen,
-                           Start                start   = Start::near,
-                           const ActiveSet     &pressed = {});
+    /// @param frozen   the recorded active set of a replay, which ends with a step below the tolerance
+    /// @param pressed  the active set of a solution nearby, with the same pairs, where one is known
+    NewtonStatistics solve(const Equilibrium<double> &stage,
+                           Field<double>             &W,
+                           const ActiveChoice        &frozen,
+                           Origin                     origin  = Origin::previous,
+                           const ActiveChoice        &pressed = {});
 
     /// The velocity field of a Newtonian metal under the same dies, as a start from nothing.
-    void initial_guess(const Stage<double> &stage,
-                       Field<double>       &W,
-                       const ActiveSet     &frozen,
-                       NewtonStatistics    &statistics);
+    void initial_guess(const Equilibrium<double> &stage,
+                       Field<double>             &W,
+                       const ActiveChoice        &frozen,
+                       NewtonStatistics          &statistics);
 
   private:
     using Scale = std::pair<double, double>; ///< of momentum and continuity, as residual_scale
 
-    double relative_residual(const Stage<double> &stage,
-                             const Field<double> &W,
-                             const ActiveSet     &frozen,
-                             const Scale         &scale,
-                             Field<double>       &r);
+    double relative_residual(const Equilibrium<double> &stage,
+                             const Field<double>       &W,
+                             const ActiveChoice        &frozen,
+                             const Scale               &scale,
+                             Field<double>             &r);
     /// Advances W and returns the part of the velocity step that was taken.
     /// @param r       residual at W, with the same contacts
-    /// @param active  empty, or the contacts that count throughout
-    double search_power(const Stage<double> &stage,
-                        Field<double>       &W,
-                        const Field<double> &r,
-                        const Field<double> &step,
-                        const ActiveSet     &active);
+    /// @param active  the contacts that count throughout, where they are not decided at each step
+    double search_power(const Equilibrium<double> &stage,
+                        Field<double>             &W,
+                        const Field<double>       &r,
+                        const Field<double>       &step,
+                        const ActiveChoice        &active);
 
     /// What search_residual compares with: the residual at W, its relative norm and scale, and the dies'
     /// speed.
@@ -114,11 +113,11 @@ namespace retroforge
 
     /// The same by the residual's norm, bubbles settled: the step that search_power takes where it lowers
     /// that, else the longest of 1, 1/2, ... that does, or the one after which it is least.
-    double search_residual(const Stage<double> &stage,
-                           Field<double>       &W,
-                           const SearchStart   &start,
-                           const Field<double> &step,
-                           const ActiveSet     &active);
+    double search_residual(const Equilibrium<double> &stage,
+                           Field<double>             &W,
+                           const SearchStart         &start,
+                           const Field<double>       &step,
+                           const ActiveChoice        &active);
     double slope(const Field<double> &r, const Field<double> &step) const;
 
     const Scene            &scene_;

@@ -7,8 +7,9 @@
 namespace retroforge
 {
   /// Adds to x what makes the residual r vanish in the penalised rows of A, or of A^T, all other unknowns
-  /// held: exactly where these rows share no entries, else as well as a few steps of conjugate gradients can,
-  /// or, of an unsymmetric system, of GMRES. Entries that another rank owns are held, too.
+  /// held: exactly where these rows share no entries, or the system is unsymmetric; else as well as a few
+  /// steps of conjugate gradients can. Entries that another rank owns are held, too. Where unsymmetric rows
+  /// are singular, x stays as it is.
   /// @param r, x  by local rows of A
   void
   solve_penalised_rows(const SaddleSystem &system, Transposition transposition, const double *r, double *x);

@@ -2,8 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/solver/cell_tangent_assembler.h>
 #include <retroforge/solver/node_frames.h>
-#include <retroforge/solver/tangent_sums.h>
 
 namespace retroforge
 {
@@ -19,7 +19,8 @@ namespace retroforge
     bool                      penalties_couple = false; ///< some of these rows share entries
     /// Rigid translations as vectors of A's local rows, one after the other; zero in penalised rows.
     std::vector<double> translations;
-    /// From linear velocities to those of A; not of penalised rows. P is null where A's are linear.
+    /// Interpolation from linear velocities to those of A, without penalised rows. P is null where A's
+    /// velocities are linear.
     la::SparseMatrix            interpolation;
     std::unique_ptr<NodeMatrix> P;
   };
@@ -38,10 +39,10 @@ namespace retroforge
     explicit SaddleMatrix(const Scene &scene);
 
     /// Matrix of `stage` at W; velocities fixed by symmetry are eliminated.
-    void assemble(const Stage<double> &stage,
-                  const Field<double> &W,
-                  const ActiveSet     &active,
-                  Linearisation        linearisation);
+    void assemble(const Equilibrium<double> &stage,
+                  const Field<double>       &W,
+                  const ActiveChoice        &active,
+                  Linearisation              linearisation);
 
     const SaddleSystem &system() const { return system_; }
 
@@ -63,7 +64,7 @@ namespace retroforge
     std::pair<double, double> residual_norm(const Field<double> &r) const;
 
   private:
-    /// What contact adds to the entries of a pair of velocities, in their frames.
+    /// Contribution of contact to the entries of a pair of velocity nodes, in their frames.
     struct ContactEntries
     {
       unsigned int         row, column; ///< places of nodes
@@ -72,16 +73,16 @@ namespace retroforge
 
     void make_patterns();
     void make_interpolation_pattern(const MiddleNodes &middles);
-    /// Of A's local rows, from cells alone.
+    /// Returns the diagonal of A's local rows, from cells alone.
     std::vector<double> viscous_diagonal() const;
-    /// Of owned rows; says whether penalties couple.
+    /// Computes the entries of owned rows, and sets SaddleSystem::penalties_couple.
     std::vector<ContactEntries>
-    contact_entries(const Stage<double> &stage, const Field<double> &W, const ActiveSet &active);
+    contact_entries(const Equilibrium<double> &stage, const Field<double> &W, const ActiveSet &active);
     /// Chooses the tests of owned nodes, and has contact's rows along them.
     void test_contact(std::vector<ContactEntries> &contact);
     void choose_scales(const std::vector<double> &viscous, const std::vector<ContactEntries> &contact);
     /// The sums over cells, in frames and scaled.
-    void write_sums();
+    void write_cell_tangents();
     void add_contact(const std::vector<ContactEntries> &contact) const;
     /// Fixed components have scale zero in their rows and columns, and their diagonals afterwards.
     void put_diagonals_of_fixed(const std::vector<double> &viscous) const;
@@ -96,15 +97,15 @@ namespace retroforge
     /// A right-hand side whose bubbles are eliminated; right on owned nodes.
     Field<double> condensed(const Field<double> &rhs) const;
 
-    const Scene                 &scene_;
-    const NodeNumbering         &velocities_, &pressures_; ///< those of matrices
-    SaddleSystem                 system_;
-    std::vector<NodeFrame>       frames_;        ///< of each velocity node, by place
-    NodeVector<3, double>        scale_;         ///< of each velocity component in its frame
-    NodeVector<3, double>        unknown_scale_; ///< the same, zero where it is fixed
-    double                       pressure_scale_ = 1.;
-    std::unique_ptr<TangentSums> sums_;
-    std::vector<unsigned int>    column_places_; ///< of the nodes of A's columns, as A numbers them
-    std::vector<unsigned int>    diagonal_;      ///< where an owned node stands in its own row
+    const Scene                          &scene_;
+    const NodeNumbering                  &velocities_, &pressures_; ///< nodes of matrices
+    SaddleSystem                          system_;
+    std::vector<NodeFrame>                frames_;        ///< frames of the velocity nodes, by place
+    NodeVector<3, double>                 scale_;         ///< scale of each velocity component in its frame
+    NodeVector<3, double>                 unknown_scale_; ///< the same, zero where it is fixed
+    double                                pressure_scale_ = 1.;
+    std::unique_ptr<CellTangentAssembler> cell_tangents_;
+    std::vector<unsigned int> column_places_; ///< places of the nodes of A's columns, as A numbers them
+    std::vector<unsigned int> diagonal_;      ///< position of an owned node in its own row
   };
 } // namespace retroforge

@@ -10,7 +10,15 @@ namespace retroforge
 {
   struct LinearSolverParameters
   {
-    std::string  method         = "auto";
+    enum class Method
+    {
+      automatic, ///< multigrid or ILU by the size of the mesh; the direct solver where they fail
+      ilu,
+      multigrid,
+      direct
+    };
+
+    Method       method         = Method::automatic;
     unsigned int multigrid_from = 2500;
     unsigned int max_iterations = 600;
     unsigned int restart        = 120;
@@ -18,8 +26,8 @@ namespace retroforge
     void add_parameters(dealii::ParameterHandler &prm);
   };
 
-  /// Solves saddle point systems, one after the other, as well as asked for: by Krylov's method with a
-  /// preconditioner that is kept while it works, or directly.
+  /// Solves saddle point systems, one after the other, to a given tolerance: by FGMRES with a preconditioner
+  /// that is kept while it works, or directly.
   class SaddleSolver
   {
   public:
@@ -35,19 +43,20 @@ namespace retroforge
                        Transposition                       transposition,
                        la::BlockVector                    &x);
 
-    /// As solve, for a right-hand side that asks much of penalised components, as the motion of a die does,
-    /// or an objective of contact forces. Their rows, which would dwarf the others in the norm, are solved by
-    /// themselves first, in the guesses too; the tolerance is relative to what that leaves.
+    /// Solves as solve() does for a right-hand side that is large in penalised rows, as that of the motion of
+    /// a die or of an objective of contact forces. These rows, which would dwarf the others in the norm, are
+    /// solved by themselves first, in the guesses too; the tolerance is relative to the norm of the remaining
+    /// right-hand side.
     unsigned int solve_penalised_first(const la::BlockVector       &b,
                                        double                       tolerance,
                                        std::vector<la::BlockVector> guesses,
                                        Transposition                transposition,
                                        la::BlockVector             &x);
 
-    /// What the tolerance of solve_penalised_first is relative to.
+    /// Returns the norm that the tolerance of solve_penalised_first() is relative to.
     double norm_beside_penalties(const la::BlockVector &b, Transposition transposition) const;
 
-    /// Forget the preconditioner: the next solve makes a new one.
+    /// Discards the preconditioner: the next solve makes a new one.
     void reset() { preconditioner_.reset(); }
 
   private:

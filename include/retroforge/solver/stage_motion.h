@@ -2,7 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/solver/stage.h>
+#include <retroforge/core/rank_sum.h>
+#include <retroforge/solver/equilibrium.h>
 
 namespace retroforge
 {
@@ -11,12 +12,14 @@ namespace retroforge
   /// it does not touch a die: c_k = product over the dies of 1 - w(delta). The same on every rank.
   /// Collective.
   template <typename Number>
-  NodalVectors<Number> motion(const Stage<Number> &stage, const Field<Number> &W);
+  NodalVectors<Number> motion(const Equilibrium<Number> &stage, const Field<Number> &W);
 
-  /// Pull-back: adds to bar.W, and of one rank to bar.X and bar.contact.
+  /// Pull-back: adds to the derivatives in the velocities, the stage's positions, and the ramps of contact.
   /// @param motion_bar  the same on every rank
-  void reverse_motion(const Stage<double>        &stage,
-                      const Field<double>        &W,
-                      const NodalVectors<double> &motion_bar,
-                      StageBar                   &bar);
+  void reverse_motion(const Equilibrium<double>     &stage,
+                      const Field<double>           &W,
+                      const NodalVectors<double>    &motion_bar,
+                      Field<double>                 &W_bar,
+                      RankSum<NodalVectors<double>> &X_bar,
+                      RankSum<ContactSetBar>        &contact_bar);
 } // namespace retroforge

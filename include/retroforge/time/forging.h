@@ -16,75 +16,85 @@ namespace retroforge
     double                      time;
   };
 
-  /// The time loop: increments of equal stroke, halved while an element would invert or a node would cross
-  /// too much of an edge, on meshes that are remade when they must. In a replay what was recorded is obeyed
-  /// instead.
+  /// The time loop through the operations of a process: increments of equal stroke, halved while an element
+  /// would invert or a node would cross too much of an edge, on meshes that are remade when they must. In a
+  /// replay what was recorded is obeyed instead.
   class Forging
   {
   public:
-    using Watch  = std::function<void(const IncrementEvent &)>;
-    using Source = std::function<const IncrementRecord &(unsigned int)>;
+    using Observer     = std::function<void(const IncrementEvent &)>;
+    using RecordAccess = std::function<const IncrementRecord &(unsigned int)>;
 
+    /// @param end  where the run goes: that of the process, or where other numerics begin to hold
     Forging(const ForgingModel    &model,
             const PressParameters &press,
+            const StrokeStep      &end,
             const Remesher        &remesher,
             Timings               &timings);
 
     /// Before the first increment.
-    ForgingState start(std::shared_ptr<Leg> leg, const NodalVectors<double> &X_0) const;
+    static ForgingState start(std::shared_ptr<MeshEpoch> epoch, const NodalVectors<double> &X_0);
 
     /// From `state` on other numerics hold: it goes on with whole increments of theirs.
-    /// @param parameters  the complete input, which the next increment's record is to tell
-    static void change_numerics(const std::string &parameters, ForgingState &state);
+    /// @param parameters  the complete input, which the next increment's record is to tell; none where the
+    /// record need not
+    static void change_numerics(std::optional<std::string> parameters, ForgingState &state);
 
-    /// Whether the stroke is not done yet.
+    /// Returns whether increments are left before the end.
     bool is_left(const ForgingState &state) const;
 
-    /// Goes on from `state` to the end of the stroke, and decides everything anew.
-    void run(const Process<double> &process, ForgingState &state, const Watch &watch) const;
+    /// Goes on from `state` to the end, through all operations on the way, and decides everything anew.
+    void run(const Process<double> &process, ForgingState &state, const Observer &observer) const;
 
     /// Where a run stood after n recorded increments, to the bit: nothing is solved.
     void restore(const Process<double> &process,
                  unsigned int           n,
-                 const Source          &source,
+                 const RecordAccess    &access,
                  ForgingState          &state,
-                 const Watch           &watch) const;
+                 const Observer        &observer) const;
 
     /// Obeys the decisions of n recorded increments, and starts each solve from the recorded one.
     void replay(const Process<double> &process,
                 unsigned int           n,
-                const Source          &source,
+                const RecordAccess    &access,
                 ForgingState          &state,
-                const Watch           &watch = {}) const;
+                const Observer        &observer = {}) const;
 
-    /// Changes the mesh as recorded: positions X' = J X + c, strain by transfer_cells().
+    /// Takes the state to another mesh as recorded: the workpiece by the step steps/change_of_mesh.h.
     void change_mesh(const RemeshRecord &remesh, ForgingState &state) const;
 
   private:
-    /// Solves an increment of record.step. @param guess  out: what was found, for a shorter increment
-    Refusal attempt(const Process<double> &process,
-                    const ForgingState    &state,
-                    Guess                 &guess,
-                    IncrementRecord       &record,
-                    SolvedIncrement       &solved) const;
-    void    remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
-    void    add_strain(const SolvedIncrement &solved, ForgingState &state) const;
+    /// Takes the state to the start of an operation, unless it is in it: other dies, which have not met the
+    /// workpiece, and whole increments again.
+    void enter(unsigned int operation, ForgingState &state) const;
+
+    /// Returns how far the operation of the state goes, by the end at most [mm].
+    double last_stroke(const Process<double> &process, const ForgingState &state) const;
+
+    /// Solves an increment of record.step, and returns why it is rejected, if it is.
+    /// @param guess  out: what was found, for a shorter increment
+    std::optional<StepRejection> attempt(const Process<double> &process,
+                                         const ForgingState    &state,
+                                         InitialGuess          &guess,
+                                         IncrementRecord       &record,
+                                         SolvedIncrement       &solved) const;
+    void remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const;
     /// What the last solution's errors ask for; empty where sizes do not follow them, or nothing is solved.
     std::optional<OptimalSizes> error_sizes(const Process<double> &process, const ForgingState &state) const;
-    /// Takes the state to the increment's end, and tells `watch`.
+    /// Takes the state to the increment's end, and tells `observer`.
     void finish_increment(const Process<double> &process,
                           const IncrementRecord &record,
                           const SolvedIncrement &solved,
                           ForgingState          &state,
-                          const Watch           &watch) const;
+                          const Observer        &observer) const;
 
     /// Stroke of an increment that is not cut [mm].
-    double whole() const { return model_.step.contact.step; }
+    double nominal_step() const { return model_.step.contact.step; }
 
-    const ForgingModel    &model_;
-    const PressParameters &press_;
-    const Remesher        &remesher_;
-    Timings               &timings_;
-    const IncrementLimits  limits_;
+    const ForgingModel   &model_;
+    const StrokeStep      end_;
+    const Remesher       &remesher_;
+    Timings              &timings_;
+    const IncrementLimits limits_;
   };
 } // namespace retroforge

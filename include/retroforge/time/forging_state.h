@@ -2,11 +2,13 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/time/leg.h>
+#include <retroforge/time/mesh_epoch.h>
+
+#include <optional>
 
 namespace retroforge
 {
-  /// Velocities and pressures of the last stage of an increment, on all ranks; empty before the first.
+  /// Velocities and pressures of the last stage of an increment, on all ranks.
   struct LastSolution
   {
     NodalVectors<double> V; ///< of velocity nodes but bubbles [mm/s]
@@ -16,26 +18,28 @@ namespace retroforge
   /// Where a run stands between two increments.
   struct ForgingState
   {
-    std::shared_ptr<Leg> leg;
-    NodalVectors<double> X;
-    std::vector<double>  strain; ///< accumulated equivalent strain of each cell
-    LastSolution         solution;
-    Guess                next; ///< where the next increment starts
-    double               stroke   = 0.;
-    double               volume   = 0.; ///< at the start of the run [mm^3]
-    double               repaired = 0.; ///< metal thinner than an element taken away [mm^3]
-    unsigned int         depth    = 0;  ///< an increment is the whole one / 2^depth
+    std::shared_ptr<MeshEpoch>  epoch;
+    WorkpieceState<3, double>   workpiece;
+    std::optional<LastSolution> solution; ///< of the last increment, none before the first
+    InitialGuess                next;     ///< where the next increment starts
+    unsigned int                operation      = 0;
+    double                      stroke         = 0.; ///< of the operation [mm]
+    double                      volume         = 0.; ///< at the start of the run [mm^3]
+    double                      removed_volume = 0.; ///< metal thinner than an element taken away [mm^3]
+    unsigned int                depth          = 0;  ///< an increment is the whole one / 2^depth
     double slip = 0.; ///< of the last increment: largest one along a curved die, in edges [mm^-1]
 
     /// Where the present numerics began to hold: stroke [mm] and increments before.
-    double       numerics_stroke     = 0.;
-    unsigned int numerics_increments = 0;
-    std::string  parameters; ///< the complete input, to be recorded with the next increment; else empty
+    double                     numerics_stroke     = 0.;
+    unsigned int               numerics_increments = 0;
+    std::optional<std::string> parameters; ///< the complete input, to be recorded with the next increment
 
-    Energy<double>                   energy;
-    unsigned int                     increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;
-    std::vector<unsigned int>        remeshed;       ///< the increments, from 0, that began on a new mesh
-    std::vector<std::vector<double>> strains_before; ///< of each remeshing, on the mesh it left
-    std::vector<std::vector<double>> strains; ///< at the start of each increment, where laws depend on them
+    Energy<double>            energy;
+    unsigned int              increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;
+    std::vector<unsigned int> remeshed; ///< the increments, from 0, that began on a new mesh
+
+    /// What the way back needs of the workpiece and does not find in the record, without positions: at each
+    /// change of mesh, on the mesh it left; and at the start of each increment where laws depend on it.
+    std::vector<WorkpieceState<3, double>> left_behind, starts;
   };
 } // namespace retroforge

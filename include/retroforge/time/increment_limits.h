@@ -7,12 +7,14 @@
 #include <retroforge/time/press_parameters.h>
 #include <retroforge/time/remesher.h>
 
+#include <optional>
+
 namespace retroforge
 {
-  /// Why an increment must be shorter.
-  struct Refusal
+  /// Why a solved or unsolvable increment is rejected, and must be shorter.
+  struct StepRejection
   {
-    std::string  reason;           ///< empty: it need not be
+    std::string  reason;
     unsigned int halvings = 1;     ///< that will do
     bool         of_mesh  = true;  ///< a better mesh may be enough
     bool         is_full  = false; ///< there is no room for the metal
@@ -24,7 +26,7 @@ namespace retroforge
     using Error::Error;
   };
 
-  /// What increments and runs may do. An increment that does more is refused, a run that does more is
+  /// What increments and runs may do. An increment that does more is rejected, a run that does more is
   /// stopped, each with the reason.
   class IncrementLimits
   {
@@ -35,15 +37,15 @@ namespace retroforge
     {
     }
 
-    /// Of an increment that was solved, from X to X_next.
-    Refusal refusal(const Process<double>      &process,
-                    const Leg                  &leg,
-                    const IncrementRecord      &record,
-                    const NodalVectors<double> &X,
-                    const NodalVectors<double> &X_next) const;
+    /// Returns why an increment that was solved, from X to X_next, is rejected, if it is.
+    std::optional<StepRejection> rejection(const Process<double>      &process,
+                                           const MeshEpoch            &epoch,
+                                           const IncrementRecord      &record,
+                                           const NodalVectors<double> &X,
+                                           const NodalVectors<double> &X_next) const;
 
-    /// Of an increment that has no solution.
-    static Refusal singular(const ForgingState &state);
+    /// Returns why one that has no solution is.
+    static StepRejection singular(const ForgingState &state);
 
     /// Of nodes along curved dies in an increment, over the edge length wanted there; 0 without remeshing.
     double slip(const Process<double>      &process,
@@ -67,11 +69,11 @@ namespace retroforge
     /// Whether an increment may not be halved any more.
     bool too_short(double step) const;
 
-    /// Where an increment that may not be halved any more is refused.  @throws Error
+    /// Ends a run in which an increment that may not be halved any more is rejected.  @throws Error
     [[noreturn]] void stop(const Process<double> &process,
                            const ForgingState    &state,
                            const IncrementRecord &record,
-                           const Refusal         &refusal) const;
+                           const StepRejection   &rejection) const;
 
     /// Where a run can only go on to no good: it takes too many increments, or loses its volume.
     /// @throws Error
@@ -87,18 +89,19 @@ namespace retroforge
       std::string where;
     };
 
-    /// Of a cell and its edges; empty when it is not.
-    std::string too_much(const TetMesh              &mesh,
-                         CellIndex                   c,
-                         const NodalVectors<double> &X,
-                         const NodalVectors<double> &X_next) const;
-    /// Of the first cell of which it is. Collective.
-    std::string
-    too_much(const Scene &scene, const NodalVectors<double> &X, const NodalVectors<double> &X_next) const;
-    Slip largest_slip(const Process<double>      &process,
-                      const IncrementRecord      &record,
-                      const NodalVectors<double> &X,
-                      const NodalVectors<double> &X_next) const;
+    /// Returns which limit a cell or its edges violate, if any.
+    std::optional<std::string> violated_limit(const TetMesh              &mesh,
+                                              CellIndex                   c,
+                                              const NodalVectors<double> &X,
+                                              const NodalVectors<double> &X_next) const;
+    /// Returns that of the first cell that violates one. Collective.
+    std::optional<std::string> violated_limit(const Scene                &scene,
+                                              const NodalVectors<double> &X,
+                                              const NodalVectors<double> &X_next) const;
+    Slip                       largest_slip(const Process<double>      &process,
+                                            const IncrementRecord      &record,
+                                            const NodalVectors<double> &X,
+                                            const NodalVectors<double> &X_next) const;
     /// The shortest increment [mm].
     double shortest() const;
 

@@ -19,39 +19,54 @@ namespace retroforge
                                const std::vector<Number>           &strain,
                                const std::vector<DieState<Number>> &dies);
 
+  /// What is recorded of a run for its objectives, next to its increments.
+  struct RecordedObjectives
+  {
+    std::vector<PathRows<double>> rows;      ///< of each objective; empty for one of the end
+    std::vector<FinalDecisions>   decisions; ///< of each objective; empty for one of the path
+  };
+
   /// Follows a run and takes up what its objectives are made of. It watches runs, restored runs and replays
-  /// alike, and is the same on every rank.
+  /// alike. Values are the same on every rank.
   class ObjectiveTrace
   {
   public:
     /// What is passed must live as long.
-    ObjectiveTrace(const Objectives &objectives, const ForgingModel &model, const Process<double> &process);
+    /// @param decisions  what objectives of the end decided on the run that is replayed
+    ObjectiveTrace(const Objectives           &objectives,
+                   const Process<double>      &process,
+                   std::vector<FinalDecisions> decisions = {});
 
-    /// After each increment.
+    /// Takes up an increment that is complete.
     void add(const IncrementEvent &event);
 
-    /// Values after the increments so far. Objectives of a window that no increment has reached yet are NaN
-    /// unless `complete`, where they throw Error.
-    /// @param decide  whether objectives of the end choose their features anew; else they keep what they
-    /// chose last
-    std::vector<double> values(const ForgingState &state, bool decide, bool complete = true) const;
+    /// Lets objectives of the end decide, at the end of a run. Collective.
+    /// @throws Error  where the workpiece cannot be judged
+    void decide(const ForgingState &state);
 
-    /// What is reported beside a value: its summands, and other numbers.
-    struct Diagnostics
+    /// An objective's value, and what is reported beside it: its summands, and other numbers.
+    struct Evaluation
     {
+      double                        value;
       std::map<std::string, double> parts, details;
     };
 
-    /// Returns those of each objective, after values().
-    std::vector<Diagnostics> diagnostics(const ForgingState &state) const;
+    /// Evaluates each objective of a run that ended there, by the decisions taken. Collective.
+    /// @throws Error  for one that is not defined
+    std::vector<Evaluation> evaluate(const ForgingState &state) const;
 
-    /// The rows of each objective; empty for one of the end.
-    const std::vector<PathRows<double>> &rows() const { return rows_; }
+    /// Returns the values of evaluate().
+    std::vector<double> values(const ForgingState &state) const;
+
+    /// Evaluates each objective as if the run ended there, by decisions that are taken for this and not kept.
+    /// One that is not defined yet (no increment has reached its window) has the value NaN. Collective.
+    std::vector<Evaluation> evaluate_so_far(const ForgingState &state) const;
+
+    const RecordedObjectives &recorded() const { return recorded_; }
 
   private:
-    const Objectives             &objectives_;
-    const ForgingModel           &model_;
-    const Process<double>        &process_;
-    std::vector<PathRows<double>> rows_;
+    const Objectives      &objectives_;
+    const Process<double> &process_;
+    RecordedObjectives     recorded_;
   };
 } // namespace retroforge

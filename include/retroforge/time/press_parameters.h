@@ -2,7 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/time/scheme.h>
+#include <retroforge/steps/press_motion.h>
+#include <retroforge/steps/scheme.h>
 
 #include <deal.II/base/parameter_handler.h>
 
@@ -12,16 +13,22 @@ namespace retroforge
 {
   struct PressParameters
   {
-    std::string  leading_die;
-    double       stroke          = 10.;
-    unsigned int increments      = 0;
-    std::string  scheme          = Scheme::all().front().name;
-    double       smallest_volume = 0.2;
-    double       largest_move    = 0.5;
-    double       largest_slip    = 1.;
-    unsigned int max_cuts        = 8;
-    double       largest_loss    = 0.02;
+    std::string         leading_die;
+    std::string         motion_type = "constant speed";
+    std::vector<double> motion_numbers; ///< of this type
+    double              stroke          = 10.;
+    unsigned int        increments      = 0;
+    std::string         scheme          = Scheme::all().front().name;
+    double              smallest_volume = 0.2;
+    double              largest_move    = 0.5;
+    double              largest_slip    = 1.;
+    unsigned int        max_cuts        = 8;
+    double              largest_loss    = 0.02;
 
     void add_parameters(dealii::ParameterHandler &prm);
+
+    /// Returns the motion of the press.
+    /// @throws Error  where there is no such motion, or its numbers are not what it has
+    PressMotion<double> motion() const;
   };
 } // namespace retroforge

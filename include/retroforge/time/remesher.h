@@ -10,7 +10,6 @@
 #include <retroforge/remeshing/uncross.h>
 
 #include <optional>
-#include <string>
 
 #include <mpi.h>
 
@@ -18,11 +17,29 @@ namespace retroforge
 {
   struct RemesherParameters
   {
-    std::string         when           = "quality"; ///< never, quality, increments
-    std::string         method         = "local";
+    enum class When
+    {
+      never,
+      quality,   ///< when cells are bad or the surface no longer fits a die
+      increments ///< as with quality, and after every so many increments
+    };
+    enum class Method
+    {
+      local,  ///< only where the mesh is bad, and from the surface where cells are inverted
+      rebuild ///< from the surface each time
+    };
+    enum class Sizes
+    {
+      uniform,
+      dies, ///< shorter edges near curved dies
+      error ///< as with dies, elsewhere by the indicated error
+    };
+
+    When                when           = When::quality;
+    Method              method         = Method::local;
     unsigned int        every          = 5;
     double              element_size   = 0.;
-    std::string         sizes          = "dies"; ///< uniform, dies, error
+    Sizes               sizes          = Sizes::dies;
     double              chord_error    = 0.;
     double              smallest_size  = 0.2;
     double              largest_size   = 4.;
@@ -34,6 +51,7 @@ namespace retroforge
 
     void add_parameters(dealii::ParameterHandler &prm);
     void check() const;
+    bool enabled() const { return when != When::never; }
   };
 
   /// Decides when the mesh is to be remade, and remakes it: locally, or where that cannot be (inverted
@@ -41,7 +59,7 @@ namespace retroforge
   class Remesher
   {
   public:
-    /// Where the dies are.
+    /// States of all dies.
     using DieStates = std::vector<DieState<double>>;
 
     /// @param element_size  wanted length of the edges away from curved dies [mm]
@@ -54,12 +72,11 @@ namespace retroforge
 
     double largest_repair() const { return parameters_.largest_repair; }
 
-    bool enabled() const { return parameters_.when != "never"; }
+    bool enabled() const { return parameters_.enabled(); }
 
     /// @param frozen      cells that the last remeshing could not make better, see frozen_cells()
     /// @param increments  since the last remeshing
-    /// @param first       whether no increment has been made yet: then the mesh may be too coarse for its
-    /// dies
+    /// @param first       true before the first increment: then the mesh may be too coarse for its dies
     bool due(const TetMesh              &mesh,
              const NodalVectors<double> &X,
              const DieStates            &states,
@@ -67,25 +84,24 @@ namespace retroforge
              unsigned int                increments,
              bool                        first) const;
 
-    /// Whether sizes follow indicated errors.
-    bool follows_errors() const { return parameters_.sizes == "error"; }
+    /// Returns whether sizes follow indicated errors.
+    bool follows_errors() const { return parameters_.sizes == RemesherParameters::Sizes::error; }
 
-    /// What such sizes may be.
+    /// Returns the bounds of sizes that follow errors.
     SizeBounds error_size_bounds() const;
 
-    /// Whether a mesh is to be remade because its errors ask for other sizes.
+    /// Returns whether a mesh is to be remade because its errors ask for other sizes.
     /// @param increments  since the last remeshing
-    /// @param first       whether one increment has been made: the first mesh knows nothing of errors
+    /// @param first       true after the first increment: the first mesh was made without errors
     static bool worthwhile(const OptimalSizes &sizes, unsigned int increments, bool first);
 
-    /// Cells that remeshing cannot make better, of a mesh just made.
+    /// Returns the cells of a new mesh that remeshing cannot make better.
     std::vector<bool> frozen(const TetMesh &mesh) const;
 
     /// Collective: made on rank 0, the same everywhere. Numbered with renumber().
-    /// @param repairable  volume of slivers at the surface that may be taken away, see without_slivers()
-    /// [mm^3]
-    /// @param errors   sizes that follow them, where any are known
-    /// @param timings  "transfer" gets what it takes to find J
+    /// @param repairable  volume of slivers at the surface that may be removed [mm^3], see without_slivers()
+    /// @param errors      sizes that follow indicated errors, where these are known
+    /// @param timings     the scope "transfer" gets the time to find J
     /// @throws Error  when no method gives a sound mesh
     std::shared_ptr<const RemeshRecord> remesh(const TetMesh                     &mesh,
                                                const NodalVectors<double>        &X,
@@ -94,23 +110,22 @@ namespace retroforge
                                                double                             repairable,
                                                Timings                           &timings) const;
 
-    /// Whether a surface that crosses itself can be repaired, because what crosses is thinner than an
-    /// element.
+    /// Returns whether a surface that crosses itself can be repaired, because the crossing parts are thinner
+    /// than an element.
     bool repairs(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const
     {
       return uncross(mesh, X, size_field(states)).has_value();
     }
 
-    /// Wanted length of edges: near a curved die as its curvature asks for, elsewhere and where that is
-    /// shorter as errors do. Refers to this object.
+    /// Returns the wanted length of edges: near a curved die by its curvature, elsewhere, and where it is
+    /// shorter, by errors. Refers to this object.
     /// @param errors  null: the element size
     SizeField size_field(const DieStates &states, std::shared_ptr<const ErrorSizes> errors = {}) const;
 
-    /// Whether a surface edge at a curved die is much longer than wanted there.
+    /// Returns whether a surface edge at a curved die is much longer than wanted there.
     bool too_coarse(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const;
 
-    /// How deep the middles of surface edges whose ends touch a die are inside it, at most [mm]: what the
-    /// mesh does not see of the die.
+    /// Returns the largest depth inside a die of the middles of surface edges whose ends touch it [mm].
     double misfit(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const;
 
   private:
@@ -119,7 +134,7 @@ namespace retroforge
                       const SizeField            &size,
                       const DieStates            &states,
                       double                      repairable,
-                      double                     &repaired) const;
+                      double                     &removed_volume) const;
     PushOut      push_out(const DieStates &states) const;
     TouchesDie   touches(const DieStates &states) const;
 

@@ -47,7 +47,7 @@ namespace retroforge
     std::size_t memory_consumption() const;
   };
 
-  /// How values reach new nodes.
+  /// The interpolation by which values reach new nodes.
   ///
   /// Measured on boxes of about 1200 (6600) nodes, relative L2 error of a Gaussian exp(-|x|^2/(2h)^2) after
   /// 10 and 60 transfers: between two unrelated meshes 0.39 and 0.73 (0.46 and 0.87) linear, 0.12 and 0.30
@@ -58,7 +58,7 @@ namespace retroforge
   /// one pair of meshes, noise grows again, by 0.2 % each time. The whole gradient makes it grow by 20 %.
   enum class Interpolation
   {
-    linear, ///< of the old cell's four corners: weights >= 0, so no value leaves the range of the old ones
+    linear, ///< between the corners of the old cell: weights >= 0, no value leaves the range of the old ones
     /// The linear value  q(x) = sum_a w_a q_a  plus half of the correction by recovered gradients,
     ///   q(x) + 1/2 sum_a w_a G_a·(x - x_a),
     /// which cancels the error of linear interpolation as far as G_a is the gradient of a quadratic field at

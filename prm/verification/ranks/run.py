@@ -94,17 +94,18 @@ def one_rank():
 
 def memory():
     """Of a rank, over that of a run whose mesh is as good as none; forward and backward, 36k nodes."""
-    def words(size):
+    def words(size, kind):
         return ["gradient", SPEED, "--output", "memory", "--overwrite", "--set", f"Billet/element size={size}", "--set", "Press/increments=1",
-                "--set", "Press/stroke=0.5"]
-    before = None
-    for ranks in (1, 2, 4):
-        start, largest = megabytes(ranks, words(6))[-1], megabytes(ranks, words(0.663))
-        fields = [own - start for own in largest]
-        print(f"{ranks} ranks: {fields[0]:.0f} to {fields[-1]:.0f} MB over the {start:.0f} MB of the program")
-        if before:
-            figure(f"memory_{ranks}_over_{ranks // 2}", fields[-1] / before)
-        before = fields[-1]
+                "--set", "Press/stroke=0.5", "--set", f"Discretization/triangulation={kind}"]
+    for kind, name in (("shared", "memory"), ("fully distributed", "memory_distributed")):
+        before = None
+        for ranks in (1, 2, 4):
+            start, largest = megabytes(ranks, words(6, kind))[-1], megabytes(ranks, words(0.663, kind))
+            fields = [own - start for own in largest]
+            print(f"{kind}, {ranks} ranks: {fields[0]:.0f} to {fields[-1]:.0f} MB over the {start:.0f} MB of the program", flush=True)
+            if before:
+                figure(f"{name}_{ranks}_over_{ranks // 2}", fields[-1] / before)
+            before = fields[-1]
 
 
 if __name__ == "__main__":

@@ -230,6 +230,8 @@ MISTAKES = {
     "facets without number": (settings("Die upper/shape=tripod", "Die upper/chord error=1e-6"), r"Die upper/Tripod.*facets.*1e6"),
     "restart without bound": (settings("Linear solver/restart=2000000000"), r"Linear solver/restart.*1000"),
     "volume that goes": (settings("Press/largest volume change=1e-12"), r"Press/stroke: at stroke .* has lost .* of its volume"),
+    "quadratic geometry in closed form": (settings("Discretization/geometry degree=2"), r"Discretization/geometry degree.*assembly = quadrature"),
+    "cubic geometry": (settings("Discretization/assembly=quadrature", "Discretization/geometry degree=3"), r"Discretization/geometry degree.*3"),
     "too few Newton steps": (settings("Newton/max iterations=1"), r"Newton"),
 }
 

@@ -7,7 +7,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/solver/stage.h>
+#include <retroforge/solver/equilibrium.h>
 
 #include <nlohmann/json.hpp>
 
@@ -123,12 +123,12 @@ void print_case(RandomNumbers    &random,
     make_contact_set<double>(view,
                              find_contact_pairs(view, ramp, reach, true),
                              ContactApproach<double>{ramp, tau, ApproachLaw(layer, part), edge_stiffness});
-  const Stage<double> stage(scene, physics, contact, X);
-  const Field<double> W   = random_field(random, scene.discretization, sinking);
-  Json                die = made.json;
-  die["velocity"]         = as_json(physics.dies[0].velocity);
-  die["displacement"]     = as_json(physics.dies[0].displacement);
-  Json faces              = Json::array();
+  const Equilibrium<double> stage(scene, physics, contact, X);
+  const Field<double>       W   = random_field(random, scene.discretization, sinking);
+  Json                      die = made.json;
+  die["velocity"]               = as_json(physics.dies[0].velocity);
+  die["displacement"]           = as_json(physics.dies[0].displacement);
+  Json faces                    = Json::array();
   for (const BoundaryFace &face : scene.mesh.faces)
     faces.push_back(face.nodes);
   const Json line = {

@@ -75,7 +75,7 @@ void require_sane(Parameters &parameters)
   const StepModel       model   = parameters.step_model();
   using fuzz::require;
   require(parameters.press.increments > 0, "there are no increments");
-  require(process.leading_die < process.dies.size(), "the leading die does not exist");
+  require(process.operations.front().leading_die < process.dies.size(), "the leading die does not exist");
   require(std::isfinite(process.speed()) && process.speed() > 0., "the leading die does not move");
   require(std::isfinite(process.contact.rho) && process.contact.rho > 0., "the penalty is not positive");
   require(std::isfinite(model.reach) && model.reach > 0., "the reach of contact is not positive");

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
 """What `cmake --install` leaves is enough for another project: contrib/examples is configured, compiled and linked with it alone, and finds the
-values and derivatives of the installed program, to the last bits; the presets are understood. Usage: install.py RETROFORGE BUILD CMAKE"""
+values and derivatives of the installed program, to the last bits; so do the lines of the manual's page; the presets are understood. Usage: install.py RETROFORGE BUILD CMAKE"""
 import json
 import os
 import re
@@ -37,6 +37,46 @@ def built():
                    "-DCMAKE_PREFIX_PATH=" + os.path.abspath("prefix")], ["--build", "example"]):
         done = start([CMAKE, *words])
         judge(f"cmake {words[0]}", done.returncode == 0, done.stdout[-3000:] + done.stderr)
+
+
+PAGE_PROGRAM = """#include <retroforge/run/forward_run.h>
+#include <iostream>
+using namespace retroforge;
+int main(int argc, char *argv[])
+{
+  int    n_words = 1;
+  char  *word[]  = {argv[0], nullptr};
+  char **words   = word;
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(n_words, words, 1);
+  %s
+  std::cout.precision(17);
+  std::cout << made.combinations[0].name << ' ' << made.combine(values)[0] << '\\n';
+  for (std::size_t i = 0; i < gradient.size(); ++i)
+    std::cout << "  by " << made.design.parameters()[i].name << ' ' << gradient[i] << '\\n';
+}
+"""
+
+
+def lines_of_the_page():
+    """The C++ of the page as one program, built by the CMake lines of the page."""
+    page = text_of(ROOT, "doc/manual/library.md")
+    lines, = re.findall(r"```cmake\n(.*?)```", page, re.S)
+    os.makedirs("page", exist_ok=True)
+    with open("page/nodal_gradient.cc", "w", encoding="utf-8") as file:
+        file.write(PAGE_PROGRAM % "".join(re.findall(r"```cpp\n(.*?)```", page, re.S)))
+    with open("page/CMakeLists.txt", "w", encoding="utf-8") as file:
+        file.write("cmake_minimum_required(VERSION 3.20)\nproject(page LANGUAGES CXX)\n" + lines)
+    build_type = re.search(r"^CMAKE_BUILD_TYPE:\w+=(.*)$", text_of(BUILD, "CMakeCache.txt"), re.M)[1]
+    for words in (["-S", "page", "-B", "page/build", "-G", "Ninja", f"-DCMAKE_BUILD_TYPE={build_type}",
+                   "-DCMAKE_PREFIX_PATH=" + os.path.abspath("prefix")], ["--build", "page/build"]):
+        done = start([CMAKE, *words])
+        judge(f"the page's lines: cmake {words[0]}", done.returncode == 0, done.stdout[-3000:] + done.stderr)
+    done = start([os.path.abspath("page/build/nodal_gradient"), "gradient", CASE, *settings()])
+    judge("the page's lines run", done.returncode == 0, done.stderr)
+    (name, mine), = numbers_of(done.stdout).items()
+    summary = summary_of("results")
+    judge("and find the same", mine["value"] == {o["name"]: o["value"] for o in summary["objectives"]}[name] and
+          {p["name"]: p["gradient"][name] for p in summary["parameters"]}.items() <= mine.items(), mine)
 
 
 def numbers_of(text):
@@ -76,4 +116,4 @@ def presets():
     judge("presets", done.returncode == 0 and names == ["release", "debug", "asan"] and all(f'"{name}"' in done.stdout for name in names), done.stderr)
 
 
-main({}, (installed, built, same_as_the_program, presets))
+main({}, (installed, built, same_as_the_program, lines_of_the_page, presets))

@@ -11,6 +11,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 from whole_runs import ROOT, changed, cube, history_of, judge, main, prm, run, summary_of  # noqa: E402
 
 CASE = changed(cube(20, 6, 2, 8), {"Remeshing": {"when": "never"}, "Contact": {"penetration": 1e-5}})
+TIP = changed(cube(20, 6, 0.2, 1), {"Remeshing": {"when": "never"}, "Press": {"max cuts": 0},
+                                    "Die lower": {"shape": "punch", "Punch": {"radius": 6, "edge radius": 5.9}}})
 WHOLE = ("Press/stroke=2", "Press/increments=8")
 
 
@@ -61,5 +63,15 @@ def nearly_plastic():
     judge("m = 0.01: the same energy", abs(energies["auto"] / energies["direct"] - 1) < 1e-7, energies)
 
 
+def rounding():
+    """A billet that rests on a tip, with one node: rounding leaves more of the residual than the tolerance, 8e-13."""
+    energies = []
+    for tolerance in (1e-11, 1e-13):
+        done = run("simulate", "tip", f"Newton/tolerance={tolerance}", "--overwrite", case="tip.prm")
+        judge(f"on a tip, tolerance {tolerance}: ends", done.returncode == 0, done.stderr)
+        energies.append(summary_of("tip")["objectives"][0]["value"])
+    judge("on a tip: energy", abs(energies[1] / energies[0] - 1) < 1e-9, energies)
+
+
 if __name__ == "__main__":
-    main({"case.prm": prm(CASE)}, (steady, resumed, remeshed, nearly_plastic))
+    main({"case.prm": prm(CASE), "tip.prm": prm(TIP)}, (steady, resumed, remeshed, nearly_plastic, rounding))

@@ -28,7 +28,7 @@ namespace
   Parameters cylinder_scene()
   {
     Parameters p;
-    p.billet.shape           = "cylinder";
+    p.billet.shape           = BilletParameters::Shape::cylinder;
     p.billet.radius          = 20.;
     p.billet.height          = 24.;
     p.billet.symmetry_planes = {Vec3({0., -1., 0.}), Vec3({-std::sqrt(0.75), 0.5, 0.})};
@@ -47,7 +47,7 @@ namespace
     p.contact.slip_fraction  = 0.1;
     p.newton.tolerance       = 1e-12;
     p.adjoint.tolerance      = 1e-13;
-    p.linear_solver.method   = "direct";
+    p.linear_solver.method   = LinearSolverParameters::Method::direct;
     return p;
   }
 
@@ -132,7 +132,7 @@ namespace
 
   std::vector<Direction> directions(const Problem &problem)
   {
-    const NodalVectors<double> still(problem.forged.X.size());
+    const NodalVectors<double> still(problem.state().workpiece.X.size());
     return {{"random X_0", random_vectors(still.size()), 0., 0., {}},
             {"speed", still, 1., 0., {}},
             {"offset", still, 0., 1., {}}};
@@ -154,7 +154,7 @@ namespace
     NodalVectors<double>                                             X = problem.scene.mesh.X;
     for (const IncrementRecord &record : problem.records)
     {
-      const auto states = problem.process.at_stroke(record.stroke).dies;
+      const auto states = problem.process().at_stroke(record.stroke).dies;
       for (unsigned int p = 0; p < record.pairs.size(); ++p)
         if (const ContactPair &pair = record.pairs[p]; record.solves.back().active[p])
         {
@@ -168,7 +168,7 @@ namespace
             problem.scene.dies[pair.die].project(pair.point.position(X), states[pair.die], pair.feature).n;
           pressed.tilt = std::max(pressed.tilt, std::acos(std::min(1., std::abs(n[2]))) * 180. / M_PI);
         }
-      X = problem.leg->increment.recorded(problem.process, X, {}, record).X;
+      X = problem.first_epoch().increment.mechanics.recorded(problem.process(), {X, {}}, record).X;
     }
     return pressed;
   }
@@ -181,7 +181,7 @@ namespace
               << ", on faces: " << some(pressed.faces)
               << ", on edges or vertices of a die: " << some(pressed.sharp)
               << ", changing feature: " << yes(pressed.changed > 0) << "\n  friction works: "
-              << yes(problem.forged.energy.friction > 1e-3 * problem.forged.energy.total())
+              << yes(problem.state().energy.friction > 1e-3 * problem.state().energy.total())
               << ", normals tilted by 15 degrees and more: " << yes(pressed.tilt > 15.) << "\n";
   }
 
@@ -224,7 +224,7 @@ namespace
     };
     const Problem plane(parameters),
       squares(parameters, {Die("lower", square(0., true), 10.), Die("upper", square(24., false), 10.)});
-    double largest = relative_error(squares.forged.energy.total(), plane.forged.energy.total()), size = 0.;
+    double largest = relative_error(squares.state().energy.total(), plane.state().energy.total()), size = 0.;
     for (const Vec3 &x : plane.bar.X_0)
       size = std::max(size, x.norm());
     for (std::size_t k = 0; k < plane.bar.X_0.size(); ++k)
@@ -244,7 +244,7 @@ int main(int argc, char **argv)
   compare_plane();
   const Parameters tripods = tripod_scene(), bell = bell_scene(), under_punch = punch_scene();
   Parameters       facets = bell, nodes = tripods;
-  facets.dies[1].shape.choose<BellDie>().surface_law = "facets";
+  facets.dies[1].shape.choose<BellDie>().surface_law = SurfaceDie::Surface::facets;
   nodes.contact.edges_touch                          = false;
   const std::vector<double> errors                   = {check("tripods", Problem(tripods)),
                                                         check("bell", Problem(bell)),

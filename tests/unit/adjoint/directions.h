@@ -75,7 +75,7 @@ namespace retroforge
   std::pair<Process<Number>, NodalVectors<Number>>
   along(const RecordedRun &run, const Direction &direction, const double t)
   {
-    const Process<double> &at      = run.process;
+    const Process<double> &at      = run.process();
     Process<Number>        process = converted<Number>(at);
     for (unsigned int d = 0; d < at.dies.size(); ++d)
     {
@@ -100,14 +100,14 @@ namespace retroforge
       for (std::size_t k = 0; k < direction.vertices_dot[d].size(); ++k)
         sum += result.process.dies[d].vertices[k] * direction.vertices_dot[d][k];
     const auto &die = result.process.dies[1];
-    return sum + direction.speed_dot * (die.velocity * run.process.dies[1].velocity) +
+    return sum + direction.speed_dot * (die.velocity * run.process().dies[1].velocity) +
            direction.offset_dot * (die.displacement * run.parameters.dies[1].facing);
   }
 
   inline double tangent_slope(RecordedRun &run, const Direction &direction)
   {
     const auto [process, X] = along<Dual>(run, direction, 0.);
-    return run.tangent(process, X);
+    return run.derivative(process, X);
   }
 
   /// Central, with recorded decisions.

@@ -35,7 +35,7 @@ namespace
   {
     std::mt19937                           generator(1);
     std::uniform_real_distribution<double> uniform(-1., 1.);
-    const NodalVectors<double>             still(run.forged.X.size());
+    const NodalVectors<double>             still(run.state().workpiece.X.size());
     std::vector<Direction>                 list = {{"random X_0", still, 0., 0., {}},
                                                    {"contact nodes lifted", still, 0., 0., {}},
                                                    {"die speed", still, 1., 0., {}}};

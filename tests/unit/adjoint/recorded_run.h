@@ -2,8 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/adjoint/sweep.h>
-#include <retroforge/case/parameters.h>
+#include <retroforge/run/forward_run.h>
 
 #include <optional>
 
@@ -30,7 +29,7 @@ namespace retroforge
     p.contact.slip_fraction = 0.1;
     p.newton.tolerance      = 1e-13;
     p.adjoint.tolerance     = 1e-13;
-    p.linear_solver.method  = "direct";
+    p.linear_solver.method  = LinearSolverParameters::Method::direct;
     return p;
   }
 
@@ -40,8 +39,39 @@ namespace retroforge
     anew ///< as the parameters have it
   };
 
+  inline Parameters resolved(Parameters all, const Meshes meshes)
+  {
+    if (meshes == Meshes::one)
+      all.remeshing.when = RemesherParameters::When::never;
+    all.resolve_defaults({all.billet.size[2], all.billet.size[2]});
+    return all;
+  }
+
+  /// The problem of a box billet between dies.
+  inline ForgingProblem problem_between(const Parameters            &parameters,
+                                        std::vector<Die>             dies,
+                                        Objectives                   given,
+                                        const std::optional<Scheme> &scheme)
+  {
+    const double   height = parameters.billet.size[2];
+    ForgingProblem problem(parameters,
+                           make_billet(parameters.billet, MPI_COMM_WORLD),
+                           std::move(dies),
+                           parameters.process({height, height}),
+                           std::move(given));
+    if (scheme)
+      problem.model.step.scheme = *scheme;
+    return problem;
+  }
+
+  inline Timings &timings_of_runs()
+  {
+    static Timings timings;
+    return timings;
+  }
+
   /// A scene forged once, its increments kept, to be differentiated and replayed.
-  struct RecordedRun
+  struct RecordedRun : ForwardRun
   {
     /// @param given  the objectives; those of the parameters when it is empty
     /// @param scheme  in time; that of the parameters when there is none
@@ -51,88 +81,37 @@ namespace retroforge
                 Objectives                   given  = {},
                 const std::optional<Scheme> &scheme = {},
                 const Meshes                 meshes = Meshes::one)
-        : parameters(settled(all, meshes))
-        , process(parameters.process({all.billet.size[2], all.billet.size[2]}))
-        , model{parameters.discretization.choice(),
-                std::move(dies),
-                step_model(parameters, scheme),
-                all.newton,
-                all.linear_solver,
-                MPI_COMM_WORLD}
-        , leg(std::make_shared<Leg>(make_billet(all.billet, MPI_COMM_WORLD), model, timings))
-        , scene(leg->scene)
-        , remesher(parameters.remeshing,
-                   parameters.edge_length(scene.mesh),
-                   model.dies,
-                   scene.mesh.patches,
-                   MPI_COMM_WORLD)
-        , forging(model, parameters.press, remesher, timings)
-        , forged(forging.start(leg, scene.mesh.X))
-        , objectives(given.empty() ? all.make_objectives(model.dies, scene.mesh) : std::move(given))
-        , trace(objectives, model, process)
+        : ForwardRun(problem_between(resolved(all, meshes), std::move(dies), std::move(given), scheme),
+                     Keep::increments,
+                     timings_of_runs())
+        , parameters(resolved(all, meshes))
+        , scene(first_epoch().scene)
     {
-      forging.run(process, forged, [&](const IncrementEvent &event) {
-        records.push_back(event.record);
-        trace.add(event);
-      });
-    }
-
-    static StepModel step_model(const Parameters &parameters, const std::optional<Scheme> &scheme)
-    {
-      StepModel model = parameters.step_model();
-      model.scheme    = scheme.value_or(model.scheme);
-      return model;
-    }
-
-    static Parameters settled(Parameters all, const Meshes meshes)
-    {
-      if (meshes == Meshes::one)
-        all.remeshing.when = "never";
-      all.resolve_defaults({all.billet.size[2], all.billet.size[2]});
-      return all;
+      forge();
+      values(); // objectives of the end choose their features
+      const auto record = recording().access();
+      for (unsigned int i = 0; i < state().increments; ++i)
+        records.push_back(record(i));
     }
 
     explicit RecordedRun(const Parameters &all) : RecordedRun(all, {all.dies[0].die(), all.dies[1].die()}) {}
 
-    Forging::Source source() const
-    {
-      return [&](const unsigned int i) -> const IncrementRecord & { return records[i]; };
-    }
-
-    RecordedForging recorded()
-    {
-      return {model, leg, process, source(), static_cast<unsigned int>(records.size()), objectives, timings};
-    }
+    /// Of the first objective.
+    AdjointResult adjoint() const { return sweep(each(objectives())).gradients[0]; }
 
     /// Of the first objective.
-    AdjointResult adjoint()
+    double derivative(const Process<Dual> &along, const NodalVectors<Dual> &X) const
     {
-      return adjoint_sweep(recorded(), trace.rows(), forged, each(objectives)).of[0];
-    }
-
-    double tangent(const Process<Dual> &along, const NodalVectors<Dual> &X)
-    {
-      return tangent_sweep(recorded(), along, X)[0].dx(0);
+      return tangent(along, X)[0].dx(0);
     }
 
     double replayed_energy(const Process<double> &at, const NodalVectors<double> &X) const
     {
-      ForgingState state = forging.start(leg, X);
-      forging.replay(at, records.size(), source(), state);
-      return state.energy.total();
+      return replay(at, X).energy.total();
     }
 
     const Parameters             parameters;
-    Timings                      timings;
-    Process<double>              process;
-    ForgingModel                 model;
-    std::shared_ptr<Leg>         leg;
     const Scene                 &scene;
-    Remesher                     remesher;
-    Forging                      forging;
     std::vector<IncrementRecord> records;
-    ForgingState                 forged;
-    Objectives                   objectives;
-    ObjectiveTrace               trace;
   };
 } // namespace retroforge

@@ -246,12 +246,12 @@ namespace retroforge
 
   /// The contact's part of a reverse sweep; `reverse_node` is that of one node.
   template <typename NodeReverse>
-  void reverse_contact(const Stage<double>  &stage,
-                       const Term            omitted,
-                       const NodeReverse    &reverse_node,
-                       NodalVectors<double> &X_bar,
-                       ContactSetBar        &contact_bar,
-                       PhysicsBar           &bar)
+  void reverse_contact(const Equilibrium<double> &stage,
+                       const Term                 omitted,
+                       const NodeReverse         &reverse_node,
+                       NodalVectors<double>      &X_bar,
+                       ContactSetBar             &contact_bar,
+                       PhysicsBar                &bar)
   {
     const std::size_t    n = stage.contact.pairs.size();
     ContactAreas<double> areas_bar{std::vector<double>(n, 0.), std::vector<double>(n, 0.)};
@@ -271,15 +271,15 @@ namespace retroforge
   }
 
   /// Derivatives of weight * dt * power; returns those in W.
-  inline Field<double> reverse_energy(const Stage<double>  &stage,
-                                      const Field<double>  &W,
-                                      const ActiveSet      &active,
-                                      const double          weight,
-                                      const double          dt,
-                                      const Term            omitted,
-                                      NodalVectors<double> &X_bar,
-                                      ContactSetBar        &contact_bar,
-                                      PhysicsBar           &bar)
+  inline Field<double> reverse_energy(const Equilibrium<double> &stage,
+                                      const Field<double>       &W,
+                                      const ActiveSet           &active,
+                                      const double               weight,
+                                      const double               dt,
+                                      const Term                 omitted,
+                                      NodalVectors<double>      &X_bar,
+                                      ContactSetBar             &contact_bar,
+                                      PhysicsBar                &bar)
   {
     const TetMesh &mesh = stage.scene.mesh;
     Field<double>  W_bar(stage.scene.discretization);
@@ -312,14 +312,14 @@ namespace retroforge
   }
 
   /// Derivatives of lambda·R.
-  inline void reverse_equilibrium(const Stage<double>  &stage,
-                                  const Field<double>  &W,
-                                  const ActiveSet      &active,
-                                  Field<double>         lambda,
-                                  const Term            omitted,
-                                  NodalVectors<double> &X_bar,
-                                  ContactSetBar        &contact_bar,
-                                  PhysicsBar           &bar)
+  inline void reverse_equilibrium(const Equilibrium<double> &stage,
+                                  const Field<double>       &W,
+                                  const ActiveSet           &active,
+                                  Field<double>              lambda,
+                                  const Term                 omitted,
+                                  NodalVectors<double>      &X_bar,
+                                  ContactSetBar             &contact_bar,
+                                  PhysicsBar                &bar)
   {
     const TetMesh &mesh = stage.scene.mesh;
     if (omitted == Term::lambda_bubble)
@@ -353,8 +353,8 @@ namespace retroforge
                                 Process<double>            &process_bar)
   {
     const Scene                      &scene   = problem.scene;
-    const Physics<double>             physics = problem.process.at_stroke(record.stroke);
-    const double                      dt      = problem.process.time(record.step);
+    const Physics<double>             physics = problem.process().over(place(record));
+    const double                      dt      = problem.process().duration(place(record));
     const ContactSet<double>          contact = make_contact_set<double>(scene.view(physics.dies, X),
                                                                 record.pairs,
                                                                 {record.contact.ramp,
@@ -363,14 +363,14 @@ namespace retroforge
                                                                           record.contact.edge_stiffness});
     ContactSetBar                     contact_bar(record.pairs.size());
     PhysicsBar                        bar(scene.dies);
-    const Scheme                     &scheme = problem.model.step.scheme;
+    const Scheme                     &scheme = problem.model().step.scheme;
     const NodalVectors<double>        next   = G; // dPhi/dX_{i+1}
     std::vector<NodalVectors<double>> Y_bar(scheme.n_stages());
     for (unsigned int s = scheme.n_stages(); s-- > 0;)
     {
       const SolveRecord         &solve    = record.solves[s];
       const NodalVectors<double> position = advanced(X, dt, scheme.a[s], record.solves);
-      const Stage<double>        stage(scene, physics, contact, position);
+      const Equilibrium<double>  stage(scene, physics, contact, position);
       Field<double> W(scene.discretization), rhs(scene.discretization), minus_rhs(scene.discretization),
         lambda;
       W.V.take(solve.V);
@@ -390,8 +390,8 @@ namespace retroforge
       for (unsigned int r = s + 1; r < scheme.n_stages(); ++r)
         lead_to(scheme.a[r][s], Y_bar[r]);
       minus_rhs.add(-1., rhs);
-      problem.leg->system.assemble(stage, W, solve.active);
-      problem.leg->system.solve(minus_rhs, problem.model.step.adjoint_tolerance, lambda);
+      problem.first_epoch().system.assemble(stage, W, solve.active);
+      problem.first_epoch().system.solve(minus_rhs, problem.model().step.adjoint_tolerance, lambda);
       if (s == 0 && omitted == Term::first_stage)
         lambda = Field<double>(scene.discretization);
       reverse_equilibrium(stage, W, solve.active, lambda, omitted, X_bar, contact_bar, bar);
@@ -408,19 +408,18 @@ namespace retroforge
     if (omitted == Term::tau)
       bar.tau = 0.;
     reverse_set(scene.dies, physics.dies, contact, record.contact.ramp, X, contact_bar, omitted, G, bar.dies);
-    reverse_at_stroke(
-      problem.process, {record.stroke, record.step}, record.contact.approach, bar, process_bar);
+    reverse_over(problem.process(), place(record), record.contact.approach, bar, process_bar);
   }
 
   inline AdjointResult sweep(RecordedRun &problem, const Term omitted)
   {
-    AdjointResult        result{NodalVectors<double>(problem.forged.X.size()),
-                         no_process_derivatives(problem.scene.dies)};
-    NodalVectors<double> X = problem.forged.X;
+    AdjointResult        result{NodalVectors<double>(problem.state().workpiece.X.size()),
+                         no_process_derivatives(problem.process(), problem.scene.dies)};
+    NodalVectors<double> X = problem.state().workpiece.X;
     for (unsigned int i = problem.records.size(); i-- > 0;)
     {
       const IncrementRecord &record = problem.records[i];
-      X                             = problem.leg->increment.retreat(problem.process, X, record);
+      X = problem.first_epoch().increment.mechanics.retreat(problem.process(), X, record);
       reverse_increment(problem, X, record, omitted, result.X_0, result.process);
     }
     return result;

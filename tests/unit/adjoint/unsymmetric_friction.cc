@@ -35,7 +35,7 @@ namespace
   Parameters tripod_scene()
   {
     Parameters p             = tilted_block();
-    p.billet.shape           = "cylinder";
+    p.billet.shape           = BilletParameters::Shape::cylinder;
     p.billet.radius          = 20.;
     p.billet.height          = 24.;
     p.billet.symmetry_planes = {Vec3({0., -1., 0.}), Vec3({-std::sqrt(0.75), 0.5, 0.})};
@@ -97,10 +97,9 @@ namespace
   {
     RecordedRun                run(parameters);
     const AdjointResult        bar = run.adjoint();
-    const NodalVectors<double> still(run.forged.X.size());
-    std::cout << name
-              << "\n  friction works: " << yes(run.forged.energy.friction > 1e-3 * run.forged.energy.total())
-              << "\n";
+    const NodalVectors<double> still(run.state().workpiece.X.size());
+    std::cout << name << "\n  friction works: "
+              << yes(run.state().energy.friction > 1e-3 * run.state().energy.total()) << "\n";
     double largest = 0.;
     for (const Way &way : {Way{{"random X_0", random_vectors(still.size()), 0., 0., {}}},
                            Way{{"speed", still, 1., 0., {}}},
@@ -109,7 +108,7 @@ namespace
     {
       const double adjoint    = by_adjoint(run, bar, way);
       const auto [process, X] = at<Dual>(run, way, 0.);
-      const double tangent    = relative_error(run.tangent(process, X), adjoint);
+      const double tangent    = relative_error(run.derivative(process, X), adjoint);
       double       best = 1e300, order = 0.;
       for (const double h : {1e-4, 1e-5, 1e-6})
         best =
@@ -134,7 +133,7 @@ namespace
     const auto   energy   = [&](const double change) {
       for (DieParameters &die : parameters.dies)
         die.friction = 0.25 + change;
-      return RecordedRun(parameters).forged.energy.total();
+      return RecordedRun(parameters).state().energy.total();
     };
     constexpr double h     = 1e-4;
     const double     error = relative_error((energy(h) - energy(-h)) / (2. * h), gradient);
@@ -149,15 +148,15 @@ int main(int argc, char **argv)
   Parameters block = tilted_block(), tripods = tripod_scene();
   with_coulomb(block);
   with_coulomb(tripods);
-  Parameters krylov                = block;
-  krylov.linear_solver.method      = "auto";
-  Parameters quadratic             = block;
-  quadratic.discretization.element = "P2-P1";
-  quadratic.billet.element_size    = 20.;
-  const std::vector<double> errors = {check("tilted die", block),
-                                      check("tilted die, Krylov's method", krylov),
-                                      check("tilted die, quadratic velocities", quadratic),
-                                      check("tripods", tripods)};
+  Parameters krylov                    = block;
+  krylov.linear_solver.method          = LinearSolverParameters::Method::automatic;
+  Parameters quadratic                 = block;
+  quadratic.discretization.choice.pair = ElementPair::taylor_hood;
+  quadratic.billet.element_size        = 20.;
+  const std::vector<double> errors     = {check("tilted die", block),
+                                          check("tilted die, Krylov's method", krylov),
+                                          check("tilted die, quadratic velocities", quadratic),
+                                          check("tripods", tripods)};
   whole_runs(block);
   std::cout << "FIGURE unsymmetric_friction_gradient_error "
             << *std::max_element(errors.begin(), errors.end()) << "\n";

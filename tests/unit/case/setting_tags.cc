@@ -38,7 +38,9 @@ int main()
   const SettingTags       &tags = Parameters::tags();
   dealii::ParameterHandler prm;
   Parameters               parameters;
-  parameters.add_parameters(prm, {"upper"}, {"energy"});
+  parameters.add_parameters(prm, [](const std::string &kind, const std::string &, const std::string &) {
+    return std::vector<std::string>{kind == "Die" ? "upper" : "energy"};
+  });
   std::string section;
   for (const ParameterEntry &entry : declared_parameters(prm))
   {

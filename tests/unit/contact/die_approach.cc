@@ -14,6 +14,8 @@
 //   other, and it comes down by 1;
 // - the pyramid with its tip in the plane of symmetry of the half block, as on the whole one;
 // - a bar of 10 radius meshed with edges of 9: billet_surface() is round to a hundredth of what the mesh is.
+// The pyramid covers 3 x 3 of the face's 10 x 10; a quarter of that where it stands over a corner; of the
+// half block 1.5 x 3 of 5 x 10; from below its roof does. The blade covers 1 x 10, and a plane all.
 // After the move that frees a die nothing overlaps, whichever way it was.
 
 #include <deal.II/base/mpi.h>
@@ -148,12 +150,24 @@ int main(int argc, char **argv)
   report("edge over an edge", falling, Vec3({5., 1.3, 11.}), down, down, metal);
   report("edge in an edge", falling, Vec3({5., 1.3, 9.}), down, down, metal);
 
-  const TetMesh half = block(true);
+  const TetMesh      half       = block(true);
+  const MetalSurface half_metal = metal_surface(half, half.X);
   report("tip on the whole", tip, Vec3({0., 1.6, 9.5}), down, down, metal);
-  report("tip in the plane of symmetry", tip, Vec3({0., 1.6, 9.5}), down, down, metal_surface(half, half.X));
+  report("tip in the plane of symmetry", tip, Vec3({0., 1.6, 9.5}), down, down, half_metal);
+
+  std::printf(
+    "covered: %.4f above, %.4f over a corner, %.4f of the half, %.4f from below, %.4f by the blade, "
+    "%.4f by a plane, %.4f by its back\n",
+    covered_part(tip, beside + 2. * up, 7. * down, metal),
+    covered_part(tip, Vec3({5., 5., 12.}), down, metal),
+    covered_part(tip, Vec3({0., 1.6, 12.}), down, half_metal),
+    covered_part(tip, beside - 20. * up, up, metal),
+    covered_part(edge, Vec3({0., 1.3, 11.}), down, metal),
+    covered_part(plane, Vec3(), down, metal),
+    covered_part(plane, Vec3(), up, metal));
 
   BilletParameters bar;
-  bar.shape            = "cylinder";
+  bar.shape            = BilletParameters::Shape::cylinder;
   bar.radius           = 10.;
   bar.height           = 40.;
   bar.element_size     = 9.;

@@ -20,10 +20,10 @@ void show(const std::vector<const char *> &words)
   try
   {
     const CommandLine line = CommandLine::parse(words.size(), words.data());
-    std::cout << "command '" << line.command << "' case '" << line.case_file << "' output '"
-              << line.output_directory << "' resume " << line.resume << " overwrite " << line.overwrite
-              << " print " << line.print_parameters << " version " << line.version << " help " << line.help
-              << '\n';
+    std::cout << "command '" << (line.command ? word_of(*line.command) : "") << "' case '" << line.case_file
+              << "' output '" << line.output_directory << "' resume " << line.resume << " overwrite "
+              << line.overwrite << " print " << line.print_parameters << " version " << line.version
+              << " help " << line.help << '\n';
     for (const auto &[path, value] : line.settings())
       std::cout << "  [" << path << "] <- [" << value << "]\n";
   }

@@ -75,7 +75,7 @@ void refuse_name(const Entries &entries, const std::string &name)
   const BilletParameters parameters = billet_parameters(entries);
   const TetMesh          mesh       = make_billet(parameters, MPI_COMM_WORLD);
   print_error(title(entries) + ": " + name,
-              [&]() { Design({name}, parameters, {}, {}, {}, first_mesh(parameters, mesh), 1.); });
+              [&]() { Design({name}, parameters, {}, {}, {}, first_mesh(parameters, mesh)); });
 }
 
 int main(int argc, char **argv)

@@ -167,9 +167,10 @@ namespace
     }
     std::cout << "bell: the first mode is its offset, to 1e-8: " << yes(constant < 1e-8)
               << "; all are along its facing: " << yes(across == 0.);
-    form.from = Vec3({0., 0., 20.});
-    form.to   = Vec3({14., 14., 40.});
-    for (const std::string &along : {"facing", "normal"})
+    form.from   = Vec3({0., 0., 20.});
+    form.to     = Vec3({14., 14., 40.});
+    using Along = DieFreeFormParameters::Along;
+    for (const auto &[along, word] : {std::pair(Along::facing, "facing"), std::pair(Along::normal, "normal")})
     {
       form.along = along;
       const DieFreeForm made(die, quarter);
@@ -185,11 +186,11 @@ namespace
             for (unsigned int i = 0; i < 6; ++i)
               off = std::max(off, std::abs(made.move(i)[k] * plane.normal));
       }
-      std::cout << "\n  region in a quarter, along the " << along
+      std::cout << "\n  region in a quarter, along the " << word
                 << ": mirror images alike, to 1e-8: " << yes(all && defect < 1e-8)
                 << "; on the planes: " << yes(off < 1e-12);
     }
-    form.along   = "facing";
+    form.along   = Along::facing;
     form.mirrors = 12;
     const DieFreeForm round(die, quarter);
     double            spread = 0.;
@@ -229,7 +230,7 @@ namespace
   void transposed()
   {
     DieParameters die     = bell();
-    form_of(die, 6).along = "normal";
+    form_of(die, 6).along = DieFreeFormParameters::Along::normal;
     const DieFreeForm              form(die, quarter);
     std::mt19937                   generator(3);
     std::normal_distribution<>     normal;
@@ -298,7 +299,7 @@ int main()
   std::swap(form.from, form.to);
   refused(die);
   DieParameters round     = bell();
-  form_of(round, 6).along = "normal";
+  form_of(round, 6).along = DieFreeFormParameters::Along::normal;
   refused(round, 100.);
   // A die that is a plane, whose section asks for modes.
   for (const auto &kind : round.shape.kinds())

@@ -2,9 +2,12 @@
 // Copyright (C) 2026 The Retroforge authors
 
 // The spaces of a mesh as deal.II defines them, in three and in two dimensions, for both pairs, on shared and
-// fully distributed triangulations. Proved, on one and on two ranks:
+// fully distributed triangulations, with linear and with quadratic geometry. Proved, on one and on two ranks:
 // - the degrees of freedom that a DoFHandler gives to a cell are those of the tables kernels work on, in the
 //   order of the element's shape functions; each node has one owner, and rows follow each other rank by rank;
+// - nodes of the positions are where the geometry's element has its support points on straight cells, and
+// have
+//   a degree of freedom for each component;
 // - middles of edges are as many as Euler's formula asks for, and those of Topology on the surface;
 // - velocities at the nodes meet, in the pattern, as the cells say, and by no cell else;
 // - a rank reads the velocities of the whole surface; what is sent to ghosts is what owners know; what is
@@ -14,12 +17,14 @@
 // - METIS' parts are of equal size to 10 %.
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/fe/fe_simplex_p.h>
 
-#include <retroforge/discretization/field.h>
+#include <retroforge/discretization/element_pairs.h>
 #include <retroforge/mesh/topology.h>
 #include <retroforge/solver/velocity_pattern.h>
 
 #include <iostream>
+#include <map>
 #include <set>
 
 #include "../random_numbers.h"
@@ -151,6 +156,42 @@ namespace
              condensed.owns(condensed.node_at(place)) == (place < condensed.n_owned()) &&
              discretization.velocity_nodes()->owns(condensed.node_at(place)) == (place < condensed.n_owned());
     say("each node and cell has an owner, each row a node", rows && !condensed.owns(invalid_index));
+  }
+
+  template <int dim>
+  void check_positions(const SimplexMesh<dim> &mesh, const Discretization<dim> &discretization)
+  {
+    const auto                    &dofs    = discretization.geometry_dofs();
+    const auto                    &element = dofs.get_fe();
+    const auto                    &support = element.base_element(0).get_unit_support_points();
+    const dealii::FE_SimplexP<dim> linear(1);
+    std::map<NodeIndex, dealii::types::global_dof_index> first;
+    std::set<dealii::types::global_dof_index>            seen;
+    std::vector<dealii::types::global_dof_index>         of_cell(element.dofs_per_cell);
+    bool                                                 right = true;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+      {
+        const CellIndex  c     = cell->id().get_coarse_cell_id();
+        const NodeIndex *nodes = discretization.geometry_nodes(c);
+        cell->get_dof_indices(of_cell);
+        for (unsigned int i = 0; i < of_cell.size(); ++i)
+        {
+          const auto [component, a] = element.system_to_component_index(i);
+          const auto dof            = of_cell[i] - component;
+          right                     = right && first.emplace(nodes[a], dof).first->second == dof;
+          seen.insert(of_cell[i]);
+        }
+        for (unsigned int a = 0; a < support.size(); ++a)
+        {
+          auto off = position_of_node(discretization, mesh.X, nodes[a]);
+          for (unsigned int b = 0; b <= dim; ++b)
+            off -= linear.shape_value(b, support[a]) * mesh.X[mesh.cells[c][b]];
+          right = right && off.norm() < 1e-14;
+        }
+      }
+    say("positions are at the nodes of the geometry",
+        right && seen.size() == element.n_components() * first.size());
   }
 
   /// Of a mesh without holes.
@@ -354,6 +395,7 @@ namespace
                 << '\n';
     const Discretization<dim> discretization(mesh, choice, comm);
     check_tables(mesh, discretization);
+    check_positions(mesh, discretization);
     check_middles(mesh, discretization);
     check_pattern(mesh, discretization);
     check_surface(mesh, discretization);
@@ -371,7 +413,9 @@ int main(int argc, char **argv)
   for (const auto triangulation : {TriangulationKind::shared, TriangulationKind::fully_distributed})
     for (const auto pair : {ElementPair::mini, ElementPair::taylor_hood})
     {
-      check(turned_box(), {pair, triangulation});
-      check(sheared_square(6), {pair, triangulation});
+      const unsigned int degree   = triangulation == TriangulationKind::shared ? 1 : 2;
+      const auto         assembly = degree == 1 ? Assembly::closed_form : Assembly::quadrature;
+      check(turned_box(), {pair, triangulation, assembly, Kinematics::three_dimensions, degree});
+      check(sheared_square(6), {pair, triangulation, Assembly::quadrature, Kinematics::plane_strain, degree});
     }
 }

@@ -100,8 +100,8 @@ namespace
     Material<double> metal(MaterialLaw<double>(K, 1., 0.));
     metal.type    = add_hardening_metal();
     metal.numbers = {a, n};
-    const std::vector<double> strain{0.4, 1.5};
-    const auto                errors = indicated_errors(discretization, mesh.X, W, metal, strain);
+    const std::vector<PointState<double>> points{{0.4}, {1.5}};
+    const auto                            errors = indicated_errors(discretization, mesh.X, W, metal, points);
     // sym(u (x) z) without its trace
     const double e1_square = 0.5 * (u * u + u[2] * u[2]) - u[2] * u[2] / 3.;
     const double volume[2] = {1. / 6., 1. / 3.};
@@ -111,7 +111,8 @@ namespace
       const double share = volume[1 - c] / (volume[0] + volume[1]);
       by_hand.compare("the value by hand",
                       errors[c],
-                      1.2 * K * std::pow(1. + a * strain[c], n) * volume[c] * share * share * e1_square);
+                      1.2 * K * std::pow(1. + a * points[c].strain, n) * volume[c] * share * share *
+                        e1_square);
     }
     std::cout << "two cells, the values by hand: " << yes(by_hand.largest() < 1e-13) << "\n";
   }
@@ -132,7 +133,7 @@ namespace
                                       mesh.X,
                                       field_of(mesh, discretization, velocity),
                                       of,
-                                      std::vector<double>(mesh.n_cells(), 0.)));
+                                      std::vector<PointState<double>>(mesh.n_cells())));
       };
       auto twice = law;
       twice.K *= 2.;

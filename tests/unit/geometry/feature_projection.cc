@@ -9,6 +9,7 @@
 
 #include <retroforge/core/dual.h>
 #include <retroforge/geometry/feature_projection.h>
+#include <retroforge/geometry/vector_algebra.h>
 
 #include "../element/element_test_tools.h"
 #include "geometry_test_tools.h"
@@ -27,14 +28,6 @@ Vector3<Dual> with_direction(const Vec3 &x, const Vec3 &x_dot)
   for (unsigned int i = 0; i < 3; ++i)
     d[i] = Dual(1, 0, x[i]), d[i].fastAccessDx(0) = x_dot[i];
   return d;
-}
-
-double dot(const NodalVectors<double> &a, const NodalVectors<double> &b)
-{
-  double sum = 0.;
-  for (std::size_t k = 0; k < a.size(); ++k)
-    sum += a[k] * b[k];
-  return sum;
 }
 
 /// Which inputs a direction moves.

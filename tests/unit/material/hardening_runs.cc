@@ -38,26 +38,26 @@ namespace
   constexpr double height = 30., stroke = 12., speed = 100.;
 
   /// A quarter of a cube between frictionless dies.
-  Parameters cube(const std::string &element)
+  Parameters cube(const ElementPair element)
   {
     Parameters p;
-    p.billet.size            = Vec3({height, height, height});
-    p.billet.element_size    = height;
-    p.billet.symmetry_planes = {Vec3({-1., 0., 0.}), Vec3({0., -1., 0.})};
-    p.dies                   = {DieParameters("lower"), DieParameters("upper")};
-    p.dies[0].facing         = Vec3({0, 0, 1});
-    p.dies[1].point          = Vec3({0, 0, height});
-    p.dies[1].facing         = Vec3({0, 0, -1});
-    p.dies[1].velocity       = Vec3({0, 0, -speed});
-    p.material.law           = {1.7, 0.3, 0.05};
-    p.press.stroke           = stroke;
-    p.press.increments       = 12;
-    p.press.largest_move     = 10.;
-    p.press.largest_loss     = 0.1;
-    p.contact.penetration    = 1e-9;
-    p.newton.tolerance       = 1e-10;
-    p.linear_solver.method   = "direct";
-    p.discretization.element = element;
+    p.billet.size                = Vec3({height, height, height});
+    p.billet.element_size        = height;
+    p.billet.symmetry_planes     = {Vec3({-1., 0., 0.}), Vec3({0., -1., 0.})};
+    p.dies                       = {DieParameters("lower"), DieParameters("upper")};
+    p.dies[0].facing             = Vec3({0, 0, 1});
+    p.dies[1].point              = Vec3({0, 0, height});
+    p.dies[1].facing             = Vec3({0, 0, -1});
+    p.dies[1].velocity           = Vec3({0, 0, -speed});
+    p.material.law               = {1.7, 0.3, 0.05};
+    p.press.stroke               = stroke;
+    p.press.increments           = 12;
+    p.press.largest_move         = 10.;
+    p.press.largest_loss         = 0.1;
+    p.contact.penetration        = 1e-9;
+    p.newton.tolerance           = 1e-10;
+    p.linear_solver.method       = LinearSolverParameters::Method::direct;
+    p.discretization.choice.pair = element;
     return p;
   }
 
@@ -95,14 +95,15 @@ namespace
     return energy;
   }
 
-  void check_upsetting(const std::string &element, const Scheme &scheme)
+  void check_upsetting(const ElementPair element, const Scheme &scheme)
   {
     Parameters p = cube(element);
     harden(p);
     const RecordedRun run(p, {p.dies[0].die(), p.dies[1].die()}, {}, scheme);
     const double      by_hand = energy_by_hand(scheme, p, a), soft = energy_by_hand(scheme, p, 0.);
-    const double      error = relative_error(run.forged.energy.total(), by_hand);
-    std::cout << "upsetting, " << element << ", " << scheme.name << ": increments " << run.records.size()
+    const double      error = relative_error(run.state().energy.total(), by_hand);
+    std::cout << "upsetting, " << (element == ElementPair::mini ? "mini" : "P2-P1") << ", " << scheme.name
+              << ": increments " << run.records.size()
               << ", energy by hand within 1e-7: " << yes(error < 1e-7)
               << ", hardening adds a tenth or more: " << yes(by_hand > 1.1 * soft) << "\n";
   }
@@ -131,12 +132,7 @@ namespace
   std::vector<double> values(const RecordedRun &run, const Way &way, const double t)
   {
     const auto [process, X] = at<double>(run, way, t);
-    ForgingState   state    = run.forging.start(run.leg, X);
-    ObjectiveTrace trace(run.objectives, run.model, process);
-    run.forging.replay(process, run.records.size(), run.source(), state, [&](const IncrementEvent &event) {
-      trace.add(event);
-    });
-    return trace.values(state, false);
+    return run.replayed_values(process, X);
   }
 
   double by_adjoint(const RecordedRun &run, const AdjointResult &bar, const Way &way)
@@ -170,7 +166,7 @@ namespace
   void check_way(RecordedRun &run, const Way &way, const std::vector<AdjointResult> &bars, Largest &largest)
   {
     const auto [process, X]                        = at<Dual>(run, way, 0.);
-    const auto                            tangents = tangent_sweep(run.recorded(), process, X);
+    const auto                            tangents = run.tangent(process, X);
     std::map<double, std::vector<double>> known;
     const auto                            value = [&](const std::size_t o, const double t) {
       if (known.count(t) == 0)
@@ -199,9 +195,8 @@ namespace
 
   void check_gradients(const std::string &name, const Parameters &p, const Meshes meshes)
   {
-    RecordedRun run(p, {p.dies[0].die(), p.dies[1].die()}, objectives(), {}, meshes);
-    run.trace.values(run.forged, true);
-    const auto sweep = adjoint_sweep(run.recorded(), run.trace.rows(), run.forged, each(run.objectives));
+    RecordedRun                run(p, {p.dies[0].die(), p.dies[1].die()}, objectives(), {}, meshes);
+    const auto                 sweep = run.sweep(each(run.objectives()));
     const NodalVectors<double> still(run.scene.mesh.n_nodes());
     const auto                 metal = [&](const std::string &number, const unsigned int i) {
       Way way{{number, still, 0., 0., {}}};
@@ -216,8 +211,8 @@ namespace
                            metal("m", 1),
                            metal("a", 3),
                            metal("n", 4)})
-      check_way(run, way, sweep.of, largest);
-    std::cout << name << ": meshes made anew: " << (run.forged.remeshed.empty() ? "none" : "some")
+      check_way(run, way, sweep.gradients, largest);
+    std::cout << name << ": meshes made anew: " << (run.state().remeshed.empty() ? "none" : "some")
               << ", direct method within 1e-10: " << yes(largest.tangent < 1e-10)
               << ", differences within 1e-6: " << yes(largest.difference < 1e-6)
               << ", remainders of second order: " << yes(largest.order < 0.1) << "\n";
@@ -230,25 +225,25 @@ int main(int argc, char **argv)
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
     std::cout.setstate(std::ios::failbit);
   add_hardening_metal();
-  for (const std::string element : {"mini", "P2-P1"})
+  for (const ElementPair element : {ElementPair::mini, ElementPair::taylor_hood})
     for (const Scheme &scheme : Scheme::all())
       check_upsetting(element, scheme);
   Parameters block = tilted_block();
   harden(block);
-  Parameters quadratic             = block;
-  quadratic.discretization.element = "P2-P1";
-  quadratic.billet.element_size    = 20.;
-  Parameters krylov                = block;
-  krylov.linear_solver.method      = "auto";
+  Parameters quadratic                 = block;
+  quadratic.discretization.choice.pair = ElementPair::taylor_hood;
+  quadratic.billet.element_size        = 20.;
+  Parameters krylov                    = block;
+  krylov.linear_solver.method          = LinearSolverParameters::Method::automatic;
   check_gradients("tilted die", block, Meshes::one);
   check_gradients("tilted die, Krylov's method", krylov, Meshes::one);
   check_gradients("tilted die, quadratic velocities", quadratic, Meshes::one);
   for (Parameters *p : {&block, &quadratic})
   {
     p->press.scheme     = "euler";
-    p->remeshing.when   = "increments";
+    p->remeshing.when   = RemesherParameters::When::increments;
     p->remeshing.every  = 2;
-    p->remeshing.method = "rebuild";
+    p->remeshing.method = RemesherParameters::Method::rebuild;
     p->press.increments = 5;
   }
   check_gradients("remeshing", block, Meshes::anew);

@@ -60,18 +60,21 @@ namespace
   /// A corner stage of hardening metal.
   struct HardenedStage
   {
-    CornerStage         corner;
-    std::vector<double> strain;
+    CornerStage                     corner;
+    std::vector<PointState<double>> points;
 
     HardenedStage(Random &random, const ElementPair pair)
-        : corner(random, 2., pair, {{2, 3, 2}}), strain(random.scalars(corner.scene.mesh.n_cells()))
+        : corner(random, 2., pair, {{2, 3, 2}}), points(corner.scene.mesh.n_cells())
     {
-      for (double &q : strain)
-        q = 0.5 + 0.5 * q;
+      for (PointState<double> &point : points)
+        point.strain = 0.5 + 0.5 * random.scalar();
       corner.physics.material = metal_of(corner.physics.material.law);
     }
 
-    Stage<double> stage() const { return {corner.scene, corner.physics, corner.contact, corner.X, strain}; }
+    Equilibrium<double> stage() const
+    {
+      return {corner.scene, corner.physics, corner.contact, corner.X, points};
+    }
   };
 
   Dual along(const double x, const double x_dot)
@@ -95,8 +98,8 @@ namespace
     const HardenedStage       hardened(random, pair);
     const CornerStage        &corner         = hardened.corner;
     const auto               &discretization = corner.scene.discretization;
-    const Stage<double>       stage          = hardened.stage();
-    const std::vector<double> strain_dot     = random.scalars(hardened.strain.size());
+    const Equilibrium<double> stage          = hardened.stage();
+    const std::vector<double> strain_dot     = random.scalars(hardened.points.size());
     std::vector<double>       numbers_dot;
     Physics<Dual>             physics = converted<Dual>(corner.physics);
     for_each_number(
@@ -105,18 +108,18 @@ namespace
         x = along(x.val(), numbers_dot.back());
       },
       physics.material);
-    std::vector<Dual>  strain;
-    NodalVectors<Dual> X;
-    Field<Dual>        W(discretization);
+    std::vector<PointState<Dual>> points;
+    NodalVectors<Dual>            X;
+    Field<Dual>                   W(discretization);
     for (std::size_t c = 0; c < strain_dot.size(); ++c)
-      strain.push_back(along(hardened.strain[c], strain_dot[c]));
+      points.push_back({along(hardened.points[c].strain, strain_dot[c])});
     convert(corner.X, X);
     for (unsigned int place = 0; place < W.V.size(); ++place)
       convert(corner.W.V.at_place(place), W.V.at_place(place));
     for (unsigned int place = 0; place < W.P.size(); ++place)
       W.P.at_place(place) = corner.W.P.at_place(place);
-    const ContactSet<Dual> contact = contact_of(corner, physics, X);
-    const Stage<Dual>      moved(corner.scene, physics, contact, X, strain);
+    const ContactSet<Dual>  contact = contact_of(corner, physics, X);
+    const Equilibrium<Dual> moved(corner.scene, physics, contact, X, points);
 
     const Field<double> lambda  = corner.random_field(random);
     const Field<Dual>   r       = moved.residual(W, corner.active);
@@ -127,26 +130,26 @@ namespace
     const auto [deformation, friction] = moved.power(W, corner.active);
     const double power_forward         = 0.6 * deformation.dx(0) + 0.8 * friction.dx(0);
 
-    const StageView<double> view{stage, corner.W, corner.active};
-    const auto              product = [&](const auto &pull_back) {
+    const EquilibriumView<double> view{stage, corner.W, corner.active};
+    const auto                    product = [&](const auto &pull_back) {
       Field<double>        W_bar(discretization);
       NodalVectors<double> X_bar(corner.X.size());
       ContactSetBar        contact_bar(corner.contact.pairs.size());
       PhysicsBar           bar(corner.scene.dies);
-      StageBar             stage_bar{W_bar, X_bar, contact_bar, bar};
+      EquilibriumBar       stage_bar{W_bar, X_bar, contact_bar, bar};
       pull_back(stage_bar);
       double sum  = 0.;
       auto   next = numbers_dot.begin();
       for_each_number([&](const double &x) { sum += x * *next++; }, bar.material);
-      for (std::size_t c = 0; c < bar.strain.size(); ++c)
-        sum += bar.strain[c] * strain_dot[c];
+      for (std::size_t c = 0; c < bar.points.size(); ++c)
+        sum += bar.points[c].strain * strain_dot[c];
       return discretization.sum(sum);
     };
     errors.compare("residual, transposed",
-                   product([&](StageBar &bar) { reverse_residual(view, lambda, bar); }),
+                   product([&](EquilibriumBar &bar) { reverse_residual(view, lambda, bar); }),
                    discretization.sum(forward));
     errors.compare("power, transposed",
-                   product([&](StageBar &bar) { reverse_power(view, 0.6, 0.8, bar); }),
+                   product([&](EquilibriumBar &bar) { reverse_power(view, 0.6, 0.8, bar); }),
                    discretization.sum(power_forward));
   }
 
@@ -164,20 +167,21 @@ namespace
   /// The matrix, whose cells come in packs of four laws: M^-1 (dR/dW w) = w, dR/dW w by dual numbers.
   void check_tangent(Random &random, const ElementPair pair, Errors &errors)
   {
-    const HardenedStage hardened(random, pair);
-    const CornerStage  &corner = hardened.corner;
-    const auto         &spaces = corner.scene.discretization;
-    const Stage<double> stage  = hardened.stage();
-    Field<double>       at     = corner.W;
-    const Field<double> w      = corner.random_field(random);
-    settle_bubbles(stage, at);
-    Physics<Dual>      physics = converted<Dual>(corner.physics);
-    std::vector<Dual>  strain(hardened.strain.begin(), hardened.strain.end());
-    NodalVectors<Dual> X;
+    const HardenedStage       hardened(random, pair);
+    const CornerStage        &corner = hardened.corner;
+    const auto               &spaces = corner.scene.discretization;
+    const Equilibrium<double> stage  = hardened.stage();
+    Field<double>             at     = corner.W;
+    const Field<double>       w      = corner.random_field(random);
+    solve_bubbles(stage, at);
+    Physics<Dual>                 physics = converted<Dual>(corner.physics);
+    std::vector<PointState<Dual>> points;
+    NodalVectors<Dual>            X;
+    convert(hardened.points, points);
     convert(corner.X, X);
-    const auto        contact = contact_of(corner, physics, X);
-    const Stage<Dual> moved(corner.scene, physics, contact, X, strain);
-    Field<Dual>       W(spaces);
+    const auto              contact = contact_of(corner, physics, X);
+    const Equilibrium<Dual> moved(corner.scene, physics, contact, X, points);
+    Field<Dual>             W(spaces);
     for (unsigned int place = 0; place < W.V.size(); ++place)
       for (unsigned int i = 0; i < 3; ++i)
         W.V.at_place(place)[i] = along(at.V.at_place(place)[i], w.V.at_place(place)[i]);
@@ -192,7 +196,7 @@ namespace
       image.P.at_place(place) = r.P.at_place(place).dx(0);
     Timings                timings;
     LinearSolverParameters parameters;
-    parameters.method = "direct";
+    parameters.method = LinearSolverParameters::Method::direct;
     LinearSystem system(corner.scene, parameters, timings);
     system.assemble(stage, at, corner.active);
     system.solve_derivative(image, 1e-13, x);

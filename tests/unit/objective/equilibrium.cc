@@ -34,7 +34,7 @@ Parameters flat_dies(const double penetration)
   p.press.increments     = 4;
   p.contact.penetration  = penetration;
   p.newton.tolerance     = 1e-12;
-  p.linear_solver.method = "direct";
+  p.linear_solver.method = LinearSolverParameters::Method::direct;
   return p;
 }
 
@@ -45,8 +45,9 @@ PathRows<double> rows(const RecordedRun &run, const PathObjective &objective)
   NodalVectors<double> X = run.scene.mesh.X;
   for (const IncrementRecord &record : run.records)
   {
-    const SolvedIncrement solved = run.leg->increment.recorded(run.process, X, {}, record);
-    rows.push_back(row_of(record, run.process));
+    const SolvedIncrement solved =
+      run.first_epoch().increment.mechanics.recorded(run.process(), {X, {}}, record);
+    rows.push_back(row_of(record, run.process()));
     add_integrals(objective, solved.last().view(), rows.back());
     X = solved.X;
   }
@@ -61,12 +62,12 @@ double difference(const double penetration)
   const auto            energy_rows  = rows(run, energy);
   const auto [deformation, friction] = EnergyObjective::split(energy_rows);
   Errors errors;
-  errors.compare("deformation energy", deformation, run.forged.energy.deformation);
-  errors.compare("friction energy", friction, run.forged.energy.friction);
-  errors.compare("energy", energy.value(energy_rows), run.forged.energy.total());
+  errors.compare("deformation energy", deformation, run.state().energy.deformation);
+  errors.compare("friction energy", friction, run.state().energy.friction);
+  errors.compare("energy", energy.value(energy_rows), run.state().energy.total());
   std::cout << "penetration " << penetration << std::endl;
   errors.print(1e-12);
-  const unsigned int upper = run.process.leading_die;
+  const unsigned int upper = run.process().operations[0].leading_die;
   const PathWindow   window{PathWindow::Over::stroke, 1., 3.};
   const MeanEffort   by_power(Effort(upper), window), by_force(Effort(upper, Effort::By::force), window);
   const double       power = by_power.value(rows(run, by_power)), force = by_force.value(rows(run, by_force));

@@ -18,7 +18,6 @@
 #include <retroforge/core/error.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/objective/filling.h>
-#include <retroforge/objective/path_objective.h>
 #include <retroforge/objective/radius.h>
 #include <retroforge/objective/shape_distance.h>
 #include <retroforge/objective/strain_statistics.h>
@@ -83,26 +82,38 @@ struct FinalProblem
   }
 
   template <typename Number>
-  std::vector<Number> integrals(const FinalObjective &objective, const FinalInputs<Number> &inputs) const
+  Number value(const FinalObjective      &objective,
+               const FinalDecisions      &decisions,
+               const FinalInputs<Number> &inputs) const
   {
-    return sum_over_ranks(objective.integrals(view(inputs)), scene.discretization.comm());
+    return objective.value(objective.integrals(view(inputs), decisions).complete(), decisions);
   }
 
-  double value(FinalObjective &objective) const
+  /// Integrals, value and details by the decisions taken here.
+  std::vector<double> integrals(const FinalObjective &objective) const
   {
-    objective.decide(view(at));
-    return objective.value(integrals(objective, at));
+    return objective.integrals(view(at), objective.decide(view(at))).complete();
   }
 
-  FinalInputs<double> reverse(const FinalObjective &objective, const FinalInputs<double> &inputs) const
+  double value(const FinalObjective &objective) const
   {
-    FinalBar bar(scene, inputs.target.size());
-    objective.reverse_integrals(view(inputs), objective.reverse_value(integrals(objective, inputs)), bar);
-    FinalInputs<double> result{bar.X, bar.q, bar.dies, bar.target};
-    for (const auto &[name, entries] : result.groups())
-      for (double *entry : entries)
-        *entry = scene.discretization.sum(*entry);
-    return result;
+    return value(objective, objective.decide(view(at)), at);
+  }
+
+  double detail(const FinalObjective &objective, const std::string &name) const
+  {
+    return objective.details(integrals(objective), objective.decide(view(at))).at(name);
+  }
+
+  FinalInputs<double> reverse(const FinalObjective      &objective,
+                              const FinalDecisions      &decisions,
+                              const FinalInputs<double> &inputs) const
+  {
+    const auto     seen    = view(inputs);
+    const auto     b       = objective.integrals(seen, decisions).complete();
+    const auto     weights = objective.reverse_value(b, decisions);
+    const FinalBar bar     = objective.derivatives(seen, decisions, weights).complete();
+    return {bar.X, bar.q, bar.dies, bar.target};
   }
 
   FinalInputs<Dual> dual_shape() const
@@ -162,12 +173,13 @@ void check_volume_and_strain(Errors &errors)
   errors.compare("two strains, log-sum-exp",
                  problem.value(exponential),
                  std::log(fraction * std::exp(70.) + (1. - fraction) * std::exp(20.)) / 100.);
-  errors.compare("two strains, true maximum", exponential.true_maximum(), 0.7);
+  errors.compare("two strains, true maximum", problem.detail(exponential, "true maximum"), 0.7);
   for (double &q : problem.at.q)
     q = 0.;
   errors.compare("no strain, p-norm", problem.value(p_norm), 0.);
-  bool finite = true;
-  for (const double bar : problem.reverse(p_norm, problem.at).q)
+  bool                 finite    = true;
+  const FinalDecisions decisions = p_norm.decide(problem.view(problem.at));
+  for (const double bar : problem.reverse(p_norm, decisions, problem.at).q)
     finite = finite && std::isfinite(bar);
   std::cout << "  no strain, derivatives finite: " << yes(finite) << std::endl;
 }
@@ -180,9 +192,8 @@ void check_shapes(Errors &errors)
   for (const double rounding : {0., 0.02})
   {
     FillingObjective filling{TargetSurface(larger), rounding};
-    problem.value(filling);
-    const auto sums    = problem.integrals(filling, problem.at);
-    const auto rounded = [&](const double x) { return std::sqrt(x * x + rounding * rounding) - rounding; };
+    const auto       sums = problem.integrals(filling);
+    const auto rounded    = [&](const double x) { return std::sqrt(x * x + rounding * rounding) - rounding; };
     errors.compare("workpiece to target", sums[0], 6. * rounded(d));
     errors.compare(
       "target to workpiece", sums[1], rounded(std::sqrt(3.) * d) * 6. * (1. + 2. * d) * (1. + 2. * d));
@@ -205,9 +216,8 @@ void check_filling_of_half(Errors &errors)
   for (FinalProblem *problem : {&whole, &half})
   {
     FillingObjective filling{TargetSurface(flat, 0)};
-    problem->value(filling);
-    const double all = problem == &whole ? 4. : 2.;
-    errors.compare("sheet to a box", problem->integrals(filling, problem->at)[1], 0.1 * all);
+    const double     all = problem == &whole ? 4. : 2.;
+    errors.compare("sheet to a box", problem->integrals(filling)[1], 0.1 * all);
   }
 }
 
@@ -230,10 +240,8 @@ void check_filling_of_free_nodes(Errors &errors)
   {
     problem.at.dies[0].displacement = Vec3({0., 0., -part * width});
     FillingObjective filling(TargetSurface(larger), 0., FreeNodes(FrictionRamp{width, false}));
-    problem.value(filling);
-    errors.compare("cube on a plane, free nodes",
-                   problem.integrals(filling, problem.at)[0],
-                   d * (above + part * (6. - above)));
+    errors.compare(
+      "cube on a plane, free nodes", problem.integrals(filling)[0], d * (above + part * (6. - above)));
   }
 }
 
@@ -274,7 +282,7 @@ void check_unfilled()
 void check_cylinder(Errors &errors)
 {
   BilletParameters parameters;
-  parameters.shape        = "cylinder";
+  parameters.shape        = BilletParameters::Shape::cylinder;
   parameters.radius       = 5.;
   parameters.height       = 8.;
   parameters.element_size = 3.;
@@ -283,12 +291,12 @@ void check_cylinder(Errors &errors)
   for (Vec3 &x : problem.at.X)
     x = Vec3({1.2 * x[0], 1.2 * x[1], x[2]});
   errors.compare("cylinder", problem.value(distance), 0.);
-  errors.compare("radius", distance.radius(problem.integrals(distance, problem.at)), 6.);
+  errors.compare("radius", problem.detail(distance, "radius [mm]"), 6.);
   const double change = 0.1;
   for (Vec3 &x : problem.at.X)
     x *= 1. + change;
   errors.compare("larger cylinder", problem.value(distance), 0.);
-  errors.compare("larger radius", distance.radius(problem.integrals(distance, problem.at)), 6.6);
+  errors.compare("larger radius", problem.detail(distance, "radius [mm]"), 6.6);
   RadiusObjective mean(RadiusStatistic::mean, {"side"}, Vec3({0., 0., 3.}), Vec3({0., 0., 2.}));
   errors.compare("its mean radius", problem.value(mean), 6.6);
 }
@@ -297,16 +305,15 @@ double check_all_derivatives()
 {
   Random     random;
   double     worst = 0.;
-  const auto check = [&](const std::string &name, FinalObjective &objective, const FinalProblem &problem) {
-    problem.value(objective);
-    const auto evaluate = [&](const auto &inputs) {
-      return objective.value(problem.integrals(objective, inputs));
+  const auto check =
+    [&](const std::string &name, const FinalObjective &objective, const FinalProblem &problem) {
+      const auto decisions = objective.decide(problem.view(problem.at));
+      const auto evaluate  = [&](const auto &inputs) { return problem.value(objective, decisions, inputs); };
+      const auto reverse = [&](const auto &inputs) { return problem.reverse(objective, decisions, inputs); };
+      worst              = std::max(
+        worst,
+        check_derivatives<FinalInputs>(name, problem.at, evaluate, reverse, problem.dual_shape(), random));
     };
-    const auto reverse = [&](const auto &inputs) { return problem.reverse(objective, inputs); };
-    worst              = std::max(
-      worst,
-      check_derivatives<FinalInputs>(name, problem.at, evaluate, reverse, problem.dual_shape(), random));
-  };
   const auto shake = [&](FinalProblem &problem) {
     for (Vec3 &x : problem.at.X)
       x += 0.03 * random.vector();
@@ -353,10 +360,10 @@ double check_all_derivatives()
   FillingObjective of_free(TargetSurface(die, 0, low), 0., FreeNodes(FrictionRamp{0.3, false}));
   check("filling of a die, free nodes", of_free, between);
   std::cout << "  some of them touch, some in part: " << [&] {
-    FreeNodes free(FrictionRamp{0.3, false});
-    free.decide(between.view(between.at));
-    unsigned int touch = 0, in_part = 0;
-    for (const double part : free.parts(between.view(between.at)))
+    const FreeNodes free(FrictionRamp{0.3, false});
+    const auto      view  = between.view(between.at);
+    unsigned int    touch = 0, in_part = 0;
+    for (const double part : free.parts(view, free.decide(view)))
       (part == 0. ? touch : in_part) += part < 1. ? 1 : 0;
     return yes(touch > 3 && in_part > 3);
   }() << std::endl;
@@ -366,14 +373,13 @@ double check_all_derivatives()
   check("distance from a closed shape", closed_distance, inside);
   check("distance from a cylinder", side, inside);
   check("mean radius", bore, inside);
+  const auto   decided  = closed_filling.compute_decisions(inside.view(inside.at));
   unsigned int on_edges = 0;
-  for (const auto &seen : closed_filling.decisions().by_workpiece)
-    on_edges += seen.feature.kind > 0;
-  for (const auto &seen : closed_filling.decisions().by_target)
-    on_edges += seen.feature.kind > 0;
+  for (const auto *features : {&decided.by_workpiece, &decided.by_target})
+    for (const SeenFeature &seen : *features)
+      on_edges += seen.feature.kind > 0;
   std::cout << "  faces, edges and vertices seen: "
-            << yes(on_edges > 10 && on_edges + 10 < closed_filling.decisions().by_workpiece.size() +
-                                                      closed_filling.decisions().by_target.size())
+            << yes(on_edges > 10 && on_edges + 10 < decided.by_workpiece.size() + decided.by_target.size())
             << std::endl;
   return worst;
 }

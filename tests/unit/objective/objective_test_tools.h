@@ -79,10 +79,9 @@ namespace retroforge
           *moved_groups[g].second[i] += step * directions[g][i];
       remainders.push_back(std::abs(evaluate(moved) - start - step * total));
     }
-    bool quadratic = true;
-    for (unsigned int i = 0; i < 3; ++i)
-      quadratic = quadratic && (remainders[i + 1] < 1e-13 * std::abs(start) ||
-                                std::log2(remainders[i] / remainders[i + 1]) > 1.95);
+    // The order is that of vanishing steps: of a wrong slope the remainder shows most at the smallest ones.
+    const bool quadratic =
+      remainders[3] < 1e-13 * std::abs(start) || std::log2(remainders[2] / remainders[3]) > 1.95;
     std::cout << name << ": dot product < 1e-12: "
               << (worst < 1e-12 ? "yes" : "NO, " + std::to_string(worst * 1e12) + "e-12")
               << ", Taylor order > 1.95: " << (quadratic ? "yes" : "NO") << ", depends on" << depends

@@ -148,8 +148,9 @@ struct PathProblem
       }
       for (Vec3 &beta : state.bubbles)
         beta = 0.3 * random.vector();
-      pairs[i]  = find_contact_pairs(scene.view(at.physics.dies, state.X), ramp, 1.5 * ramp.width, true);
-      active[i] = Stage<double>(scene, at.physics, contact(at, i), state.Y).decide_active(state.field(scene));
+      pairs[i] = find_contact_pairs(scene.view(at.physics.dies, state.X), ramp, 1.5 * ramp.width, true);
+      active[i] =
+        Equilibrium<double>(scene, at.physics, contact(at, i), state.Y).decide_active(state.field(scene));
     }
   }
 
@@ -183,8 +184,8 @@ struct PathProblem
     unsigned int n = 0;
     for (unsigned int i = 0; i < n_increments; ++i)
     {
-      const ContactSet<double> set = contact(at, i);
-      const Stage<double>      stage(scene, at.physics, set, at.states[i].Y);
+      const ContactSet<double>  set = contact(at, i);
+      const Equilibrium<double> stage(scene, at.physics, set, at.states[i].Y);
       for (unsigned int p = 0; p < pairs[i].size(); ++p)
         n +=
           active[i][p] && approach_excess(stage.contact_node(p, at.states[i].field(scene), active[i])) < 0.;
@@ -198,11 +199,10 @@ struct PathProblem
     PathRows<Number> rows;
     for (unsigned int i = 0; i < n_increments; ++i)
     {
-      const ContactSet<Number> set = contact(inputs, i);
-      const Stage<Number>      stage(scene, inputs.physics, set, inputs.states[i].Y);
-      const Field<Number>      W = inputs.states[i].field(scene);
-      rows.push_back({sum_over_ranks(objective.integrals(StageView<Number>{stage, W, active[i]}),
-                                     scene.discretization.comm()),
+      const ContactSet<Number>  set = contact(inputs, i);
+      const Equilibrium<Number> stage(scene, inputs.physics, set, inputs.states[i].Y);
+      const Field<Number>       W = inputs.states[i].field(scene);
+      rows.push_back({objective.integrals(EquilibriumView<Number>{stage, W, active[i]}).complete(),
                       dt(inputs, i),
                       Number(strokes[i] / inputs.speed),
                       strokes[i],
@@ -218,13 +218,13 @@ struct PathProblem
     const auto         rows_bar = objective.reverse_value(forward);
     for (unsigned int i = 0; i < n_increments; ++i)
     {
-      const ContactSet<double> set = contact(inputs, i);
-      const Stage<double>      stage(scene, inputs.physics, set, inputs.states[i].Y);
-      ContactSetBar            set_bar(pairs[i].size());
-      PhysicsBar               physics_bar(scene.dies);
-      const Field<double>      W = inputs.states[i].field(scene);
-      Field<double>            W_bar(scene.discretization);
-      StageBar                 stage_bar{W_bar, bar.states[i].Y, set_bar, physics_bar};
+      const ContactSet<double>  set = contact(inputs, i);
+      const Equilibrium<double> stage(scene, inputs.physics, set, inputs.states[i].Y);
+      ContactSetBar             set_bar(pairs[i].size());
+      PhysicsBar                physics_bar(scene.dies);
+      const Field<double>       W = inputs.states[i].field(scene);
+      Field<double>             W_bar(scene.discretization);
+      EquilibriumBar            stage_bar{W_bar, bar.states[i].Y, set_bar, physics_bar};
       objective.reverse_integrals({stage, W, active[i]}, rows_bar[i].integrals, stage_bar);
       for (unsigned int place = 0; place < W_bar.V.size(); ++place)
       {
@@ -241,7 +241,7 @@ struct PathProblem
       add_numbers(physics_bar.contact, bar.physics.contact);
       bar.tau += physics_bar.tau * dt(inputs, i);
       if (dealii::Utilities::MPI::this_mpi_process(scene.discretization.comm()) == 0)
-        physics_bar.dt += dt_bar(forward[i], rows_bar[i]);
+        physics_bar.dt += rows_bar[i].dt + rows_bar[i].time * forward[i].stroke / forward[i].step;
       bar.speed -= (inputs.tau * physics_bar.tau + physics_bar.dt) * steps[i] / (inputs.speed * inputs.speed);
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
       {
@@ -267,14 +267,14 @@ public:
   std::string unit() const override { return "mJ"; }
 
   template <typename Number>
-  std::vector<Number> compute_integrals(const StageView<Number> &view) const
+  std::vector<Number> compute_integrals(const EquilibriumView<Number> &view) const
   {
-    return energy_.integrals(view);
+    return energy_.compute_integrals(view);
   }
 
-  void reverse_integrals(const StageView<double>   &view,
-                         const std::vector<double> &weights,
-                         StageBar                  &bar) const override
+  void reverse_integrals(const EquilibriumView<double> &view,
+                         const std::vector<double>     &weights,
+                         EquilibriumBar                &bar) const override
   {
     energy_.reverse_integrals(view, weights, bar);
   }

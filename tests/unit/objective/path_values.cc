@@ -71,13 +71,9 @@ public:
       const FrictionRamp    ramp{0.1, false};
       const auto            pairs = find_contact_pairs(scene_.view(physics.dies, X), ramp, 1., true);
       const auto contact = make_contact_set<double>(scene_.view(physics.dies, X), pairs, {ramp, 5. * dt});
-      const Stage<double> stage(scene_, physics, contact, X);
-      const ActiveSet     active = stage.decide_active(W);
-      rows.push_back({sum_over_ranks(objective.integrals({stage, W, active}), MPI_COMM_WORLD),
-                      dt,
-                      i * dt,
-                      i * step,
-                      step});
+      const Equilibrium<double> stage(scene_, physics, contact, X);
+      const ActiveSet           active = stage.decide_active(W);
+      rows.push_back({objective.integrals({stage, W, active}).complete(), dt, i * dt, i * step, step});
       for (NodeIndex k = 0; k < X.size(); ++k)
         X[k] += dt * V[k];
     }
@@ -100,14 +96,10 @@ public:
         pairs.push_back({ContactPoint::middle(a, b), 1, true, DieFeature()});
     const auto contact =
       make_contact_set<double>(scene_.view(physics.dies, X), pairs, {ramp, 0.1, 0., edge_stiffness});
-    const Stage<double>    stage(scene_, physics, contact, X);
-    const Field<double>    W(scene_.discretization); // at rest
-    const PathRows<double> rows = {
-      {sum_over_ranks(objective.integrals({stage, W, stage.decide_active(W)}), MPI_COMM_WORLD),
-       0.1,
-       0.,
-       0.,
-       0.1}};
+    const Equilibrium<double> stage(scene_, physics, contact, X);
+    const Field<double>       W(scene_.discretization); // at rest
+    const PathRows<double>    rows = {
+         {objective.integrals({stage, W, stage.decide_active(W)}).complete(), 0.1, 0., 0., 0.1}};
     return objective.value(rows);
   }
 

@@ -43,9 +43,8 @@ public:
   }
 
   /// The same loop in reverse: what of weights·sums depends on the positions.
-  void reverse_integrals(const FinalView<double>   &view,
-                         const std::vector<double> &weights,
-                         FinalBar                  &bar) const override
+  void
+  reverse_integrals(const FinalView<double> &view, const std::vector<double> &weights, FinalBar &bar) const
   {
     for (const CellIndex c : view.scene.discretization.cells().owned())
     {
@@ -72,7 +71,9 @@ Number value(const Scene &scene, const CentreHeight &objective, const NodalVecto
 {
   const std::vector<Number>           strain(scene.mesh.n_cells(), Number(0.));
   const std::vector<DieState<Number>> dies;
-  return objective.value(objective.integrals(FinalView<Number>{scene, X, strain, dies}));
+  const FinalDecisions                none = NoDecisions();
+  return objective.value(objective.integrals(FinalView<Number>{scene, X, strain, dies}, none).complete(),
+                         none);
 }
 
 int main(int argc, char **argv)
@@ -90,8 +91,10 @@ int main(int argc, char **argv)
   const std::vector<double>           strain(scene.mesh.n_cells(), 0.);
   const std::vector<DieState<double>> dies;
   const FinalView<double>             view{scene, scene.mesh.X, strain, dies};
-  FinalBar                            bar(scene);
-  objective.reverse_integrals(view, objective.reverse_value(objective.integrals(view)), bar);
+  const FinalDecisions                decisions = objective.decide(view); // none, here
+  const auto                          sums      = objective.integrals(view, decisions).complete();
+  const FinalBar                      bar =
+    objective.derivatives(view, decisions, objective.reverse_value(sums, decisions)).complete();
 
   Random               random;
   NodalVectors<double> direction(scene.mesh.n_nodes());
@@ -112,7 +115,7 @@ int main(int argc, char **argv)
             << (std::abs(slope / dual - 1.) < 1e-12 ? "below 1e-12" : "wrong") << std::endl;
 
   double last = 0.;
-  for (const double step : {0.02, 0.01})
+  for (const double step : {2e-3, 1e-3})
   {
     NodalVectors<double> moved = scene.mesh.X;
     for (NodeIndex k = 0; k < moved.size(); ++k)

@@ -63,17 +63,6 @@ Objectives all_objectives(const unsigned int upper)
   return objectives;
 }
 
-/// Values of all objectives of a replay from X_0 along the process.
-std::vector<double>
-replayed(const RecordedRun &run, const Process<double> &process, const NodalVectors<double> &X_0)
-{
-  ForgingState   state = run.forging.start(run.leg, X_0);
-  ObjectiveTrace trace(run.objectives, run.model, process);
-  run.forging.replay(
-    process, run.records.size(), run.source(), state, [&](const IncrementEvent &event) { trace.add(event); });
-  return trace.values(state, false);
-}
-
 /// Central differences of all objectives, of fourth order: what cancels is far below what is left out.
 template <typename Values>
 std::vector<double> differences(const Values &at, const double h)
@@ -89,16 +78,16 @@ std::vector<double> differences(const Values &at, const double h)
 std::vector<Dual> tangent_in_speed(RecordedRun &run)
 {
   const auto constant = [](const Vec3 &v) { return Vector3<Dual>({Dual(v[0]), Dual(v[1]), Dual(v[2])}); };
-  auto       process  = converted<Dual>(run.process);
+  auto       process  = converted<Dual>(run.process());
   for (unsigned int i = 0; i < 3; ++i)
   {
-    Dual &v           = process.dies[process.leading_die].velocity[i];
+    Dual &v           = process.dies[process.operations[0].leading_die].velocity[i];
     v.fastAccessDx(0) = v.val();
   }
   NodalVectors<Dual> X;
   for (const Vec3 &x : run.scene.mesh.X)
     X.push_back(constant(x));
-  return tangent_sweep(run.recorded(), process, X);
+  return run.tangent(process, X);
 }
 
 int main(int argc, char **argv)
@@ -107,12 +96,11 @@ int main(int argc, char **argv)
   const Parameters                         parameters = tilted_block();
   const unsigned int                       upper      = 1;
   RecordedRun run(parameters, {parameters.dies[0].die(), parameters.dies[1].die()}, all_objectives(upper));
-  run.trace.values(run.forged, true); // those of the end choose their features
-  const auto sweep   = adjoint_sweep(run.recorded(), run.trace.rows(), run.forged, each(run.objectives));
-  const auto tangent = tangent_in_speed(run);
+  const auto  sweep   = run.sweep(each(run.objectives()));
+  const auto  tangent = tangent_in_speed(run);
 
   Random               random;
-  NodalVectors<double> X_dot(run.forged.X.size());
+  NodalVectors<double> X_dot(run.state().workpiece.X.size());
   for (Vec3 &x : X_dot)
     x = random.vector();
   const auto by_nodes = differences(
@@ -120,25 +108,26 @@ int main(int argc, char **argv)
       NodalVectors<double> X = run.scene.mesh.X;
       for (std::size_t k = 0; k < X.size(); ++k)
         X[k] += t * X_dot[k];
-      return replayed(run, run.process, X);
+      return run.replayed_values(run.process(), X);
     },
     2e-4);
   const auto by_speed = differences(
     [&](const double t) {
-      Process<double> process = run.process;
+      Process<double> process = run.process();
       process.dies[upper].velocity *= 1. + t;
-      return replayed(run, process, run.scene.mesh.X);
+      return run.replayed_values(process, run.scene.mesh.X);
     },
     1e-3);
 
   Errors errors, tangents;
-  for (std::size_t j = 0; j < run.objectives.size(); ++j)
+  for (std::size_t j = 0; j < run.objectives().size(); ++j)
   {
-    const std::string &name     = run.objectives[j].name;
+    const std::string &name     = run.objectives()[j].name;
     double             in_nodes = 0.;
     for (std::size_t k = 0; k < X_dot.size(); ++k)
-      in_nodes += X_dot[k] * sweep.of[j].X_0[k];
-    const double in_speed = sweep.of[j].process.dies[upper].velocity * run.process.dies[upper].velocity;
+      in_nodes += X_dot[k] * sweep.gradients[j].X_0[k];
+    const double in_speed =
+      sweep.gradients[j].process.dies[upper].velocity * run.process().dies[upper].velocity;
     tangents.compare(name + ", tangent", in_speed, tangent[j].dx(0));
     errors.compare(name + ", nodes", in_nodes, by_nodes[j]);
     errors.compare(name + ", speed", in_speed, by_speed[j]);

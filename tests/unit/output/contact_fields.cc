@@ -38,7 +38,7 @@ Parameters frictionless_block()
   p.contact.approach       = 1.;
   p.contact.penetration    = 1e-8;
   p.newton.tolerance       = 1e-11;
-  p.linear_solver.method   = "direct";
+  p.linear_solver.method   = LinearSolverParameters::Method::direct;
   return p;
 }
 
@@ -49,7 +49,7 @@ struct LastFields
       : run(p)
       , record(run.records.back())
       , X(positions_before(run))
-      , solved(run.leg->increment.recorded(run.process, X, {}, record))
+      , solved(run.first_epoch().increment.mechanics.recorded(run.process(), {X, {}}, record))
       , last(solved.last())
       , W(last.W)
       , fields(contact_fields(last.stage, W, last.active))
@@ -60,7 +60,7 @@ struct LastFields
   {
     NodalVectors<double> X = run.scene.mesh.X;
     for (std::size_t i = 0; i + 1 < run.records.size(); ++i)
-      X = run.leg->increment.recorded(run.process, X, {}, run.records[i]).X;
+      X = run.first_epoch().increment.mechanics.recorded(run.process(), {X, {}}, run.records[i]).X;
     return X;
   }
 
@@ -76,7 +76,7 @@ struct LastFields
 void homogeneous()
 {
   const LastFields          f(frictionless_block());
-  const NortonHoff<double> &law = f.run.process.material.law;
+  const NortonHoff<double> &law = f.run.process().material.law;
   const double r = speed / size, sigma = law.K * std::pow(3., (law.m + 1.) / 2.) * std::pow(r, law.m);
   Errors       errors;
   unsigned int inside = 0;
@@ -104,7 +104,7 @@ double pushing_force(const LastFields &f)
   double force = 0.;
   for (unsigned int p = 0; p < f.record.pairs.size(); ++p)
     if (const auto node = f.last.stage.contact_node(p, f.W, f.record.solves.back().active); node.active)
-      force += f.run.process.contact.rho * node.S * approach_excess(node);
+      force += f.run.process().contact.rho * node.S * approach_excess(node);
   return force;
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 // Proves: each row of the history is in the file when add() returns and reads back to the same bits, numbers
-// that are not finite included; a row cut short by a kill is passed over.
+// that are not finite included; a row cut short by a kill is passed over. Of the objectives, what is unknown
+// is left empty under its title.
 #include <retroforge/core/error.h>
 #include <retroforge/output/history.h>
+#include <retroforge/output/objective_history.h>
 #include <retroforge/output/safe_file.h>
 
 #include <cmath>
@@ -63,4 +65,11 @@ int main()
     {
       std::cout << error.what() << '\n';
     }
+
+  {
+    ObjectiveHistory objectives("objectives.csv");
+    objectives.add(1., {{"energy", 2.}, {"filling", std::nan("")}, {"filling: part", 3.}, {"volume", 4.}});
+    objectives.add(2., {{"energy", 5.}, {"filling", std::nan("")}, {"volume", 6.}});
+  }
+  std::cout << read_file("objectives.csv");
 }

@@ -83,6 +83,7 @@ namespace retroforge
     std::mt19937_64 random(i + 1);
     const auto      number = [&]() { return std::ldexp(static_cast<double>(random()) - 9e18, -60); };
     IncrementRecord increment;
+    increment.operation          = i / 3;
     increment.stroke             = 0.1 * i;
     increment.step               = 0.1;
     increment.cuts               = i % 3;
@@ -91,9 +92,10 @@ namespace retroforge
     increment.newton             = i + 1;
     increment.krylov             = 10 * i;
     increment.linear_solves      = i + 2;
-    increment.parameters         = i % 4 == 1 ? "set K = 1\nset n = " + std::to_string(i) + "\n" : "";
-    increment.scheme             = i % 2 == 0 ? "midpoint" : "euler";
-    increment.contact            = {number(), number(), number(), {number(), i % 2 == 0}, number()};
+    if (i % 4 == 1)
+      increment.parameters = "set K = 1\nset n = " + std::to_string(i) + "\n";
+    increment.scheme  = i % 2 == 0 ? "midpoint" : "euler";
+    increment.contact = {number(), number(), number(), {number(), i % 2 == 0}, number()};
     for (unsigned int d = 0; d < header.die_facets.size(); ++d)
       increment.forces.push_back(Vec3({number(), number(), number()}));
     for (NodeIndex k = 0; k < header.mesh.n_nodes(); k += 3)
@@ -174,8 +176,8 @@ namespace retroforge
 
   inline bool same(const IncrementRecord &a, const IncrementRecord &b)
   {
-    bool equal = same_bits(a.stroke, b.stroke) && same_bits(a.step, b.step) && a.cuts == b.cuts &&
-                 same_bits(a.deformation_energy, b.deformation_energy) &&
+    bool equal = a.operation == b.operation && same_bits(a.stroke, b.stroke) && same_bits(a.step, b.step) &&
+                 a.cuts == b.cuts && same_bits(a.deformation_energy, b.deformation_energy) &&
                  same_bits(a.friction_energy, b.friction_energy) && a.newton == b.newton &&
                  a.krylov == b.krylov && a.linear_solves == b.linear_solves &&
                  same_bits(a.forces, b.forces) && a.parameters == b.parameters && a.scheme == b.scheme &&

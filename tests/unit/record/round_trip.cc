@@ -84,7 +84,7 @@ int main()
   std::cout << "inputs: " << inputs.size() << ", the second from increment " << inputs[1].first
             << ", its own: " << yes(inputs[1].parameters == increments[1].parameters)
             << "; the record ends at stroke "
-            << yes(same_bits(RecordReader(folder).stroke(), increments[4].stroke + increments[4].step))
+            << yes(same_bits(RecordReader(folder).end().second, increments[4].stroke + increments[4].step))
             << '\n';
   RecordWriter::reopen(folder);
   std::cout << "reopened: unfinished " << yes(!RecordReader(folder).finished()) << ", all there "

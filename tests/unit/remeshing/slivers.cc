@@ -94,7 +94,7 @@ namespace
       const auto   record = remesher.remesh(mesh, mesh.X, {}, {}, allowed, timings);
       const double after = volume(record->mesh.cells, record->mesh.X), before = volume(mesh.cells, mesh.X);
       std::cout << "remeshed, " << allowed << " mm^3 allowed: " << n_flat(record->mesh)
-                << " flat cells left, taken away: " << yes(record->repaired > 0.)
+                << " flat cells left, taken away: " << yes(record->removed_volume > 0.)
                 << ", volume kept: " << yes(std::abs(after / before - 1.) < 1e-12) << "\n";
     }
   }

@@ -82,11 +82,11 @@ int main(int argc, char **argv)
   const CornerStage corner(random, 10.);
   const auto       &pairs = corner.contact.pairs;
   Field<double>     held  = corner.W;
-  hold_on_dies(corner.stage(), held);
+  project_onto_dies(corner.stage(), held);
   compare("any velocity", corner, corner.W, held);
 
   Field<double> stopped = corner.W;
-  stop_at_dies(corner.stage(), ActiveSet(pairs.size(), 0), stopped);
+  clip_to_dies(corner.stage(), ActiveSet(pairs.size(), 0), stopped);
   compare("after a step without contact", corner, corner.W, stopped);
 
   // Nodes that touch a die, straight into it.
@@ -102,7 +102,7 @@ int main(int argc, char **argv)
         touching.W.V[pairs[p].point.nodes[0]] -= (touching.W.V[pairs[p].point.nodes[0]] * n) * n;
     }
   Field<double> sticking = touching.W;
-  stop_at_dies(touching.stage(), ActiveSet(pairs.size(), 0), sticking);
+  clip_to_dies(touching.stage(), ActiveSet(pairs.size(), 0), sticking);
   std::vector<unsigned int> dies_of(corner.scene.mesh.n_nodes(), 0);
   for (const ContactPair &pair : pairs)
     dies_of[pair.point.nodes[0]] += pair.point.is_node();
@@ -122,7 +122,7 @@ int main(int argc, char **argv)
               yes(count == straight));
 
   Field<double> same = corner.W;
-  stop_at_dies(corner.stage(), corner.active, same);
+  clip_to_dies(corner.stage(), corner.active, same);
   double     change   = 0.;
   const auto V_before = corner.velocities(corner.W), V_after = corner.velocities(same);
   for (NodeIndex k = 0; k < V_after.size(); ++k)
@@ -154,7 +154,7 @@ int main(int argc, char **argv)
       const auto node = corner.stage().contact_node(p, pressed, {});
       velocity_of(p) -= (approach_excess(node) + 0.1) * node.n;
     }
-  hold_on_dies(corner.stage(), pressed);
+  project_onto_dies(corner.stage(), pressed);
   for (unsigned int p = 0; p < pairs.size(); ++p)
     if (chosen(p))
     {
@@ -178,7 +178,7 @@ int main(int argc, char **argv)
     for (unsigned int p = 0; p < pairs.size(); ++p)
       if (chosen(p))
         pulled.V[pairs[p].point.nodes[0]] -= 0.1 * corner.contact.projections[p].n;
-    const std::vector<char> on_die = hold_on_dies(corner.stage(), pulled, pressed_nodes);
+    const std::vector<char> on_die = project_onto_dies(corner.stage(), pulled, pressed_nodes);
     unsigned int            n      = 0;
     for (unsigned int p = 0; p < pairs.size(); ++p)
       n += chosen(p) && on_die[p] &&
@@ -194,7 +194,7 @@ int main(int argc, char **argv)
   CornerStage   stiff(third, 1e6);
   Field<double> leaning        = pressed;
   stiff.contact.edge_stiffness = 1e-6; // edges press with nodes that sink in, as softly as in a run
-  lean_on_dies(stiff.stage(), hold_on_dies(stiff.stage(), leaning), leaning);
+  apply_contact_pressure(stiff.stage(), project_onto_dies(stiff.stage(), leaning), leaning);
   Field<double> r = stiff.stage().residual(leaning, {});
   r.V.update_ghosts();
   double       unbalanced = 0.;

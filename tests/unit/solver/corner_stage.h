@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/solver/stage.h>
+#include <retroforge/solver/equilibrium.h>
 
 #include "../contact/wavy_sheet.h"
 #include "../element/element_test_tools.h"
@@ -49,7 +49,7 @@ namespace retroforge
       active  = stage().decide_active(W);
     }
 
-    Stage<double> stage() const { return {scene, physics, contact, X}; }
+    Equilibrium<double> stage() const { return {scene, physics, contact, X}; }
 
     /// Without what the plane of symmetry fixes; the same on any number of ranks.
     Field<double> random_field(Random &random) const

@@ -18,6 +18,7 @@
 #include <retroforge/solver/linear_system.h>
 
 #include "corner_stage.h"
+#include "methods.h"
 
 using namespace retroforge;
 
@@ -47,7 +48,7 @@ namespace
         field.P.at_place(i)                 = Dual(W.P.at_place(i));
         field.P.at_place(i).fastAccessDx(0) = x.P.at_place(i);
       }
-      const Field<Dual> r = Stage<Dual>(scene, dual, contact_dual, positions).residual(field, active);
+      const Field<Dual> r = Equilibrium<Dual>(scene, dual, contact_dual, positions).residual(field, active);
       Field<double>     r_dot(scene.discretization);
       for (unsigned int k = 0; k < r.V.size(); ++k)
         for (unsigned int i = 0; i < 3; ++i)
@@ -65,7 +66,7 @@ namespace
       for (unsigned int p = 0; p < pressed.size(); ++p)
         pressed[p] = pressed[p] && (edges || contact.pairs[p].point.is_node());
       LinearSolverParameters parameters;
-      parameters.method         = method;
+      parameters.method         = method_of(method);
       parameters.max_iterations = 2000;
       LinearSystem  system(scene, parameters, timings);
       Field<double> solution;

@@ -44,7 +44,7 @@ namespace
   void bubbles(const CornerStage &corner)
   {
     Field<double> settled = corner.W, recovered = corner.W;
-    settle_bubbles(corner.stage(), settled);
+    solve_bubbles(corner.stage(), settled);
     recover_bubbles(corner.stage(), recovered);
     double change = 0., size = 0.;
     for (const CellIndex c : corner.scene.discretization.visited_cells())
@@ -78,7 +78,8 @@ namespace
     const NewtonStatistics from_rest = solver.newton.solve(corner.stage(), W, {});
     const ActiveSet        active    = corner.stage().decide_active(W);
     Field<double>          again     = W;
-    const NewtonStatistics repeated  = solver.newton.solve(corner.stage(), again, {}, Start::near, active);
+    const NewtonStatistics repeated =
+      solver.newton.solve(corner.stage(), again, {}, Origin::previous, active);
     std::printf("penalty %g: from rest: %s, bubbles settled: %s, from its own solution: %s\n",
                 rho,
                 from_rest.residual <= solver.parameters.tolerance ? "solved" : "NOT SOLVED",
@@ -101,18 +102,18 @@ namespace
     constexpr double dt     = 2e-2;
     Field<double>    second = first;
     move(dt);
-    solver.newton.solve(corner.stage(), second, {}, Start::near, corner.stage().decide_active(first));
-    Guess guess{second, Start::near, second, dt};
-    guess.rate.add(-1., first);
-    for (Vec3 &v : guess.rate.V)
+    solver.newton.solve(corner.stage(), second, {}, Origin::previous, corner.stage().decide_active(first));
+    InitialGuess guess{second, Origin::previous, second, dt};
+    guess.rate->add(-1., first);
+    for (Vec3 &v : guess.rate->V)
       v *= 1. / dt;
-    for (double &p : guess.rate.P)
+    for (double &p : guess.rate->P)
       p *= 1. / dt;
     Field<double> start = second;
     guess.advance(dt, start);
     move(2. * dt);
     Field<double> third = second;
-    solver.newton.solve(corner.stage(), third, {}, Start::near, corner.stage().decide_active(second));
+    solver.newton.solve(corner.stage(), third, {}, Origin::previous, corner.stage().decide_active(second));
     const auto distance = [&](const Field<double> &W) {
       double     sum  = 0.;
       const auto of_W = corner.velocities(W), of_third = corner.velocities(third);
@@ -121,7 +122,7 @@ namespace
       return std::sqrt(sum);
     };
     std::printf("ahead: at most half as far: %s\n", yes(distance(start) < 0.5 * distance(second)));
-    Guess unknown{second};
+    InitialGuess unknown{second};
     unknown.advance(dt, second);
     std::printf("where no rate is known, as it was: %s\n", yes(distance(second) == distance(unknown.W)));
   }

@@ -4,7 +4,9 @@
 // The axes in which a node's velocities are solved for. Proved, for linear and for quadratic velocities: each
 // frame is orthonormal to rounding, however close to one another the normals that made it; the normal of a
 // symmetry plane is the first axis; and a die that holds a node has an axis of its own, also where the node
-// lies between it and a die that does not.
+// lies between it and a die that does not. In two and three dimensions, axes are completed to a basis, nearly
+// parallel directions are not taken twice, and momentum is tested so that a tangent couples the stiffest axis
+// with the others alike in both directions.
 
 #include <deal.II/base/mpi.h>
 
@@ -21,13 +23,55 @@ namespace
     return yes ? "yes" : "NO";
   }
 
-  double deviation(const NodeFrame &frame)
+  template <int dim>
+  double deviation(const VelocityFrame<dim> &frame)
   {
     double largest = 0.;
-    for (unsigned int i = 0; i < 3; ++i)
-      for (unsigned int j = 0; j < 3; ++j)
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int j = 0; j < dim; ++j)
         largest = std::max(largest, std::abs(frame.axes[i] * frame.axes[j] - (i == j ? 1. : 0.)));
     return largest;
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim> direction(Random &random)
+  {
+    dealii::Tensor<1, dim> x;
+    for (unsigned int i = 0; i < dim; ++i)
+      x[i] = random.scalar();
+    return x;
+  }
+
+  template <int dim>
+  void check_algebra()
+  {
+    Random random;
+    double deviations = 0., asymmetry = 0.;
+    bool   taken_once = true;
+    for (unsigned int n = 0; n < 200; ++n)
+    {
+      VelocityFrame<dim> frame;
+      frame.identity   = false;
+      const auto first = direction<dim>(random);
+      append_axis<dim>(frame.axes, 0, first);
+      taken_once =
+        taken_once && append_axis<dim>(frame.axes, 1, 2. * first + 1e-4 * direction<dim>(random)) == 1;
+      complete_axes(frame.axes, 1);
+      deviations  = std::max(deviations, deviation(frame));
+      frame.tests = frame.axes;
+      // In the axes; with the stiffest first.
+      dealii::Tensor<2, dim> tangent;
+      for (unsigned int i = 0; i < dim; ++i)
+        tangent[i] = direction<dim>(random);
+      tangent[0][0] = 7.;
+      choose_tests(tangent, frame);
+      const dealii::Tensor<2, dim> tested = frame.tests * transpose(frame.axes) * tangent;
+      for (unsigned int i = 1; i < dim; ++i)
+        asymmetry = std::max(asymmetry, std::abs(tested[i][0] - tested[0][i]));
+    }
+    std::cout << dim << "D, completed to 1e-14: " << answer(deviations < 1e-14)
+              << "; a direction is taken once: " << answer(taken_once)
+              << "; tested symmetrically: " << answer(asymmetry < 1e-13) << "\n";
   }
 
   bool symmetry_first(const CornerStage &corner, const std::vector<NodeFrame> &frames)
@@ -92,4 +136,6 @@ int main(int argc, char **argv)
               << "; nodes between two dies: " << answer(between > 3)
               << "; the holding die first there: " << answer(first) << "\n";
   }
+  check_algebra<2>();
+  check_algebra<3>();
 }

@@ -14,6 +14,7 @@
 #include <retroforge/solver/saddle_solver.h>
 
 #include "corner_stage.h"
+#include "methods.h"
 
 using namespace retroforge;
 using dealii::Utilities::MPI::sum;
@@ -85,7 +86,7 @@ namespace
   {
     Timings                timings;
     LinearSolverParameters parameters;
-    parameters.method = method;
+    parameters.method = method_of(method);
     SaddleSolver solver(corner.matrix.system(), parameters, timings);
     return solver.solve(right_hand_side(corner.matrix), tolerance, {}, Transposition::plain, x);
   }

@@ -15,6 +15,7 @@
 #include <retroforge/solver/saddle_solver.h>
 
 #include "corner_stage.h"
+#include "methods.h"
 
 using namespace retroforge;
 
@@ -75,7 +76,7 @@ namespace
     Pair(const SaddleSystem &system, const std::string &method, const la::BlockVector &b)
         : system(system), plain(b), transposed(b)
     {
-      parameters.method         = method;
+      parameters.method         = method_of(method);
       parameters.max_iterations = 2000;
       SaddleSolver solver(system, parameters, timings);
       solver.solve(b, 1e-12, {}, Transposition::plain, plain);

@@ -20,6 +20,7 @@
 #include "../contact/wavy_sheet.h"
 #include "../element/element_test_tools.h"
 #include "../mesh/block_mesh.h"
+#include "methods.h"
 
 using namespace retroforge;
 
@@ -74,7 +75,7 @@ namespace
                                       {ramp, Number(0.4), 0.3, 0.3});
     }
 
-    Stage<double> stage() const { return {scene, physics, contact, X}; }
+    Equilibrium<double> stage() const { return {scene, physics, contact, X}; }
 
     /// Without what the plane of symmetry fixes.
     Field<double> random_field(Random &random) const
@@ -107,7 +108,7 @@ namespace
     Solver(const Scene &scene, const std::string &method)
         : system(scene, linear, timings), newton(scene, parameters, system)
     {
-      linear.method         = method;
+      linear.method         = method_of(method);
       linear.max_iterations = 2000;
       parameters.tolerance  = 1e-8;
     }
@@ -137,11 +138,11 @@ namespace
     const Physics<Dual> physics = converted<Dual>(block.physics);
     NodalVectors<Dual>  X;
     convert(block.X, X);
-    const ContactSet<Dual> contact = block.contact_of(physics, X);
-    const Stage<Dual>      stage(block.scene, physics, contact, X);
-    Field<Dual>            at(block.scene.discretization);
-    Field<double>          derivative(block.scene.discretization);
-    const auto             along = [](const double value, const double dot) {
+    const ContactSet<Dual>  contact = block.contact_of(physics, X);
+    const Equilibrium<Dual> stage(block.scene, physics, contact, X);
+    Field<Dual>             at(block.scene.discretization);
+    Field<double>           derivative(block.scene.discretization);
+    const auto              along = [](const double value, const double dot) {
       Dual x(1, value);
       x.fastAccessDx(0) = dot;
       return x;

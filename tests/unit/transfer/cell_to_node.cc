@@ -13,6 +13,7 @@
 #include "../mesh/mesh_test_tools.h"
 #include "../random_numbers.h"
 #include <retroforge/core/dual.h>
+#include <retroforge/geometry/vector_algebra.h>
 #include <retroforge/transfer/cell_to_node.h>
 
 #include <algorithm>
@@ -39,14 +40,6 @@ double lumped_integral(const TetMesh &mesh, const std::vector<double> &q_k)
 }
 
 double dot(const std::vector<double> &a, const std::vector<double> &b)
-{
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    sum += a[i] * b[i];
-  return sum;
-}
-
-double dot(const NodalVectors<double> &a, const NodalVectors<double> &b)
 {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i)

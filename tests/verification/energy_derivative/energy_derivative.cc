@@ -45,9 +45,9 @@ namespace
   }
 
   /// The equilibrium at the start of the press.
-  struct Equilibrium
+  struct Solved
   {
-    explicit Equilibrium(const double element_size)
+    explicit Solved(const double element_size)
         : parameters(cube(element_size))
         , scene(make_billet(parameters.billet, MPI_COMM_WORLD),
                 {},
@@ -84,21 +84,21 @@ namespace
       NodalVectors<double> X_bar(scene.mesh.n_nodes());
       ContactSetBar        contact_bar(contact.pairs.size());
       PhysicsBar           physics_bar(scene.dies);
-      StageBar             bar{W_bar, X_bar, contact_bar, physics_bar};
+      EquilibriumBar       bar{W_bar, X_bar, contact_bar, physics_bar};
       reverse_power({stage, W, active}, 1., 1., bar);
       return W_bar.V.complete(*scene.discretization.condensed_nodes());
     }
 
-    Parameters         parameters;
-    Timings            timings;
-    Scene              scene;
-    StepModel          model;
-    Process<double>    process;
-    Physics<double>    physics;
-    ContactSet<double> contact;
-    Stage<double>      stage;
-    Field<double>      W;
-    ActiveSet          active;
+    Parameters          parameters;
+    Timings             timings;
+    Scene               scene;
+    StepModel           model;
+    Process<double>     process;
+    Physics<double>     physics;
+    ContactSet<double>  contact;
+    Equilibrium<double> stage;
+    Field<double>       W;
+    ActiveSet           active;
   };
 
   Vector3<Dual> dual(const Vec3 &v)
@@ -124,7 +124,7 @@ namespace
   /// Runs over all cells and contact nodes; `cell(geometry, w, a, i)` and `node(contact node, i)` are the
   /// derivatives of one of them in one velocity component.
   template <typename OfCell, typename OfNode>
-  NodalVectors<double> gather(const Equilibrium &e, const OfCell &cell, const OfNode &node)
+  NodalVectors<double> gather(const Solved &e, const OfCell &cell, const OfNode &node)
   {
     const TetMesh       &mesh = e.scene.mesh;
     NodalVectors<double> slope(mesh.n_nodes());
@@ -141,7 +141,7 @@ namespace
     return slope;
   }
 
-  NodalVectors<double> by_automatic_differentiation(const Equilibrium &e)
+  NodalVectors<double> by_automatic_differentiation(const Solved &e)
   {
     const auto law     = converted<Dual>(e.physics.material.law);
     const auto contact = converted<Dual>(e.physics.contact);
@@ -172,7 +172,7 @@ namespace
   }
 
   /// Forward differences of the elements' powers, as the thesis forms them.
-  NodalVectors<double> by_local_differences(const Equilibrium &e, const double step)
+  NodalVectors<double> by_local_differences(const Solved &e, const double step)
   {
     return gather(
       e,
@@ -191,7 +191,7 @@ namespace
       });
   }
 
-  NodalVectors<double> by_global_differences(const Equilibrium &e, const double step)
+  NodalVectors<double> by_global_differences(const Solved &e, const double step)
   {
     NodalVectors<double> slope(e.scene.mesh.n_nodes());
     const double         here = e.power(e.W);
@@ -227,8 +227,8 @@ namespace
 
   void print_accuracy(const double element_size)
   {
-    const Equilibrium e(element_size);
-    const auto        exact = by_automatic_differentiation(e);
+    const Solved e(element_size);
+    const auto   exact = by_automatic_differentiation(e);
     std::printf("nodes %u\ndefault %.3e\n", e.scene.mesh.n_nodes(), difference(e.derivative(), exact));
     for (int exponent = 2; exponent <= 24; ++exponent)
     {
@@ -239,7 +239,7 @@ namespace
 
   void print_time(const double element_size)
   {
-    const Equilibrium   e(element_size);
+    const Solved        e(element_size);
     std::vector<double> times;
     for (unsigned int i = 0; i < 21; ++i)
       times.push_back(seconds([&] { e.derivative(); }));

@@ -159,7 +159,7 @@ int main(int argc, char **argv)
   const int         n    = std::stoi(argv[3]);
 
   BilletParameters billet;
-  billet.shape        = "cylinder";
+  billet.shape        = BilletParameters::Shape::cylinder;
   billet.radius       = 20.;
   billet.height       = height;
   billet.element_size = size;
@@ -173,14 +173,15 @@ int main(int argc, char **argv)
         h += (mesh.X[cell[a]] - mesh.X[cell[b]]).norm() / (6. * mesh.n_cells());
 
   RemesherParameters parameters;
-  parameters.when   = "increments";
-  parameters.method = "local";
+  parameters.when   = RemesherParameters::When::increments;
+  parameters.method = RemesherParameters::Method::local;
   const std::vector<Die> dies;
   Timings                timings;
   mesh = Remesher(parameters, h, dies, mesh.patches, MPI_COMM_WORLD)
            .remesh(mesh, mesh.X, {}, {}, 0., timings)
            ->mesh;
-  parameters.method = method;
+  parameters.method =
+    method == "rebuild" ? RemesherParameters::Method::rebuild : RemesherParameters::Method::local;
   const Remesher remesher(parameters, h, dies, mesh.patches, MPI_COMM_WORLD);
 
   Study                study{1. * n};

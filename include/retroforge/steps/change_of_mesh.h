@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/record/increment_record.h>
+#include <retroforge/steps/workpiece_state.h>
+
+/// @file
+/// The step that takes the workpiece from one mesh to the next. What happens to a member of the state follows
+/// from its kind: positions X' = J X + c, one number per node q' = J q, one per cell transfer_cells().
+namespace retroforge
+{
+  /// Takes a member of the state to the new mesh, each kind by its overload; on dual numbers its tangent.
+  template <typename Number>
+  struct MemberTransfer
+  {
+    const TetMesh              &old_mesh;
+    const RemeshRecord         &remesh;
+    const NodalVectors<Number> &X; ///< on the old mesh
+
+    void operator()(const NodalVectors<Number> &positions, NodalVectors<Number> &to) const;
+    void operator()(const NodeField<Number> &q, NodeField<Number> &to) const;
+    void operator()(const CellField<Number> &q, CellField<Number> &to) const;
+  };
+
+  /// The reverse of it: from a member of the costate on the new mesh to that on the old one. Positions come
+  /// before cells, which add to them by way of the volumes that they were weighed with.
+  struct ReverseMemberTransfer
+  {
+    const TetMesh              &old_mesh;
+    const RemeshRecord         &remesh;
+    const NodalVectors<double> &X;     ///< on the old mesh
+    NodalVectors<double>       &X_bar; ///< there
+
+    /// @param q      the member on the old mesh
+    /// @param q_bar  its costate on the new mesh
+    void operator()(const NodalVectors<double> &q,
+                    const NodalVectors<double> &q_bar,
+                    NodalVectors<double>       &to) const;
+    void operator()(const NodeField<double> &q, const NodeField<double> &q_bar, NodeField<double> &to) const;
+    void operator()(const CellField<double> &q, const CellField<double> &q_bar, CellField<double> &to) const;
+  };
+
+  /// Returns the state on the new mesh; on dual numbers its tangent.
+  template <typename Number>
+  WorkpieceState<3, Number>
+  change_mesh(const TetMesh &old_mesh, const RemeshRecord &remesh, const WorkpieceState<3, Number> &before)
+  {
+    AssertDimension(remesh.transfer.n_old, old_mesh.n_nodes());
+    AssertDimension(remesh.transfer.n_new(), remesh.mesh.n_nodes());
+    AssertDimension(before.X.size(), old_mesh.n_nodes());
+    WorkpieceState<3, Number> after;
+    internal::for_each_member(MemberTransfer<Number>{old_mesh, remesh, before.X}, before, after);
+    return after;
+  }
+
+  /// Returns the costate on the old mesh of one on the new mesh: the reverse of change_mesh().
+  /// @param before  the state on the old mesh
+  inline WorkpieceState<3, double> reverse_change_mesh(const TetMesh                   &old_mesh,
+                                                       const RemeshRecord              &remesh,
+                                                       const WorkpieceState<3, double> &before,
+                                                       const WorkpieceState<3, double> &costate)
+  {
+    AssertDimension(before.X.size(), old_mesh.n_nodes());
+    AssertDimension(costate.X.size(), remesh.mesh.n_nodes());
+    WorkpieceState<3, double> there;
+    internal::for_each_member(
+      ReverseMemberTransfer{old_mesh, remesh, before.X, there.X}, before, costate, there);
+    return there;
+  }
+} // namespace retroforge

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/core/numbers.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace retroforge
+{
+  /// Positions of the nodes, in the geometry space [mm]. At a change of mesh they follow  X' = J X + c.
+  template <int dim, typename Number>
+  using NodalPositions = std::vector<dealii::Tensor<1, dim, Number>>;
+
+  /// One number per node. At a change of mesh it follows  q' = J q.
+  template <typename Number>
+  struct NodeField : std::vector<Number>
+  {
+    using std::vector<Number>::vector;
+    NodeField(std::vector<Number> values) : std::vector<Number>(std::move(values)) {}
+  };
+
+  /// One number per cell. At a change of mesh it follows transfer_cells().
+  template <typename Number>
+  struct CellField : std::vector<Number>
+  {
+    using std::vector<Number>::vector;
+    CellField(std::vector<Number> values) : std::vector<Number>(std::move(values)) {}
+  };
+
+  /// What flows from increment to increment, and nothing else: complete on every rank. The derivatives of a
+  /// scalar in it, its costate, are another such aggregate. Each member tells by its type how it reaches
+  /// another mesh (steps/change_of_mesh.h).
+  template <int dim, typename Number>
+  struct WorkpieceState
+  {
+    NodalPositions<dim, Number> X;      ///< [mm]
+    CellField<Number>           strain; ///< accumulated equivalent strain q, dimensionless
+
+    template <typename Self>
+    static auto members(Self &self)
+    {
+      auto &[X, strain] = self;
+      return std::tie(X, strain);
+    }
+  };
+
+  /// Returns metal in its initial state: X is where its nodes are, and it has no history.
+  template <int dim, typename Number>
+  WorkpieceState<dim, Number> initial_state(NodalPositions<dim, Number> X, const std::size_t n_cells)
+  {
+    return {std::move(X), CellField<Number>(n_cells, Number(0.))};
+  }
+
+  /// Returns zero derivatives in the state of a mesh.
+  template <int dim>
+  WorkpieceState<dim, double> zero_costate(const std::size_t n_nodes, const std::size_t n_cells)
+  {
+    return {NodalPositions<dim, double>(n_nodes), CellField<double>(n_cells, 0.)};
+  }
+
+  /// Returns what of a state does not follow from the velocities that are recorded: all but the positions.
+  template <int dim>
+  WorkpieceState<dim, double> without_positions(WorkpieceState<dim, double> state)
+  {
+    state.X.clear();
+    return state;
+  }
+
+  /// Returns whether an objective, and what came after, take nothing from a field.
+  inline bool is_zero(const std::vector<double> &field)
+  {
+    return std::all_of(field.begin(), field.end(), [](const double x) { return x == 0.; });
+  }
+} // namespace retroforge

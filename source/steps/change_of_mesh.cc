@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/steps/change_of_mesh.h>
+#include <retroforge/transfer/cell_transfer.h>
+
+namespace retroforge
+{
+  template <typename Number>
+  void MemberTransfer<Number>::operator()(const NodalVectors<Number> &positions,
+                                          NodalVectors<Number>       &to) const
+  {
+    to = remesh.transfer.positions(positions);
+  }
+
+  template <typename Number>
+  void MemberTransfer<Number>::operator()(const NodeField<Number> &q, NodeField<Number> &to) const
+  {
+    to = remesh.transfer.apply<Number>(q);
+  }
+
+  template <typename Number>
+  void MemberTransfer<Number>::operator()(const CellField<Number> &q, CellField<Number> &to) const
+  {
+    to = transfer_cells<Number>(old_mesh, X, remesh.transfer, remesh.mesh, q);
+  }
+
+  template struct MemberTransfer<double>;
+  template struct MemberTransfer<Dual>;
+
+  void ReverseMemberTransfer::operator()(const NodalVectors<double> &,
+                                         const NodalVectors<double> &q_bar,
+                                         NodalVectors<double>       &to) const
+  {
+    to = remesh.transfer.apply_transpose(q_bar);
+  }
+
+  void ReverseMemberTransfer::operator()(const NodeField<double> &,
+                                         const NodeField<double> &q_bar,
+                                         NodeField<double>       &to) const
+  {
+    to = remesh.transfer.apply_transpose<double>(q_bar);
+  }
+
+  void ReverseMemberTransfer::operator()(const CellField<double> &q,
+                                         const CellField<double> &q_bar,
+                                         CellField<double>       &to) const
+  {
+    to.assign(old_mesh.n_cells(), 0.);
+    if (!is_zero(q_bar))
+      reverse_transfer_cells(old_mesh, X, remesh.transfer, remesh.mesh, q, q_bar, to, X_bar);
+  }
+} // namespace retroforge

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// The step that takes the workpiece to another mesh, on an upset cylinder that is remeshed.
+// - The state: positions are those of the new mesh, strain is transfer_cells(), constants stay.
+// - <A x_dot, y> = <x_dot, A^T y> of the state, A from dual numbers; and of an aggregate of all kinds of
+//   members, positions, one number per node, one per cell, for each kind alone and all together.
+// - No derivatives in a field: none arrive, and none are computed.
+
+#include <deal.II/base/mpi.h>
+
+#include "../mesh/mesh_test_tools.h"
+#include "../random_numbers.h"
+#include <retroforge/remeshing/local_remesher.h>
+#include <retroforge/steps/change_of_mesh.h>
+#include <retroforge/transfer/cell_transfer.h>
+
+#include <cmath>
+#include <iostream>
+
+using namespace retroforge;
+
+namespace
+{
+  RandomNumbers numbers;
+
+  /// Members of every kind.
+  template <typename Number>
+  struct Everything
+  {
+    NodalVectors<Number> X;
+    NodeField<Number>    at_nodes;
+    CellField<Number>    in_cells;
+
+    template <typename Self>
+    static auto members(Self &self)
+    {
+      auto &[X, at_nodes, in_cells] = self;
+      return std::tie(X, at_nodes, in_cells);
+    }
+  };
+
+  struct Meshes
+  {
+    TetMesh              old_mesh;
+    NodalVectors<double> X;
+    RemeshRecord         remesh;
+  };
+
+  Meshes upset_cylinder()
+  {
+    constexpr double size = 6., f = 0.7;
+    Meshes           meshes;
+    meshes.old_mesh =
+      billet({{"shape", "cylinder"}, {"radius", "20"}, {"height", "30"}, {"element size", "6"}});
+    meshes.X = meshes.old_mesh.X;
+    for (Vec3 &x : meshes.X)
+      x = Vec3({x[0] / std::sqrt(f), x[1] / std::sqrt(f), f * x[2]});
+    RemeshedMesh made      = remesh_locally(meshes.old_mesh, meshes.X, [](const Vec3 &) { return size; }, {});
+    meshes.remesh.X_before = meshes.X;
+    meshes.remesh.mesh     = std::move(made.mesh);
+    meshes.remesh.transfer = make_transfer(meshes.old_mesh, meshes.X, meshes.remesh.mesh, made.old_node);
+    return meshes;
+  }
+
+  template <typename Aggregate>
+  Aggregate randomised(Aggregate of_shape)
+  {
+    for_each_number([](double &x) { x = numbers.scalar(); }, of_shape);
+    return of_shape;
+  }
+
+  template <typename Aggregate>
+  double dot(const Aggregate &a, const Aggregate &b)
+  {
+    double sum = 0.;
+    for_each_number([&](const double &x, const double &y) { sum += x * y; }, a, b);
+    return sum;
+  }
+
+  /// The difference of two sums, over the sum of the absolute products of the first.
+  template <typename Aggregate>
+  double defect(const Aggregate &a, const Aggregate &b, const double other)
+  {
+    double size = 0.;
+    for_each_number([&](const double &x, const double &y) { size += std::abs(x * y); }, a, b);
+    return std::abs(dot(a, b) - other) / size;
+  }
+
+  template <template <typename> class Aggregate>
+  Aggregate<Dual> along(const Aggregate<double> &at, const Aggregate<double> &direction)
+  {
+    Aggregate<Dual> dual;
+    convert(at, dual);
+    for_each_number([](Dual &x, const double &x_dot) { x.fastAccessDx(0) = x_dot; }, dual, direction);
+    return dual;
+  }
+
+  template <typename To, typename From>
+  To dots(const From &dual, To of_shape)
+  {
+    for_each_number([](const Dual &x, double &x_dot) { x_dot = x.dx(0); }, dual, of_shape);
+    return of_shape;
+  }
+
+  template <typename Number>
+  using State = WorkpieceState<3, Number>;
+
+  /// |<A x_dot, y> - <x_dot, A^T y>|, relative.
+  double defect_of_state(const Meshes &meshes)
+  {
+    const TetMesh &old_mesh = meshes.old_mesh, &new_mesh = meshes.remesh.mesh;
+    auto           at = randomised(zero_costate<3>(old_mesh.n_nodes(), old_mesh.n_cells()));
+    at.X              = meshes.X;
+    const auto dir = randomised(at), y = randomised(zero_costate<3>(new_mesh.n_nodes(), new_mesh.n_cells()));
+    const auto after = change_mesh(old_mesh, meshes.remesh, along<State>(at, dir));
+    return defect(dots(after, y), y, dot(dir, reverse_change_mesh(old_mesh, meshes.remesh, at, y)));
+  }
+
+  Everything<double> everything(const TetMesh &mesh)
+  {
+    return randomised(Everything<double>{NodalVectors<double>(mesh.n_nodes()),
+                                         NodeField<double>(mesh.n_nodes()),
+                                         CellField<double>(mesh.n_cells())});
+  }
+
+  /// The same with some of the derivatives that come in put to zero.
+  template <typename Keep>
+  double defect_of_kinds(const Meshes &meshes, const Keep &keep)
+  {
+    auto at        = everything(meshes.old_mesh);
+    at.X           = meshes.X;
+    const auto dir = everything(meshes.old_mesh);
+    auto       y   = everything(meshes.remesh.mesh);
+    keep(y);
+    const auto         dual = along<Everything>(at, dir);
+    Everything<Dual>   after;
+    Everything<double> bar;
+    internal::for_each_member(MemberTransfer<Dual>{meshes.old_mesh, meshes.remesh, dual.X}, dual, after);
+    internal::for_each_member(ReverseMemberTransfer{meshes.old_mesh, meshes.remesh, at.X, bar.X}, at, y, bar);
+    return defect(dots(after, y), y, dot(dir, bar));
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const Meshes                             meshes   = upset_cylinder();
+  const TetMesh                           &old_mesh = meshes.old_mesh, &new_mesh = meshes.remesh.mesh;
+
+  auto before = initial_state<3>(meshes.X, old_mesh.n_cells());
+  before.strain.assign(old_mesh.n_cells(), 0.25);
+  const auto after    = change_mesh(old_mesh, meshes.remesh, before);
+  double     farthest = 0., largest = 0.;
+  for (NodeIndex k = 0; k < new_mesh.n_nodes(); ++k)
+    farthest = std::max(farthest, (after.X[k] - new_mesh.X[k]).norm());
+  for (const double q : after.strain)
+    largest = std::max(largest, std::abs(q - 0.25));
+  std::cout << "positions are those of the new mesh: " << yes(farthest < 1e-12) << "\n"
+            << "a constant strain stays, in each new cell: "
+            << yes(after.strain.size() == new_mesh.n_cells() && largest < 1e-14) << "\n";
+  before.strain = randomised(before.strain);
+  std::cout << "strain by transfer_cells: "
+            << yes(
+                 change_mesh(old_mesh, meshes.remesh, before).strain ==
+                 transfer_cells<double>(old_mesh, before.X, meshes.remesh.transfer, new_mesh, before.strain))
+            << "\n";
+
+  const auto small = [](const double defect) { return yes(defect < 1e-14); };
+  const auto none  = [](auto &field) { for_each_number([](double &x) { x = 0.; }, field); };
+  std::cout << "dot product, state: " << small(defect_of_state(meshes)) << "\n"
+            << "dot product, all kinds: " << small(defect_of_kinds(meshes, [](auto &) {})) << "\n"
+            << "positions alone: "
+            << small(defect_of_kinds(meshes,
+                                     [&](auto &y) {
+                                       none(y.at_nodes);
+                                       none(y.in_cells);
+                                     }))
+            << "\nnodes alone: "
+            << small(defect_of_kinds(meshes,
+                                     [&](auto &y) {
+                                       none(y.X);
+                                       none(y.in_cells);
+                                     }))
+            << "\ncells alone: "
+            << small(defect_of_kinds(meshes,
+                                     [&](auto &y) {
+                                       none(y.X);
+                                       none(y.at_nodes);
+                                     }))
+            << "\n";
+  const auto nothing = reverse_change_mesh(
+    old_mesh, meshes.remesh, before, zero_costate<3>(new_mesh.n_nodes(), new_mesh.n_cells()));
+  std::cout << "nothing comes of nothing: " << yes(dot(nothing, nothing) == 0.)
+            << ", in each old cell: " << yes(nothing.strain.size() == old_mesh.n_cells()) << "\n";
+}
