@@ -94,8 +94,7 @@ namespace retroforge
                         parameters_.dies,
                         scene.nominal,
                         parameters_.open_contact(scene.size()),
-                        scene.first,
-                        parameters_.press.stroke);
+                        scene.first);
     const std::vector<double>      mu     = design.at(parameters_.design.at);
     const std::vector<std::string> listed = design.expanded(parameters_.design.names);
     std::set<std::string>          folders;
