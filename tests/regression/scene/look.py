@@ -148,9 +148,9 @@ def gaps():
 
 
 def covers():
-    """By hand: of the quarter's 5 mm x 5 mm the pyramid's base, 4 mm x 4 mm around (1.5, 2), has 3.5 x 4 over it."""
-    for name, at, part in (("more than half", (0, 0), 3.5 * 4 / 25), ("a corner", (3, 2), 1.5 * 3 / 25), ("hardly", (4.2, 4.2), 1.3 * 0.8 / 25)):
-        done, scene = look(f"a pyramid covers {name}", *pyramid(12, [f"Die upper/point={at[0]}, {at[1]}, 12", "Press/stroke=5"]))
+    """By hand: the pyramid's base, 8 mm x 8 mm around (1.5, 2), has all of the quarter's 5 mm x 5 mm below it; moved, a corner of that."""
+    for name, at, part in (("all", (0, 0), 1), ("most", (3, 2), 4.5 * 5 / 25), ("a third", (4.2, 4.2), 3.3 * 2.8 / 25), ("a corner", (6.5, 5.8), 1.2 / 25)):
+        done, scene = look(f"a pyramid covers {name}", *pyramid(12, [f"Die upper/point={at[0]}, {at[1]}, 12", "Press/stroke=6"]))
         upper = die_of(scene, "upper")
         same("the part it covers", upper["covered"], part, 1e-6)
         told = f"covers {float(f'{100 * part:.3g}'):g} % of the billet's side that faces it"

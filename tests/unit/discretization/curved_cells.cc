@@ -3,10 +3,9 @@
 
 // Cells of quadratic geometry on Discretization<2>: a quarter of a ring between circles of radius 1 and 2, of
 // which all nodes of the positions lie on their circles. Proved:
-// - with P2-P1 the area is found with order 4, where straight cells have order 2, and so have powers: a flow
-// of
-//   a power law that spreads from the middle, v = e_r / r, is held at the inner circle and free at the outer
-//   one;
+// - with P2-P1 the area is found with order 4, where straight cells have order 2;
+// - so is the power of a flow of a power law that spreads from the middle, v = e_r / r, which is held at the
+//   inner circle and free at the outer one;
 // - of both pairs, derivatives by all nodes of the positions, and by the vertices of straight cells, are each
 //   the transpose of what dual numbers say along a direction.
 

@@ -85,17 +85,16 @@ namespace
     return mesh;
   }
 
-  /// A box whose sides x = 0 and z = 0 are planes of symmetry, turned about y by 0.4, then about x by 0.3:
-  /// the directions that both hold are not in a plane of coordinates.
+  /// A box whose sides x = 0 and z = 0 are planes of symmetry, turned about x by 0.3, then about y by 0.4:
+  /// where they meet, constraints of single components are not orthogonal.
   TetMesh turned_box()
   {
     TetMesh mesh      = kuhn_box(4, 0.1);
     mesh.patches      = {{"free", {}}, {"x", Plane{}}, {"z", Plane{}}};
     const auto turned = [](const Vec3 &x) {
-      const double z = -std::sin(0.4) * x[0] + std::cos(0.4) * x[2];
-      return Vec3({std::cos(0.4) * x[0] + std::sin(0.4) * x[2],
-                   std::cos(0.3) * x[1] - std::sin(0.3) * z,
-                   std::sin(0.3) * x[1] + std::cos(0.3) * z});
+      const double y = std::cos(0.3) * x[1] - std::sin(0.3) * x[2],
+                   z = std::sin(0.3) * x[1] + std::cos(0.3) * x[2];
+      return Vec3({std::cos(0.4) * x[0] + std::sin(0.4) * z, y, -std::sin(0.4) * x[0] + std::cos(0.4) * z});
     };
     for (BoundaryFace &face : mesh.faces)
     {

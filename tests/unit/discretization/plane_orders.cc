@@ -232,7 +232,7 @@ int main(int argc, char **argv)
         const auto print = [&](const std::string &what, const double expected, double FlowErrors::*error) {
           const double order = std::log2(coarse.*error / fine.*error);
           std::cout << "  " << what << ", order " << expected << ": "
-                    << (order > expected - 0.2 ? "yes" : "NO") << ", " << order << std::endl;
+                    << (order > expected - 0.2 ? "yes" : "NO, " + std::to_string(order)) << std::endl;
         };
         print("velocity", mini ? 2. : 3., &FlowErrors::velocity);
         print("gradient", mini ? 1. : 2., &FlowErrors::gradient);
