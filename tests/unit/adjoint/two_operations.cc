@@ -179,7 +179,7 @@ int main(int argc, char **argv)
   });
   run.values();
   std::cout << "strokes and times go on: " << yes(goes_on) << ", to " << stroke
-            << " mm, left: " << yes(run.is_left()) << "\n";
+            << " mm, none left: " << yes(!run.is_left()) << "\n";
   check_restored(run, p, run.state().increments - 1);
   check_derivatives(run);
 }
