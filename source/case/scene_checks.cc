@@ -410,12 +410,15 @@ namespace retroforge
     const MetalSurface       metal = billet_surface(parameters.billet, scene.mesh, X, 0.2 * near);
     std::vector<DieApproach> approaches(scene.dies.size());
     for (const unsigned int d : process.operations.front().dies)
+    {
+      AssertIndexRange(d, approaches.size());
       approaches[d] = find_approach(scene.dies[d],
                                     process.dies[d].displacement,
                                     process.dies[d].velocity,
                                     parameters.dies[d].facing,
                                     metal,
                                     near);
+    }
     return approaches;
   }
 

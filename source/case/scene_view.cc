@@ -156,14 +156,20 @@ namespace retroforge
     }
     parts.process = parameters.process(size);
     lead(parts);
-    const auto asked  = std::exchange(parameters.dies, {});
-    const auto states = std::exchange(parts.process.dies, {});
+    const auto                asked  = std::exchange(parameters.dies, {});
+    const auto                states = std::exchange(parts.process.dies, {});
+    std::vector<unsigned int> made(asked.size(), invalid_index); // their numbers among those that can be made
     for (unsigned int d = 0; d < asked.size(); ++d)
       attempt([&]() {
         parts.dies.push_back(asked[d].die());
         parameters.dies.push_back(asked[d]);
         parts.process.dies.push_back(states[d]);
+        made[d] = parts.dies.size() - 1;
       });
+    for (Operation<double> &operation : parts.process.operations)
+      for (const unsigned int d : std::exchange(operation.dies, {}))
+        if (made[d] != invalid_index)
+          operation.dies.push_back(made[d]);
     parts_ = std::move(parts);
   }
 
