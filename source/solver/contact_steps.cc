@@ -96,8 +96,10 @@ namespace retroforge
   std::vector<char>
   project_onto_dies(const Equilibrium<double> &stage, Field<double> &W, const ActiveChoice &pressed)
   {
-    const auto       &pairs = stage.contact.pairs;
-    std::vector<char> held  = pressed.is_given() ? *pressed : pressed_by_metal(stage, W);
+    const auto &pairs = stage.contact.pairs;
+    Assert(pressed.fits(pairs.size()),
+           dealii::ExcMessage("a choice of active contacts has an entry for each pair"));
+    std::vector<char> held = pressed.is_given() ? *pressed : pressed_by_metal(stage, W);
     for (unsigned int sweep = 0; sweep < sweeps; ++sweep)
       for (unsigned int p = 0; p < pairs.size(); ++p)
         if (pairs[p].point.has_own_velocity())

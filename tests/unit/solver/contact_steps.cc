@@ -171,7 +171,7 @@ int main(int argc, char **argv)
   ActiveSet said(pairs.size(), 0);
   for (unsigned int p = 0; p < pairs.size(); ++p)
     said[p] = chosen(p);
-  const auto n_held = [&](const ActiveSet &pressed_nodes) {
+  const auto n_held = [&](const ActiveChoice &pressed_nodes) {
     Field<double> pulled = pressed;
     for (double &pressure : pulled.P)
       pressure = -50.;
