@@ -154,8 +154,12 @@ namespace retroforge
       size    = parameters.size_of(*parts.mesh);
       attempt([&]() { parameters.resolve_defaults(size); });
     }
-    parts.process = parameters.process(size);
-    lead(parts);
+    // Laws and motions are found by name here.
+    if (!attempt([&]() {
+          parts.process = parameters.process(size);
+          lead(parts);
+        }))
+      return;
     const auto                asked  = std::exchange(parameters.dies, {});
     const auto                states = std::exchange(parts.process.dies, {});
     std::vector<unsigned int> made(asked.size(), invalid_index); // their numbers among those that can be made
