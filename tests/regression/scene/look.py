@@ -194,6 +194,8 @@ REFUSED = {
     "no symmetry, no friction": (["Billet/symmetry planes=", "Die lower/friction=0", "Die upper/friction=0"], r"free", BOTH, True),
     "unknown design parameter": (["Design/parameters=material/L"], r"material/L", BOTH, True),
     "unknown patch of an objective": (["Objectives/names=cylinder distance", "Objective cylinder distance/patches=side"], r"patches", BOTH, True),
+    "unknown law of the metal": (["Material/law=lower"], r"Material/law", [], False),
+    "unknown motion of the press": (["Press/motion=crank"], r"Press/motion", [], False),
     "unknown setting": (["Press/strok=3"], r"Press/strok", [], False),
     "die without section": (["Dies/names=lower, upper, third"], r"[Dd]ie third", [], False),
 }
