@@ -10,14 +10,14 @@ namespace retroforge
     constexpr unsigned int n_law_numbers = sizeof(MaterialLaw<double>) / sizeof(double);
 
     template <int dim>
-    constexpr unsigned int n_state_numbers = sizeof(PointState<dim, double>) / sizeof(double);
+    constexpr unsigned int n_state_numbers = sizeof(PointFlow<dim, double>) / sizeof(double);
 
     /// Carries the derivatives in a point's state, then in the numbers of the law.
     template <int dim>
     using PointDual = Sacado::Fad::SFad<double, n_state_numbers<dim> + n_law_numbers>;
 
     template <int dim, typename Number, typename F>
-    void visit(PointState<dim, Number> &state, const F &f)
+    void visit(PointFlow<dim, Number> &state, const F &f)
     {
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = 0; j < dim; ++j)
@@ -31,10 +31,10 @@ namespace retroforge
     }
 
     template <int dim>
-    PointState<dim, PointDual<dim>> independent(PointState<dim, double> state)
+    PointFlow<dim, PointDual<dim>> independent(PointFlow<dim, double> state)
     {
       std::array<double, n_state_numbers<dim>> values;
-      PointState<dim, PointDual<dim>>          x;
+      PointFlow<dim, PointDual<dim>>           x;
       unsigned int                             n = 0;
       visit(state, [&](const double &value) { values[n++] = value; });
       n = 0;
@@ -60,10 +60,10 @@ namespace retroforge
     }
 
     template <int dim>
-    void add_positions_pullback(const ReferenceElement<dim>   &element,
-                                const unsigned int             q,
-                                const PointState<dim, double> &state_bar,
-                                CellVectors<dim, double>      &X_bar)
+    void add_positions_pullback(const ReferenceElement<dim>  &element,
+                                const unsigned int            q,
+                                const PointFlow<dim, double> &state_bar,
+                                CellVectors<dim, double>     &X_bar)
     {
       const ShapeTable<dim> &shapes = element.at_points().geometry;
       for (unsigned int c = 0; c < X_bar.size(); ++c)
@@ -86,11 +86,11 @@ namespace retroforge
       QuadratureSensitivity<dim>        bar{CellVectors<dim, double>(element.n_positions()), {}};
       for (unsigned int q = 0; q < element.n_points(); ++q)
       {
-        const PointState<dim, PointDual<dim>> x = independent(state_at(geometry, w, q));
-        const PointMap<dim, PointDual<dim>>   map(x, element.kinematics());
-        const PointDual<dim>                  value = element.weight(q) * map.volume * f(map, x, x_law, q);
-        PointState<dim, double>               state_bar;
-        unsigned int                          n = 0;
+        const PointFlow<dim, PointDual<dim>> x = independent(state_at(geometry, w, q));
+        const PointMap<dim, PointDual<dim>>  map(x, element.kinematics());
+        const PointDual<dim>                 value = element.weight(q) * map.volume * f(map, x, x_law, q);
+        PointFlow<dim, double>               state_bar;
+        unsigned int                         n = 0;
         visit(state_bar, [&](double &number) { number = value.dx(n++); });
         for_each_number([&](double &number) { number += value.dx(n++); }, bar.law);
         add_positions_pullback(element, q, state_bar, bar.X);
@@ -109,7 +109,7 @@ namespace retroforge
   {
     const auto product =
       [&](const auto &map, const auto &state, const auto &x_law, const unsigned int q) -> PointDual<dim> {
-      const PointState<dim, double>          of_lambda = state_at(geometry, lambda, q);
+      const PointFlow<dim, double>           of_lambda = state_at(geometry, lambda, q);
       dealii::Tensor<2, dim, PointDual<dim>> H;
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = 0; j < dim; ++j)
@@ -173,9 +173,9 @@ namespace retroforge
     const double                 volume  = cell_volume(geometry);
     for (unsigned int q = 0; q < element.n_points(); ++q)
     {
-      const PointState<dim, double> state = state_at(geometry, w, q);
-      const PointMap<dim, double>   map(state, element.kinematics());
-      const Symmetric<double>       eps = strain_rate(map, state);
+      const PointFlow<dim, double> state = state_at(geometry, w, q);
+      const PointMap<dim, double>  map(state, element.kinematics());
+      const Symmetric<double>      eps = strain_rate(map, state);
       if (double_contraction(eps, eps) == 0.) // the factor of a law without e0 is infinite there
         continue;
       const Symmetric<double> s = point_stress(eps, law);
@@ -195,7 +195,7 @@ namespace retroforge
     std::array<Symmetric<double>, dim + 1> eps;
     for (unsigned int a = 0; a <= dim; ++a)
     {
-      PointState<dim, double> state;
+      PointFlow<dim, double> state;
       add_positions(element.at_vertices().geometry, a, geometry.X, state);
       add_velocities(element.at_vertices().velocity, a, n, w.V, state);
       eps[a] = strain_rate(PointMap<dim, double>(state, element.kinematics()), state);

@@ -67,7 +67,7 @@ namespace retroforge
     {
       const ReferenceElement<dim>   &element = *geometry.element;
       const ShapeTables<dim>        &tables  = element.at_points();
-      const PointState<dim, double>  state   = state_at(geometry, w, q);
+      const PointFlow<dim, double>   state   = state_at(geometry, w, q);
       const PointMap<dim, double>    map(state, element.kinematics());
       const double                   weight = element.weight(q) * map.volume;
       const Symmetric<double>        eps    = strain_rate(map, state);

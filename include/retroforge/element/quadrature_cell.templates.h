@@ -10,7 +10,7 @@ namespace retroforge
 {
   /// Positions and unknowns at a point of a cell, or derivatives in them.
   template <int dim, typename Number>
-  struct PointState
+  struct PointFlow
   {
     dealii::Tensor<2, dim, Number> J;                ///< dx/dxi [mm]
     dealii::Tensor<2, dim, Number> H;                ///< dv/dxi [mm/s]
@@ -24,7 +24,7 @@ namespace retroforge
   void add_positions(const ShapeTable<dim>          &shapes,
                      const unsigned int              q,
                      const CellVectors<dim, Number> &X,
-                     PointState<dim, Number>        &state)
+                     PointFlow<dim, Number>         &state)
   {
     for (unsigned int c = 0; c < X.size(); ++c)
     {
@@ -41,7 +41,7 @@ namespace retroforge
                       const unsigned int              q,
                       const unsigned int              n_functions,
                       const CellVectors<dim, Number> &V,
-                      PointState<dim, Number>        &state)
+                      PointFlow<dim, Number>         &state)
   {
     for (unsigned int a = 0; a < n_functions; ++a)
     {
@@ -53,9 +53,9 @@ namespace retroforge
   }
 
   template <int dim, typename Number>
-  PointState<dim, Number> state_at(const QuadratureGeometry<dim, Number> &geometry,
-                                   const QuadratureValues<dim, Number>   &w,
-                                   const unsigned int                     q)
+  PointFlow<dim, Number> state_at(const QuadratureGeometry<dim, Number> &geometry,
+                                  const QuadratureValues<dim, Number>   &w,
+                                  const unsigned int                     q)
   {
     const ShapeTables<dim> &tables = geometry.element->at_points();
     AssertDimension(geometry.X.size(), geometry.element->n_positions());
@@ -63,7 +63,7 @@ namespace retroforge
            dealii::ExcDimensionMismatch(w.V.size(), geometry.element->n_velocities()));
     Assert(w.P.empty() || w.P.size() == geometry.element->n_pressures(),
            dealii::ExcDimensionMismatch(w.P.size(), geometry.element->n_pressures()));
-    PointState<dim, Number> state;
+    PointFlow<dim, Number> state;
     add_positions(tables.geometry, q, geometry.X, state);
     add_velocities(tables.velocity, q, w.V.size(), w.V, state);
     for (unsigned int b = 0; b < w.P.size(); ++b)
@@ -75,7 +75,7 @@ namespace retroforge
   template <int dim, typename Number>
   void add_unknowns_pullback(const ReferenceElement<dim>   &element,
                              const unsigned int             q,
-                             const PointState<dim, Number> &state_bar,
+                             const PointFlow<dim, Number>  &state_bar,
                              QuadratureValues<dim, Number> &w_bar)
   {
     const ShapeTables<dim> &tables = element.at_points();
@@ -101,7 +101,7 @@ namespace retroforge
     Number                         r;
     bool                           has_axis;
 
-    PointMap(const PointState<dim, Number> &state, const Kinematics kinematics)
+    PointMap(const PointFlow<dim, Number> &state, const Kinematics kinematics)
         : r(state.r), has_axis(kinematics == Kinematics::axisymmetric)
     {
       const auto &J = state.J;
@@ -155,7 +155,7 @@ namespace retroforge
   }
 
   template <int dim, typename Number>
-  Symmetric<Number> strain_rate(const PointMap<dim, Number> &map, const PointState<dim, Number> &state)
+  Symmetric<Number> strain_rate(const PointMap<dim, Number> &map, const PointFlow<dim, Number> &state)
   {
     return strain_rate(map, state.H, state.v_r);
   }
@@ -164,7 +164,7 @@ namespace retroforge
   template <int dim, typename Number>
   void add_strain_rate_pullback(const PointMap<dim, Number> &map,
                                 const Symmetric<Number>     &S,
-                                PointState<dim, Number>     &state_bar)
+                                PointFlow<dim, Number>      &state_bar)
   {
     constexpr unsigned int component[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
     for (unsigned int i = 0; i < dim; ++i)
@@ -184,8 +184,8 @@ namespace retroforge
     Number total(0.);
     for (unsigned int q = 0; q < geometry.element->n_points(); ++q)
     {
-      const PointState<dim, Number> state = state_at(geometry, w, q);
-      const PointMap<dim, Number>   map(state, geometry.element->kinematics());
+      const PointFlow<dim, Number> state = state_at(geometry, w, q);
+      const PointMap<dim, Number>  map(state, geometry.element->kinematics());
       total += geometry.element->weight(q) * map.volume * f(map, state);
     }
     return total;
@@ -263,14 +263,14 @@ namespace retroforge
     QuadratureValues<dim, Number> r(element);
     for (unsigned int q = 0; q < element.n_points(); ++q)
     {
-      const PointState<dim, Number> state = state_at(geometry, w, q);
-      const PointMap<dim, Number>   map(state, element.kinematics());
-      const Number                  weight = element.weight(q) * map.volume;
-      const Symmetric<Number>       eps    = strain_rate(map, state);
-      Symmetric<Number>             S      = point_stress(eps, law);
+      const PointFlow<dim, Number> state = state_at(geometry, w, q);
+      const PointMap<dim, Number>  map(state, element.kinematics());
+      const Number                 weight = element.weight(q) * map.volume;
+      const Symmetric<Number>      eps    = strain_rate(map, state);
+      Symmetric<Number>            S      = point_stress(eps, law);
       for (unsigned int k = 0; k < 3; ++k)
         S[k] -= state.p;
-      PointState<dim, Number> bar;
+      PointFlow<dim, Number> bar;
       add_strain_rate_pullback(map, scaled(S, weight), bar);
       bar.p = -weight * trace(eps);
       add_unknowns_pullback(element, q, bar, r);
