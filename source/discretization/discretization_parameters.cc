@@ -22,10 +22,13 @@ namespace retroforge
       prm,
       "triangulation",
       choice.triangulation,
-      {{"shared", TriangulationKind::shared}, {"fully distributed", TriangulationKind::fully_distributed}},
+      {{"by ranks", TriangulationKind::by_ranks},
+       {"shared", TriangulationKind::shared},
+       {"fully distributed", TriangulationKind::fully_distributed}},
       "How the mesh lies on the ranks of a parallel run: shared, every rank has all cells of "
-      "deal.II's triangulation; or fully distributed, its own and those around them, which "
-      "takes less memory on many ranks. Results are the same. Units: none.");
+      "deal.II's triangulation; fully distributed, its own and those around them, which "
+      "takes less memory; or by ranks, shared on one rank and fully distributed on several. "
+      "Results are the same. Units: none.");
     add_enum<Assembly>(
       prm,
       "assembly",

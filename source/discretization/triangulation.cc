@@ -116,8 +116,10 @@ namespace retroforge
   std::unique_ptr<dealii::Triangulation<dim>>
   distributed_triangulation(const SimplexMesh<dim> &mesh, const TriangulationKind kind, const MPI_Comm comm)
   {
-    return kind == TriangulationKind::shared ? shared_triangulation(mesh, comm)
-                                             : fully_distributed_triangulation(mesh, comm);
+    const bool is_shared =
+      kind == TriangulationKind::shared ||
+      (kind == TriangulationKind::by_ranks && dealii::Utilities::MPI::n_mpi_processes(comm) == 1);
+    return is_shared ? shared_triangulation(mesh, comm) : fully_distributed_triangulation(mesh, comm);
   }
 
 #define RETROFORGE_INSTANTIATE(dim)                                                                       \

@@ -33,7 +33,7 @@ namespace retroforge
   struct DiscretizationChoice
   {
     ElementPair       pair          = ElementPair::mini;
-    TriangulationKind triangulation = TriangulationKind::shared;
+    TriangulationKind triangulation = TriangulationKind::by_ranks;
     Assembly          assembly      = Assembly::closed_form;
     Kinematics        kinematics    = Kinematics::three_dimensions;
     /// Of positions as functions on a cell. Of degree 2 they have nodes in the middles of edges, too.

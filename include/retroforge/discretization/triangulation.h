@@ -14,8 +14,9 @@ namespace retroforge
   /// The distribution of a mesh's cells over the ranks.
   enum class TriangulationKind
   {
-    shared,           ///< every rank has the whole triangulation
-    fully_distributed ///< every rank has its own cells and those around them
+    shared,            ///< every rank has the whole triangulation
+    fully_distributed, ///< every rank has its own cells and those around them
+    by_ranks           ///< shared on one rank, fully distributed on several
   };
 
   /// A triangulation that all ranks know; its cells belong to them in their order, as many to each.
