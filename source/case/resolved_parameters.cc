@@ -161,6 +161,7 @@ namespace retroforge
     model.contact.approach       = contact.approach;
     model.contact.ramp.sharp     = contact.law == ContactParameters::Arrival::sharp;
     model.contact.edge_stiffness = edge_stiffness_;
+    model.contact.counts_closing = contact.counts_closing;
     model.contact.ramp.width     = contact.ramp_width * contact.approach * closing;
     const double layer           = model.contact.ramp.sharp ? 0. : contact.layer;
     model.contact.layer          = layer * contact.approach * closing;

@@ -181,6 +181,7 @@ namespace retroforge
     ContactSet<Number> contact;
     const auto &[mesh, topology, dies, states, X, edges, comm] = view;
     contact.edge_stiffness                                     = approach.edge_stiffness;
+    contact.counts_closing                                     = approach.counts_closing;
     contact.pairs                                              = pairs;
     contact.projections                                        = projected(view, pairs);
     contact.tau                                                = approach.tau;

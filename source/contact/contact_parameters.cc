@@ -25,6 +25,17 @@ namespace retroforge
       {{"nodes", false}, {"nodes and edges", true}},
       "Where dies that are no planes are felt: nodes and edges adds the middles of edges that the die bulges "
       "into, which nodes alone let into it. Units: none.");
+    add_enum<bool>(
+      prm,
+      "closing work",
+      counts_closing,
+      {{"counted", true}, {"left out", false}},
+      "counted: energies and forces have what sums over the increments lack where nodes arrive at dies, and "
+      "are "
+      "one: the energy is the work of the forces. left out: energies are those of deformation and friction "
+      "at "
+      "the speeds of the increments, forces the reactions to them, and a force from one is not the other. "
+      "Units: none.");
     prm.add_parameter(
       "largest depth",
       largest_depth,
@@ -80,7 +91,8 @@ namespace retroforge
     prm.leave_subsection();
     tag(prm, "Contact", SettingRole::scene);
     // Measured in increments, or of the mesh.
-    for (const char *setting : {"points", "largest depth", "edge sinking", "approach", "layer", "ramp width"})
+    for (const char *setting :
+         {"points", "closing work", "largest depth", "edge sinking", "approach", "layer", "ramp width"})
       tag(prm, std::string("Contact/") + setting, SettingRole::numerics);
   }
 

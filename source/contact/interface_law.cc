@@ -172,6 +172,13 @@ namespace retroforge
     return friction.factor * friction.point.slip2;
   }
 
+  template <typename Number>
+  std::array<Number, 3> closing_moments(const ContactNode<Number> &node, const ContactLaw<Number> &contact)
+  {
+    const Number N = normal_force(node, contact), u_n = node.u * node.n;
+    return {{N, Number(N * u_n), Number(N * u_n * u_n)}};
+  }
+
   double contact_potential(const ContactNode<double> &node,
                            const MaterialLaw<double> &law,
                            const ContactLaw<double>  &contact)
@@ -231,6 +238,21 @@ namespace retroforge
     return bar;
   }
 
+  ContactNodeBar reverse_closing_moments(const ContactNode<double>   &node,
+                                         const ContactLaw<double>    &contact,
+                                         const std::array<double, 3> &weights)
+  {
+    if (!node.active)
+      return {};
+    const double   u_n = node.u * node.n;
+    ContactNodeBar bar =
+      reverse_normal_force(node, contact, weights[0] + u_n * (weights[1] + u_n * weights[2]));
+    const double u_n_bar = normal_force(node, contact) * (weights[1] + 2. * u_n * weights[2]);
+    bar.u += u_n_bar * node.n;
+    bar.n += u_n_bar * node.u;
+    return bar;
+  }
+
   ContactNodeBar reverse_contact_force(const ContactNode<double> &node,
                                        const MaterialLaw<double> &law,
                                        const ContactLaw<double>  &contact,
@@ -276,7 +298,8 @@ namespace retroforge
   template Vector3<Number> contact_force(                                                  \
     const ContactNode<Number> &, const MaterialLaw<Number> &, const ContactLaw<Number> &); \
   template Number friction_power(                                                          \
-    const ContactNode<Number> &, const MaterialLaw<Number> &, const ContactLaw<Number> &);
+    const ContactNode<Number> &, const MaterialLaw<Number> &, const ContactLaw<Number> &); \
+  template std::array<Number, 3> closing_moments(const ContactNode<Number> &, const ContactLaw<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE

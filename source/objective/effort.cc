@@ -4,9 +4,9 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/text.h>
 #include <retroforge/objective/effort.h>
-#include <retroforge/objective/energy.h>
 #include <retroforge/objective/objective_settings.h>
 #include <retroforge/solver/contact_pullback.h>
+#include <retroforge/solver/spent_power.h>
 
 namespace retroforge
 {
@@ -24,13 +24,6 @@ namespace retroforge
                     "effort is power over the speed of a die that moves",
                     "name the die that does");
       return sqrt(v2);
-    }
-
-    template <typename Number>
-    Number total_power(const EquilibriumView<Number> &view)
-    {
-      const auto [deformation, friction] = view.stage.power(view.W, view.active);
-      return deformation + friction;
     }
 
     /// f·v_die, f the die's force on the workpiece [mJ/s].
@@ -100,21 +93,47 @@ namespace retroforge
     return value_of(high) > value_of(low) ? Number(high - low) : Number(0.);
   }
 
-  template <typename Number>
-  Number Effort::operator()(const EquilibriumView<Number> &view) const
+  namespace
   {
-    return (by_ == By::power ? total_power(view) : power_of_die(view, die_)) / speed(view, die_);
+    /// The speed is no sum: one rank has it.
+    template <typename Number>
+    bool has_speed(const EquilibriumView<Number> &view)
+    {
+      return dealii::Utilities::MPI::this_mpi_process(view.stage.scene.discretization.comm()) == 0;
+    }
+  } // namespace
+
+  template <typename Number>
+  std::vector<Number> Effort::terms(const EquilibriumView<Number> &view) const
+  {
+    std::vector<Number> terms = power_terms(view);
+    const Number        v     = speed(view, die_);
+    terms.push_back(has_speed(view) ? v : Number(0.));
+    terms.push_back(by_ == By::force ? power_of_die(view, die_) : Number(0.));
+    return terms;
   }
 
-  void Effort::reverse(const EquilibriumView<double> &view, const double weight, EquilibriumBar &bar) const
+  void Effort::reverse_terms(const EquilibriumView<double> &view,
+                             const std::vector<double>     &weights,
+                             EquilibriumBar                &bar) const
   {
-    const double v = speed(view, die_);
-    if (by_ == By::power)
-      reverse_power(view, weight / v, weight / v, bar);
-    else
-      reverse_power_of_die(view, die_, weight / v, bar);
-    bar.physics.dies[die_].velocity -=
-      weight * (*this)(view) / (v * v) * view.stage.physics.dies[die_].velocity;
+    const std::size_t n = n_power_terms(view.stage.scene.dies.size());
+    AssertDimension(weights.size(), n + 2);
+    reverse_power_terms(view, weights, bar);
+    if (has_speed(view))
+      bar.physics.dies[die_].velocity +=
+        weights[n] / speed(view, die_) * view.stage.physics.dies[die_].velocity;
+    if (by_ == By::force)
+      reverse_power_of_die(view, die_, weights[n + 1], bar);
+  }
+
+  template <typename Number>
+  Number Effort::force(const std::vector<Number> &terms) const
+  {
+    const std::vector<Number> of_power(terms.begin(), terms.end() - 2);
+    const Number             &speed = terms[terms.size() - 2], &of_die = terms.back();
+    return (by_ == By::power ? spent_power(of_power).total() : Number(of_die * force_factor(of_power))) /
+           speed;
   }
 
   MeanEffort::MeanEffort(const Effort &effort, const PathWindow &window) : effort_(effort), window_(window)
@@ -126,20 +145,20 @@ namespace retroforge
                                      const std::vector<double>     &weights,
                                      EquilibriumBar                &bar) const
   {
-    effort_.reverse(view, weights[0], bar);
+    effort_.reverse_terms(view, weights, bar);
   }
 
   template <typename Number>
   std::vector<Number> MeanEffort::compute_integrals(const EquilibriumView<Number> &view) const
   {
-    return {effort_(view)};
+    return effort_.terms(view);
   }
 
   template <typename Number>
   std::vector<Number> MeanEffort::terms(const PathRow<Number> &row, double) const
   {
     const Number length = window_.overlap(row);
-    return {Number(row.integrals[0] * length), length};
+    return {Number(effort_.force(row.integrals) * length), length};
   }
 
   template <typename Number>
@@ -163,8 +182,9 @@ namespace retroforge
     for (const PathRow<double> &row : rows)
       if (window_.overlap(row) > 0.)
       {
-        largest = found ? std::max(largest, row.integrals[0]) : row.integrals[0];
-        found   = true;
+        const double force = effort_.force(row.integrals);
+        largest            = found ? std::max(largest, force) : force;
+        found              = true;
       }
     return largest;
   }
@@ -173,13 +193,13 @@ namespace retroforge
                                         const std::vector<double>     &weights,
                                         EquilibriumBar                &bar) const
   {
-    effort_.reverse(view, weights[0], bar);
+    effort_.reverse_terms(view, weights, bar);
   }
 
   template <typename Number>
   std::vector<Number> MaximumEffort::compute_integrals(const EquilibriumView<Number> &view) const
   {
-    return {effort_(view)};
+    return effort_.terms(view);
   }
 
   template <typename Number>
@@ -188,7 +208,7 @@ namespace retroforge
     const Number length = window_.overlap(row);
     if (value_of(length) == 0.)
       return {Number(0.), Number(0.)}; // outside, an effort above the scale must not overflow
-    return {maximum_.term(row.integrals[0], length, scale), length};
+    return {maximum_.term(effort_.force(row.integrals), length, scale), length};
   }
 
   template <typename Number>
@@ -199,8 +219,9 @@ namespace retroforge
   }
 
 #define RETROFORGE_INSTANTIATE(Number)                                                                  \
-  template Number PathWindow::overlap(const PathRow<Number> &) const;                                   \
-  template Number Effort::     operator()(const EquilibriumView<Number> &) const;                       \
+  template Number              PathWindow::overlap(const PathRow<Number> &) const;                      \
+  template std::vector<Number> Effort::terms(const EquilibriumView<Number> &) const;                    \
+  template Number              Effort::force(const std::vector<Number> &) const;                        \
   template std::vector<Number> MeanEffort::compute_integrals(const EquilibriumView<Number> &) const;    \
   template std::vector<Number> MeanEffort::terms(const PathRow<Number> &, double) const;                \
   template Number              MeanEffort::combine(const std::vector<Number> &, double) const;          \

@@ -7,20 +7,21 @@ namespace retroforge
   template <typename Number>
   std::vector<Number> EnergyObjective::compute_integrals(const EquilibriumView<Number> &view) const
   {
-    const auto [deformation, friction] = view.stage.power(view.W, view.active);
-    return {deformation, friction};
+    return power_terms(view);
   }
 
   template std::vector<double> EnergyObjective::compute_integrals(const EquilibriumView<double> &) const;
   template std::vector<Dual>   EnergyObjective::compute_integrals(const EquilibriumView<Dual> &) const;
 
-  std::pair<double, double> EnergyObjective::split(const PathRows<double> &rows)
+  EnergyParts<double> EnergyObjective::split(const PathRows<double> &rows)
   {
-    std::pair<double, double> energy(0., 0.);
+    EnergyParts<double> energy;
     for (const PathRow<double> &row : rows)
     {
-      energy.first += row.dt * row.integrals[0];
-      energy.second += row.dt * row.integrals[1];
+      const auto power = spent_power(row.integrals);
+      energy.deformation += row.dt * power.deformation;
+      energy.friction += row.dt * power.friction;
+      energy.closing += row.dt * power.closing;
     }
     return energy;
   }
@@ -29,7 +30,7 @@ namespace retroforge
                                           const std::vector<double>     &weights,
                                           EquilibriumBar                &bar) const
   {
-    reverse_power(view, weights[0], weights[1], bar);
+    reverse_power_terms(view, weights, bar);
   }
 
   namespace

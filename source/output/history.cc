@@ -16,8 +16,8 @@ namespace retroforge
   namespace
   {
     const std::string header    = "increment,time,stroke,force,energy,volume,min_quality,depth,newton,krylov,"
-                                  "whole_force,whole_energy,whole_volume\n";
-    constexpr int     n_columns = 13;
+                                  "whole_force,whole_energy,whole_volume,balance\n";
+    constexpr int     n_columns = 14;
 
     std::string to_csv(const HistoryRow &row)
     {
@@ -26,7 +26,7 @@ namespace retroforge
       line << row.increment << ',' << row.time << ',' << row.stroke << ',' << row.force << ',' << row.energy
            << ',' << row.volume << ',' << row.min_quality << ',' << row.depth << ',' << row.newton << ','
            << row.krylov << ',' << row.whole_force << ',' << row.whole_energy << ',' << row.whole_volume
-           << '\n';
+           << ',' << row.balance << '\n';
       return line.str();
     }
 
@@ -56,8 +56,20 @@ namespace retroforge
           throw_not_a_history(file, line_number);
         return static_cast<unsigned int>(number);
       };
-      return {
-        count(x[0]), x[1], x[2], x[3], x[4], x[5], x[6], x[7], count(x[8]), count(x[9]), x[10], x[11], x[12]};
+      return {count(x[0]),
+              x[1],
+              x[2],
+              x[3],
+              x[4],
+              x[5],
+              x[6],
+              x[7],
+              count(x[8]),
+              count(x[9]),
+              x[10],
+              x[11],
+              x[12],
+              x[13]};
     }
   } // namespace
 

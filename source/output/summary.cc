@@ -127,6 +127,11 @@ namespace retroforge
     json["volume_final"]          = json_number(volume_final);
     json["volume_repaired"]       = json_number(volume_repaired);
     json["volume_of_shape"]       = json_number(volume_of_shape);
+    if (std::isfinite(balance.over_run))
+      json["power_balance"] = {{"over_run", json_number(balance.over_run)},
+                               {"95_percent_below", json_number(balance.most_below)},
+                               {"largest", json_number(balance.largest)},
+                               {"stroke", json_number(balance.stroke)}};
     if (!deepest.die.empty())
       json["deepest"] = {
         {"depth", json_number(deepest.depth)},

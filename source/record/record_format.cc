@@ -16,7 +16,7 @@ namespace retroforge
 {
   namespace
   {
-    constexpr unsigned int format = 9;
+    constexpr unsigned int format = 10;
 
     static_assert(sizeof(Vec3) == 3 * sizeof(double),
                   "nodal vectors are read and written as arrays of numbers");
@@ -189,6 +189,7 @@ namespace retroforge
       hdf5::write_array(group, "begin", {J.begin.size()}, J.begin.data());
       hdf5::write_array(group, "node", {J.node.size()}, J.node.data());
       hdf5::write_array(group, "weight", {J.weight.size()}, J.weight.data());
+      write_vectors(group, "spread", remesh.spread);
       hdf5::write_attribute(group, "repaired", &remesh.removed_volume);
     }
 
@@ -204,7 +205,10 @@ namespace retroforge
       J.begin                   = hdf5::read_array<unsigned int>(group, "begin", {remesh->mesh.X.size() + 1});
       J.node                    = hdf5::read_array<unsigned int>(group, "node", {hdf5::any});
       J.weight                  = read_numbers(group, "weight", {J.node.size()});
-      bool sound                = J.begin.front() == 0 && J.begin.back() == J.node.size();
+      remesh->spread            = read_vectors(group, "spread", hdf5::any);
+      if (!remesh->spread.empty() && remesh->spread.size() != remesh->mesh.X.size())
+        throw hdf5::Failure("a correction of the volume is of another mesh");
+      bool sound = J.begin.front() == 0 && J.begin.back() == J.node.size();
       for (std::size_t k = 0; k + 1 < J.begin.size(); ++k)
         sound = sound && J.begin[k] <= J.begin[k + 1];
       for (const NodeIndex k : J.node)
@@ -220,9 +224,10 @@ namespace retroforge
     {
       const double numbers[] = {
         contact.approach, contact.layer, contact.step, contact.ramp.width, contact.edge_stiffness};
-      const unsigned int sharp = contact.ramp.sharp ? 1 : 0;
+      const unsigned int sharp = contact.ramp.sharp ? 1 : 0, counts_closing = contact.counts_closing ? 1 : 0;
       hdf5::write_attribute(group, "contact", numbers, 5);
       hdf5::write_attribute(group, "sharp", &sharp);
+      hdf5::write_attribute(group, "counts_closing", &counts_closing);
     }
 
     ContactNumerics read_contact(const hid_t group)
@@ -230,8 +235,9 @@ namespace retroforge
       double numbers[5];
       hdf5::read_attribute(group, "contact", numbers, 5);
       check_finite(numbers, 5, "contact");
-      const auto sharp = hdf5::read_attribute<unsigned int>(group, "sharp");
-      return {numbers[0], numbers[1], numbers[2], {numbers[3], sharp != 0}, numbers[4]};
+      const auto sharp          = hdf5::read_attribute<unsigned int>(group, "sharp");
+      const auto counts_closing = hdf5::read_attribute<unsigned int>(group, "counts_closing");
+      return {numbers[0], numbers[1], numbers[2], {numbers[3], sharp != 0}, numbers[4], counts_closing != 0};
     }
 
     void write_solves(const hid_t                     group,
@@ -420,6 +426,8 @@ namespace retroforge
     hdf5::write_attribute(group, "cuts", &increment.cuts);
     hdf5::write_attribute(group, "deformation_energy", &increment.deformation_energy);
     hdf5::write_attribute(group, "friction_energy", &increment.friction_energy);
+    hdf5::write_attribute(group, "closing_energy", &increment.closing_energy);
+    hdf5::write_attribute(group, "closing_work", &increment.closing_work);
     hdf5::write_attribute(group, "n_nodes", &n.mesh);
     hdf5::write_attribute(group, "n_velocity_nodes", &n.velocity);
     hdf5::write_attribute(group, "newton", &increment.newton);
@@ -478,6 +486,8 @@ namespace retroforge
     increment.cuts               = hdf5::read_attribute<unsigned int>(group, "cuts");
     increment.deformation_energy = read_number(group, "deformation_energy");
     increment.friction_energy    = read_number(group, "friction_energy");
+    increment.closing_energy     = read_number(group, "closing_energy");
+    increment.closing_work       = read_number(group, "closing_work");
     increment.newton             = hdf5::read_attribute<unsigned int>(group, "newton");
     increment.krylov             = hdf5::read_attribute<unsigned int>(group, "krylov");
     increment.linear_solves      = hdf5::read_attribute<unsigned int>(group, "linear_solves");

@@ -161,7 +161,8 @@ namespace retroforge
             event.record.krylov,
             whole_.force * force,
             whole_.copies * energy,
-            whole_.copies * size};
+            whole_.copies * size,
+            balance_.add(event.record)};
   }
 
   void RunOutput::print(const IncrementEvent &event, const HistoryRow &row)

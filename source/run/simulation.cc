@@ -170,6 +170,7 @@ namespace retroforge
     summarise_gradients(case_, sensitivities_, summary_);
     summary_.deepest      = output_->deepest();
     summary_.spanned      = output_->spanned();
+    summary_.balance      = output_->balance();
     summary_.record_bytes = run_.recording().bytes();
     summary_.warnings =
       warnings_of(summary_, case_.parameters.contact.largest_depth, output_->untouched_dies());

@@ -19,7 +19,8 @@ namespace retroforge
                                          {record.contact.ramp,
                                           Number(record.contact.approach * dt),
                                           record.contact.approach_law(record.step),
-                                          record.contact.edge_stiffness}))
+                                          record.contact.edge_stiffness,
+                                          record.contact.counts_closing}))
   {
     if (process.material.depends_on_state())
       points = point_states(scene.mesh, state);
@@ -143,18 +144,28 @@ namespace retroforge
 
   void Mechanics::account(const SolvedIncrement &solved, IncrementRecord &record) const
   {
-    record.deformation_energy = record.friction_energy = 0.;
-    record.forces.assign(scene_.dies.size(), Vec3());
+    const std::size_t   n_dies = scene_.dies.size();
+    std::vector<double> terms(n_power_terms(n_dies), 0.);
+    record.forces.assign(n_dies, Vec3());
     for (const auto &stage : solved.stages)
     {
-      const double time                  = stage->weight * solved.start->dt;
-      const auto [deformation, friction] = stage->stage.power(stage->W, stage->active);
-      record.deformation_energy += time * scene_.discretization.sum(deformation);
-      record.friction_energy += time * scene_.discretization.sum(friction);
+      const auto whole =
+        RankSum<std::vector<double>>(power_terms(stage->view()), scene_.discretization.comm()).complete();
+      for (std::size_t k = 0; k < terms.size(); ++k)
+        terms[k] += stage->weight * whole[k];
       const std::vector<Vec3> forces = die_forces(stage->stage, stage->W, stage->active);
-      for (unsigned int d = 0; d < forces.size(); ++d)
+      for (unsigned int d = 0; d < n_dies; ++d)
         record.forces[d] += stage->weight * forces[d];
     }
+    const EnergyParts<double> spent = spent_power(terms);
+    const double              dt    = solved.start->dt;
+    record.deformation_energy       = dt * spent.deformation;
+    record.friction_energy          = dt * spent.friction;
+    record.closing_energy           = dt * spent.closing;
+    record.closing_work             = dt * closing_power(terms);
+    const double factor             = force_factor(terms);
+    for (Vec3 &force : record.forces)
+      force *= factor;
   }
 
   SolvedIncrement Mechanics::forward(const Process<double>           &process,

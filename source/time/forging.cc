@@ -151,6 +151,7 @@ namespace retroforge
     state.stroke += record.step;
     state.energy.deformation += record.deformation_energy;
     state.energy.friction += record.friction_energy;
+    state.energy.closing += record.closing_energy;
     state.cuts += record.cuts;
     state.newton += record.newton;
     state.krylov += record.krylov;

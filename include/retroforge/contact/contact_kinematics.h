@@ -42,6 +42,8 @@ namespace retroforge
     double       step     = 0.; ///< stroke of a whole increment [mm]
     FrictionRamp ramp;
     double       edge_stiffness = 1.; ///< penalty of edges over that of nodes, dimensionless
+    /// Whether energies and forces have their part of the work on gaps that close (spent_power.h).
+    bool counts_closing = true;
 
     /// Returns the approach law of an increment with the given stroke [mm].
     ApproachLaw approach_law(const double stroke) const
@@ -89,7 +91,8 @@ namespace retroforge
     bool                quadratic = false;
     Number              tau       = 1.; ///< approach time [s]
     ApproachLaw         approach;
-    double              edge_stiffness = 1.; ///< penalty of edges over that of nodes, dimensionless
+    double              edge_stiffness = 1.;   ///< penalty of edges over that of nodes, dimensionless
+    bool                counts_closing = true; ///< as ContactNumerics::counts_closing
   };
 
   /// Derivatives in the increment's data: what ContactSet depends on is filled in later, by
@@ -109,7 +112,8 @@ namespace retroforge
     FrictionRamp ramp;
     Number       tau; ///< approach time [s]
     ApproachLaw  law            = {};
-    double       edge_stiffness = 1.; ///< penalty of edges over that of nodes, dimensionless
+    double       edge_stiffness = 1.;   ///< penalty of edges over that of nodes, dimensionless
+    bool         counts_closing = true; ///< as ContactNumerics::counts_closing
   };
 
   /// Gaps, normals and ramps of given pairs. Collective: each rank projects its share of them.

@@ -16,16 +16,17 @@ namespace retroforge
       sharp   ///< decided once per increment
     };
 
-    Arrival law           = Arrival::smooth;
-    double  approach      = 1.;
-    double  layer         = 0.45;
-    double  ramp_width    = 1.;
-    double  penetration   = 3e-7;
-    double  penalty       = 0.;
-    double  slip_fraction = 1e-2;
-    bool    edges_touch   = true;
-    double  edge_sinking  = 0.01;
-    double  largest_depth = 0.05;
+    Arrival law            = Arrival::smooth;
+    double  approach       = 1.;
+    double  layer          = 0.45;
+    double  ramp_width     = 1.;
+    double  penetration    = 3e-7;
+    double  penalty        = 0.;
+    double  slip_fraction  = 1e-2;
+    bool    edges_touch    = true;
+    bool    counts_closing = true;
+    double  edge_sinking   = 0.01;
+    double  largest_depth  = 0.05;
 
     void add_parameters(dealii::ParameterHandler &prm);
     /// @throws Error

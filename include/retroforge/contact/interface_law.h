@@ -155,6 +155,11 @@ namespace retroforge
                         const MaterialLaw<Number> &law,
                         const ContactLaw<Number>  &contact);
 
+  /// Returns (N, N u_n, N u_n^2),  u_n = u·n: the force that closes the gap or opens it, its power [mJ/s], and
+  /// what tells whether points close at one speed [mJ mm/s^2].
+  template <typename Number>
+  std::array<Number, 3> closing_moments(const ContactNode<Number> &node, const ContactLaw<Number> &contact);
+
   /// Value of the potential whose gradient in V is contact_force, where the law has one.
   double contact_potential(const ContactNode<double> &node,
                            const MaterialLaw<double> &law,
@@ -174,6 +179,11 @@ namespace retroforge
                                        const MaterialLaw<double> &law,
                                        const ContactLaw<double>  &contact,
                                        const Vec3                &lambda);
+
+  /// Derivatives of  weights·closing_moments.
+  ContactNodeBar reverse_closing_moments(const ContactNode<double>   &node,
+                                         const ContactLaw<double>    &contact,
+                                         const std::array<double, 3> &weights);
 
   /// Derivatives of  weight * friction_power.
   ContactNodeBar reverse_friction_power(const ContactNode<double> &node,

@@ -41,19 +41,26 @@ namespace retroforge
   public:
     enum class By
     {
-      power, ///< (int s:eps + int tau·dv) / |v_die|
-      force  ///< force of the die on the workpiece along its velocity: contact and friction
+      power, ///< the power spent (spent_power.h) over |v_die|
+      force ///< force of the die on the workpiece along its velocity, contact and friction: a part of the same
     };
 
     /// @param die  the one that moves
     explicit Effort(const unsigned int die, const By by = By::power) : die_(die), by_(by) {}
 
-    /// Returns this rank's part.
+    /// Returns what a stage contributes to what the force follows from, this rank's part: the terms of the
+    /// power, the die's speed, and the power of the die where it is asked for.
     template <typename Number>
-    Number operator()(const EquilibriumView<Number> &view) const;
+    std::vector<Number> terms(const EquilibriumView<Number> &view) const;
 
-    /// Adds the derivatives of weight times it, this rank's part.
-    void reverse(const EquilibriumView<double> &view, double weight, EquilibriumBar &bar) const;
+    /// Adds the derivatives of  weights·terms,  this rank's part.
+    void reverse_terms(const EquilibriumView<double> &view,
+                       const std::vector<double>     &weights,
+                       EquilibriumBar                &bar) const;
+
+    /// Returns the force of an increment with these terms [N].
+    template <typename Number>
+    Number force(const std::vector<Number> &terms) const;
 
   private:
     unsigned int die_;
@@ -61,8 +68,7 @@ namespace retroforge
   };
 
   /// Mean effort over a window [N],  sum_i F_i l_i / sum_i l_i,  l_i the increment's part of the window. By
-  /// power and with one moving die it is the mean of the die's reaction, up to the penalty (relative order
-  /// 1/rho) and the approach of nodes that are about to touch.  @cite Laroussi2003, Eq. (99), (120)
+  /// power and with one moving die it is the mean of that die's force. @cite Laroussi2003, Eq. (99), (120)
   class MeanEffort : public PathObjectiveOf<MeanEffort>
   {
   public:

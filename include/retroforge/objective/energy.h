@@ -4,15 +4,15 @@
 
 #include <retroforge/objective/objective_type.h>
 #include <retroforge/objective/path_objective.h>
-
-#include <utility>
+#include <retroforge/solver/spent_power.h>
 
 namespace retroforge
 {
   /// Energy spent [mJ],
-  ///   sum_i dt_i [ int s:eps + sum_k tau_k·dv_k S^f_k ],
-  /// as the equilibrium has stress and friction, regularisations included. The integrals are deformation and
-  /// friction power [mJ/s].  @cite Laroussi2003, Eq. (97)-(98)
+  ///   sum_i dt_i [ int s:eps + sum_k tau_k·dv_k S^f_k + w_i sum_k N_k u_k ],
+  /// as the equilibrium has stress and friction, regularisations included, and what these lack where gaps close
+  /// (spent_power.h). The integrals are the terms of the power.  @cite Laroussi2003, Eq. (97)-(98), but for the
+  /// last part
   class EnergyObjective : public PathObjectiveOf<EnergyObjective>
   {
   public:
@@ -22,12 +22,12 @@ namespace retroforge
     std::string unit() const override { return "mJ"; }
 
     /// Returns what went into deformation and into friction [mJ].
-    static std::pair<double, double> split(const PathRows<double> &rows);
+    static EnergyParts<double> split(const PathRows<double> &rows);
 
     std::map<std::string, double> parts(const PathRows<double> &rows) const override
     {
-      const auto [deformation, friction] = split(rows);
-      return {{"deformation", deformation}, {"friction", friction}};
+      const auto [deformation, friction, closing] = split(rows);
+      return {{"deformation", deformation}, {"friction", friction}, {"closing", closing}};
     }
 
     void reverse_integrals(const EquilibriumView<double> &view,
@@ -40,7 +40,7 @@ namespace retroforge
     template <typename Number>
     std::vector<Number> terms(const PathRow<Number> &row, double) const
     {
-      return {Number(row.dt * (row.integrals[0] + row.integrals[1]))};
+      return {Number(row.dt * spent_power(row.integrals).total())};
     }
 
     template <typename Number>

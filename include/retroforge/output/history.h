@@ -15,7 +15,7 @@ namespace retroforge
     unsigned int increment = 0; ///< counted from 1; 0 is the initial state
     double       time      = 0; ///< s
     double       stroke    = 0; ///< mm
-    /// Force of the leading die along its path, in the last stage's equilibrium, N.
+    /// Force of the leading die along its path, on the average over the increment, N.
     double force       = 0;
     double energy      = 0; ///< spent so far, mJ
     double volume      = 0; ///< mm^3
@@ -27,6 +27,10 @@ namespace retroforge
 
     /// Force, energy and volume of the whole part, of which symmetry may leave a sector.
     double whole_force = 0, whole_energy = 0, whole_volume = 0;
+
+    /// Work of the dies on gaps that close over the energy of the increment, by which the dies' reactions and
+    /// what deformation and friction take are apart, dimensionless.
+    double balance = 0;
   };
 
   /// The history of a run as a table (.csv). Each row is on the disk when add() returns; numbers read back to

@@ -96,6 +96,15 @@ namespace retroforge
     };
     Depth deepest;
 
+    /// Work of the dies on gaps that close over the energy spent, dimensionless: over the run, and the size of
+    /// it in single increments, which 95 % of them stay below and none exceeds.
+    struct PowerBalance
+    {
+      double over_run = unknown, most_below = unknown, largest = unknown;
+      double stroke = unknown; ///< at the end of the increment where it is largest, mm
+    };
+    PowerBalance balance;
+
     /// Quadratic velocities: where most surface edges, of those that touched, spanned a corner of a die.
     struct Spanned
     {

@@ -30,12 +30,17 @@ namespace retroforge
     NodalVectors<double> X_before; ///< positions on the old mesh [mm]
     TetMesh              mesh;     ///< the new one; its X are the positions after
     TransferOperator     transfer;
+    /// Directions u in which the new nodes move together where the volume would not be kept otherwise: what
+    /// surface the correction of the volume may move. Empty where it can move none.
+    NodalVectors<double> spread         = {};
     double               removed_volume = 0.; ///< metal thinner than an element taken away [mm^3]
   };
 
   /// What the backward pass and a replay need of one increment. Positions follow from X_0 and the velocities.
   struct IncrementRecord
   {
+    double energy() const { return deformation_energy + friction_energy + closing_energy; } // [mJ]
+
     unsigned int operation = 0;
     double       stroke    = 0.; ///< of the leading die in the operation, at the start [mm]
     double       step      = 0.; ///< [mm]
@@ -47,9 +52,13 @@ namespace retroforge
     std::string                         scheme; ///< in time, by its name
     ContactNumerics                     contact;
     std::vector<ContactPair>            pairs;
-    std::vector<SolveRecord>            solves;           ///< one per stage of the scheme
-    double deformation_energy = 0., friction_energy = 0.; ///< of this increment [mJ]
-    /// Told, and of no use to the backward pass: force of each die on the workpiece [N], iterations.
+    std::vector<SolveRecord>            solves; ///< one per stage of the scheme
+    /// Spent in this increment [mJ]; the last one is what deformation and friction of the stages lack where
+    /// gaps close (spent_power.h).
+    double deformation_energy = 0., friction_energy = 0., closing_energy = 0.;
+    /// Told, and of no use to the backward pass: work of the dies on gaps that close [mJ], force of each die on
+    /// the workpiece [N], iterations.
+    double            closing_work = 0.;
     std::vector<Vec3> forces;
     unsigned int      newton = 0, krylov = 0, linear_solves = 0;
   };

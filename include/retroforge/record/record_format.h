@@ -20,8 +20,8 @@
 ///       faces                 [n_faces][4]      uint32        three nodes, patch
 ///       patch_0 ...           name; of a symmetry plane also the attributes point, normal  [3] double
 ///     /increment_000000 ...   attributes: run, n_nodes, n_velocity_nodes, operation, stroke, step, cuts,
-///     deformation_energy,
-///                             friction_energy, newton, krylov, linear_solves, sharp (the ramp is), and
+///                             deformation_energy, friction_energy, closing_energy, closing_work, newton, krylov,
+///                             linear_solves, sharp (the ramp is), counts_closing (energies do), and
 ///                             contact [5] double: approach, layer, step, width of the ramp, edge_stiffness
 ///       scheme                                  text          name of the time scheme
 ///       parameters                              text          only where other settings hold from here on
@@ -41,6 +41,7 @@
 ///         attribute: repaired, volume of metal thinner than an element taken away [mm^3]
 ///         begin               [n_nodes + 1]           uint32        rows of J,
 ///         node weight         [n_entries]             uint32, double
+///         spread              [n_nodes or 0][3]       double        directions in which the volume is corrected
 /// A finished file has at its root the attribute n_increments.
 namespace retroforge
 {

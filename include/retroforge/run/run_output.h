@@ -8,6 +8,7 @@
 #include <retroforge/output/objective_history.h>
 #include <retroforge/output/summary.h>
 #include <retroforge/output/time_left.h>
+#include <retroforge/run/power_balance.h>
 #include <retroforge/time/objective_trace.h>
 
 #include <memory>
@@ -43,6 +44,8 @@ namespace retroforge
     /// The increment in which most edges of quadratic velocities spanned corners.
     const Summary::Spanned &spanned() const { return spanned_; }
 
+    Summary::PowerBalance balance() const { return balance_.summary(); }
+
     /// Names of the dies that pressed no node.
     std::vector<std::string> untouched_dies() const;
 
@@ -64,6 +67,7 @@ namespace retroforge
     std::set<unsigned int> touched_; ///< dies that some node was pressed by
     Summary::Depth         deepest_;
     Summary::Spanned       spanned_;
+    PowerBalance           balance_;
     TimeLeft               time_left_;
     double                 seconds_ = Summary::unknown; ///< of the run by the end of the increment before
 

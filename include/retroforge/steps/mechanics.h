@@ -5,6 +5,7 @@
 #include <retroforge/core/rank_sum.h>
 #include <retroforge/record/increment_record.h>
 #include <retroforge/solver/newton.h>
+#include <retroforge/solver/spent_power.h>
 #include <retroforge/steps/point_states.h>
 #include <retroforge/steps/process.h>
 #include <retroforge/steps/scheme.h>
@@ -22,15 +23,6 @@ namespace retroforge
     double           reach             = 0.;    ///< nodes nearer than this to a die are watched [mm]
     double           adjoint_tolerance = 1e-10; ///< of the adjoint and tangent linear systems
     ShapeDerivatives shape_derivatives;         ///< of the backward sweep
-  };
-
-  /// Energy spent, deformation and friction [mJ].
-  template <typename Number>
-  struct Energy
-  {
-    Number deformation = 0., friction = 0.;
-
-    Number total() const { return deformation + friction; }
   };
 
   /// What flows backwards through a run for one scalar Phi.

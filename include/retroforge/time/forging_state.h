@@ -34,7 +34,7 @@ namespace retroforge
     unsigned int               numerics_increments = 0;
     std::optional<std::string> parameters; ///< the complete input, to be recorded with the next increment
 
-    Energy<double>            energy;
+    EnergyParts<double>       energy;
     unsigned int              increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;
     std::vector<unsigned int> remeshed; ///< the increments, from 0, that began on a new mesh
 

@@ -100,8 +100,12 @@ void require_sane(const IncrementRecord &record, unsigned int &n)
   }
   require(!record.solves.empty(), "there is no solve");
   require(record.forces.size() == header.die_facets.size(), "there are not as many forces as dies");
-  require(finite(record.forces) &&
-            finite({record.stroke, record.step, record.deformation_energy, record.friction_energy}),
+  require(finite(record.forces) && finite({record.stroke,
+                                           record.step,
+                                           record.deformation_energy,
+                                           record.friction_energy,
+                                           record.closing_energy,
+                                           record.closing_work}),
           "a number is not finite");
   for (const SolveRecord &solve : record.solves)
   {

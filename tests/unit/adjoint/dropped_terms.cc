@@ -27,6 +27,7 @@ namespace
                                                            {Term::ramp, "w'(delta)"},
                                                            {Term::lambda_bubble, "bubble part of lambda"},
                                                            {Term::power_bubble, "dPhi/dbeta"},
+                                                           {Term::closing, "the work on gaps that close"},
                                                            {Term::first_stage, "lambda of the first stage"},
                                                            {Term::dt, "d dt/d(speed)"},
                                                            {Term::tau, "d tau/d(speed)"}};

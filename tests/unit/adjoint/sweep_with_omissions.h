@@ -6,6 +6,7 @@
 
 #include <retroforge/core/dual.h>
 #include <retroforge/discretization/element_pairs.h>
+#include <retroforge/solver/spent_power.h>
 
 #include <map>
 
@@ -29,7 +30,8 @@ namespace retroforge
     coordinates,   // d delta / dX by way of the barycentric coordinates of the foot
     normals,       // corner normals of a smooth die in its vertices
     edge_ramp,     // what edges let nodes touch
-    edge_area      // d S / dX of edges
+    edge_area,     // d S / dX of edges
+    closing        // the work on gaps that close
   };
 
   /// A facet of a smooth die and a point, as project_smoothly() has them: 21 numbers.
@@ -270,7 +272,21 @@ namespace retroforge
       stage.scene.mesh, stage.scene.topology, stage.contact, stage.X, areas_bar, X_bar, contact_bar);
   }
 
-  /// Derivatives of weight * dt * power; returns those in W.
+  /// Derivatives of the power spent in its terms.
+  inline std::vector<double> power_weights(const std::vector<double> &terms)
+  {
+    std::vector<Dual>   at(terms.begin(), terms.end());
+    std::vector<double> weights;
+    for (Dual &term : at)
+    {
+      term.fastAccessDx(0) = 1.;
+      weights.push_back(spent_power(at).total().dx(0));
+      term.fastAccessDx(0) = 0.;
+    }
+    return weights;
+  }
+
+  /// Derivatives of weight * dt * power, of the only stage that is weighted; returns those in W.
   inline Field<double> reverse_energy(const Equilibrium<double> &stage,
                                       const Field<double>       &W,
                                       const ActiveSet           &active,
@@ -281,15 +297,17 @@ namespace retroforge
                                       ContactSetBar             &contact_bar,
                                       PhysicsBar                &bar)
   {
-    const TetMesh &mesh = stage.scene.mesh;
-    Field<double>  W_bar(stage.scene.discretization);
+    const TetMesh            &mesh    = stage.scene.mesh;
+    const std::vector<double> terms   = power_terms(EquilibriumView<double>{stage, W, active});
+    const std::vector<double> weights = power_weights(terms);
+    Field<double>             W_bar(stage.scene.discretization);
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
       CellValues<double> w_bar = {};
       const auto s = reverse_cell_dissipation(geometry_of_cell(stage.scene.discretization, stage.X, c),
                                               MiniPair::on_cell(stage.scene.discretization, W, c),
                                               stage.physics.material.law,
-                                              weight * dt,
+                                              weight * dt * weights[0],
                                               w_bar);
       for (unsigned int a = 0; a < 4; ++a)
       {
@@ -300,14 +318,26 @@ namespace retroforge
         MiniPair::bubble(stage.scene.discretization, W_bar, c) += w_bar.beta;
     }
     const auto reverse_node = [&](const unsigned int p) {
-      const auto node = reverse_friction_power(
-        stage.contact_node(p, W, active), stage.physics.material.law, stage.physics.contact, weight * dt);
+      const auto at   = stage.contact_node(p, W, active);
+      auto       node = reverse_friction_power(
+        at, stage.physics.material.law, stage.physics.contact, weight * dt * weights[1]);
+      if (omitted != Term::closing)
+      {
+        const double *of_die  = &weights[3 + 3 * stage.contact.pairs[p].die];
+        const double  factor  = weight * dt;
+        const auto    closing = reverse_closing_moments(
+          at, stage.physics.contact, {{factor * of_die[0], factor * of_die[1], factor * of_die[2]}});
+        node.u += closing.u;
+        node.n += closing.n;
+        node.delta += closing.delta;
+        node.tau += closing.tau;
+        node.S += closing.S;
+      }
       stage.contact.pairs[p].point.add_to_velocity(node.u, W_bar.V);
       return node;
     };
     reverse_contact(stage, omitted, reverse_node, X_bar, contact_bar, bar);
-    const auto [deformation, friction] = stage.power(W, active);
-    bar.dt += weight * (deformation + friction);
+    bar.dt += weight * spent_power(terms).total();
     return W_bar;
   }
 

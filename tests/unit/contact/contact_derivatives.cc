@@ -5,7 +5,7 @@
 // - the force is the gradient of the potential (differences of fourth order), the tangent the derivative of
 // the force,
 //   symmetric;
-// - the reverse sweeps of force and friction power agree with forward differentiation in each of their 15
+// - the reverse sweeps of force, friction power and the moments of closing agree with forward differentiation in each of their 15
 // inputs:
 //   pressed or not, sliding or stuck (zero slip), Newtonian without regularisation, without friction area;
 // - the same of friction after Coulomb, which follows the pressure, but for the symmetry of its tangent; a
@@ -147,10 +147,12 @@ void check_tangent(const NodeCase<double> &c, Errors &errors)
 
 void check_reverse(const NodeCase<double> &c, const Vec3 &lambda, Errors &errors)
 {
-  const double weight    = -0.7;
-  const auto   force_bar = values(reverse_contact_force(c.node, c.law, c.contact, lambda));
-  const auto   power_bar = values(reverse_friction_power(c.node, c.law, c.contact, weight));
-  std::map<std::string, std::vector<double>> force[2], power[2];
+  const double                weight    = -0.7;
+  const auto                  force_bar = values(reverse_contact_force(c.node, c.law, c.contact, lambda));
+  const auto                  power_bar = values(reverse_friction_power(c.node, c.law, c.contact, weight));
+  const std::array<double, 3> weights{{0.4, -1.1, 0.6}};
+  const auto                  closing_bar = values(reverse_closing_moments(c.node, c.contact, weights));
+  std::map<std::string, std::vector<double>> force[2], power[2], closing[2];
   for (unsigned int i = 0; i < n_inputs; ++i)
   {
     const NodeCase<Dual> d = vary(c, i);
@@ -159,11 +161,16 @@ void check_reverse(const NodeCase<double> &c, const Vec3 &lambda, Errors &errors
     force[1][names[i]].push_back(lambda[0] * f[0].dx(0) + lambda[1] * f[1].dx(0) + lambda[2] * f[2].dx(0));
     power[0][names[i]].push_back(power_bar[i]);
     power[1][names[i]].push_back(weight * friction_power(d.node, d.law, d.contact).dx(0));
+    const auto moments = closing_moments(d.node, d.contact);
+    closing[0][names[i]].push_back(closing_bar[i]);
+    closing[1][names[i]].push_back(weights[0] * moments[0].dx(0) + weights[1] * moments[1].dx(0) +
+                                   weights[2] * moments[2].dx(0));
   }
   for (const auto &[name, value] : force[0])
   {
     errors.compare("lambda·force in " + name, value, force[1][name]);
     errors.compare("friction power in " + name, power[0][name], power[1][name]);
+    errors.compare("closing moments in " + name, closing[0][name], closing[1][name]);
   }
 }
 

@@ -59,11 +59,12 @@ double difference(const double penetration)
 {
   const RecordedRun     run(flat_dies(penetration));
   const EnergyObjective energy;
-  const auto            energy_rows  = rows(run, energy);
-  const auto [deformation, friction] = EnergyObjective::split(energy_rows);
+  const auto            energy_rows           = rows(run, energy);
+  const auto [deformation, friction, closing] = EnergyObjective::split(energy_rows);
   Errors errors;
   errors.compare("deformation energy", deformation, run.state().energy.deformation);
   errors.compare("friction energy", friction, run.state().energy.friction);
+  errors.compare("closing energy", closing, run.state().energy.closing);
   errors.compare("energy", energy.value(energy_rows), run.state().energy.total());
   std::cout << "penetration " << penetration << std::endl;
   errors.print(1e-12);

@@ -43,8 +43,9 @@ TetMesh make_cube()
 class Upsetting
 {
 public:
-  explicit Upsetting(const ElementPair pair = ElementPair::mini)
-      : scene_(
+  explicit Upsetting(const ElementPair pair = ElementPair::mini, const bool counts_closing = false)
+      : counts_closing_(counts_closing)
+      , scene_(
           make_cube(),
           {pair},
           {Die("lower", Vec3(), Vec3({0., 0., 1.})), Die("upper", Vec3({0., 0., edge}), Vec3({0., 0., -1.}))},
@@ -69,8 +70,9 @@ public:
                                     {rho, 0.},
                                     {{lower, Vec3(), 0., {}}, {upper, Vec3({0., 0., -i * step}), 0., {}}}};
       const FrictionRamp    ramp{0.1, false};
-      const auto            pairs = find_contact_pairs(scene_.view(physics.dies, X), ramp, 1., true);
-      const auto contact = make_contact_set<double>(scene_.view(physics.dies, X), pairs, {ramp, 5. * dt});
+      const auto            pairs   = find_contact_pairs(scene_.view(physics.dies, X), ramp, 1., true);
+      const auto            contact = make_contact_set<double>(
+        scene_.view(physics.dies, X), pairs, {ramp, 5. * dt, {}, 1., counts_closing_});
       const Equilibrium<double> stage(scene_, physics, contact, X);
       const ActiveSet           active = stage.decide_active(W);
       rows.push_back({objective.integrals({stage, W, active}).complete(), dt, i * dt, i * step, step});
@@ -137,7 +139,8 @@ private:
 
   static constexpr double edge_stiffness = 0.3;
 
-  Scene scene_;
+  const bool counts_closing_;
+  Scene      scene_;
 };
 
 /// What a hand computes of increment i.
@@ -164,13 +167,14 @@ struct ByHand
 
 void check_values(const Upsetting &run)
 {
-  double              energy = 0., mean = 0., largest = 0.;
+  double              energy = 0., closing = 0., mean = 0., largest = 0.;
   std::vector<double> fold(4, 0.);
   ByHand              hand;
   for (int i = 0; i < n_increments; ++i, hand.advance())
   {
     const double begin = i * stroke / n_increments, end = (i + 1) * stroke / n_increments;
     energy += hand.dt * (v + faster) * hand.effort;
+    closing += hand.dt * rho * faster * faster * hand.q * hand.q; // all of it where m = 1
     mean += hand.effort * std::max(0., std::min(8.6, end) - std::max(4.1, begin)) / 4.5;
     largest = std::max(largest, hand.effort);
     for (int alpha = 1; alpha <= 4; ++alpha)
@@ -179,6 +183,9 @@ void check_values(const Upsetting &run)
   using Over = PathWindow::Over;
   Errors errors;
   errors.compare("energy", run.value(EnergyObjective()), energy);
+  errors.compare("energy with the work on gaps that close",
+                 Upsetting(ElementPair::mini, true).value(EnergyObjective()),
+                 energy + closing);
   const Effort by_power(1);
   errors.compare("mean effort over stroke", run.value(MeanEffort(by_power, {Over::stroke, 4.1, 8.6})), mean);
   errors.compare("mean effort over time", run.value(MeanEffort(by_power, {Over::time, 0.041, 0.086})), mean);

@@ -20,12 +20,13 @@ bool equal(const HistoryRow &a, const HistoryRow &b)
          a.energy == b.energy && a.volume == b.volume && a.min_quality == b.min_quality &&
          a.depth == b.depth && a.newton == b.newton && a.krylov == b.krylov &&
          a.whole_force == b.whole_force && a.whole_energy == b.whole_energy &&
-         a.whole_volume == b.whole_volume;
+         a.whole_volume == b.whole_volume && a.balance == b.balance;
 }
 
 int main()
 {
-  const HistoryRow first{1, 0.1, 1. / 3., 1e6 / 7., 2.5, 1000., 0.3, 0.0125, 7, 120, 4e6 / 7., 10., 4000.};
+  const HistoryRow first{
+    1, 0.1, 1. / 3., 1e6 / 7., 2.5, 1000., 0.3, 0.0125, 7, 120, 4e6 / 7., 10., 4000., 0.01 / 3.};
   const HistoryRow second{2,
                           0.2,
                           2. / 3.,
@@ -38,7 +39,8 @@ int main()
                           4000000000u,
                           1. / 11.,
                           -1e-300,
-                          0.};
+                          0.,
+                          -1. / 70.};
   {
     History history("history.csv");
     std::cout << read_file("history.csv");

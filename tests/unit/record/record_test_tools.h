@@ -89,13 +89,15 @@ namespace retroforge
     increment.cuts               = i % 3;
     increment.deformation_energy = number();
     increment.friction_energy    = number();
+    increment.closing_energy     = number();
+    increment.closing_work       = number();
     increment.newton             = i + 1;
     increment.krylov             = 10 * i;
     increment.linear_solves      = i + 2;
     if (i % 4 == 1)
       increment.parameters = "set K = 1\nset n = " + std::to_string(i) + "\n";
     increment.scheme  = i % 2 == 0 ? "midpoint" : "euler";
-    increment.contact = {number(), number(), number(), {number(), i % 2 == 0}, number()};
+    increment.contact = {number(), number(), number(), {number(), i % 2 == 0}, number(), i % 3 != 1};
     for (unsigned int d = 0; d < header.die_facets.size(); ++d)
       increment.forces.push_back(Vec3({number(), number(), number()}));
     for (NodeIndex k = 0; k < header.mesh.n_nodes(); k += 3)
@@ -142,7 +144,10 @@ namespace retroforge
     }
     J.set_offset(remesh->X_before, remesh->mesh.X);
     IncrementRecord increment = sample_increment(other, i);
-    increment.remesh          = remesh;
+    if (i % 2 == 0)
+      for (NodeIndex k = 0; k < remesh->mesh.n_nodes(); ++k)
+        remesh->spread.push_back(Vec3({0.1 * k, -1. / (k + 3.), 0.7}));
+    increment.remesh = remesh;
     return increment;
   }
 
@@ -164,22 +169,23 @@ namespace retroforge
     return same_bits(a.X_before, b.X_before) && same(a.mesh, b.mesh) &&
            a.transfer.n_old == b.transfer.n_old && same_bits(a.transfer.begin, b.transfer.begin) &&
            same_bits(a.transfer.node, b.transfer.node) && same_bits(a.transfer.weight, b.transfer.weight) &&
-           same_bits(a.transfer.offset, b.transfer.offset);
+           same_bits(a.transfer.offset, b.transfer.offset) && same_bits(a.spread, b.spread);
   }
 
   inline bool same(const ContactNumerics &a, const ContactNumerics &b)
   {
     return same_bits(a.approach, b.approach) && same_bits(a.layer, b.layer) && same_bits(a.step, b.step) &&
            same_bits(a.ramp.width, b.ramp.width) && a.ramp.sharp == b.ramp.sharp &&
-           same_bits(a.edge_stiffness, b.edge_stiffness);
+           same_bits(a.edge_stiffness, b.edge_stiffness) && a.counts_closing == b.counts_closing;
   }
 
   inline bool same(const IncrementRecord &a, const IncrementRecord &b)
   {
     bool equal = a.operation == b.operation && same_bits(a.stroke, b.stroke) && same_bits(a.step, b.step) &&
                  a.cuts == b.cuts && same_bits(a.deformation_energy, b.deformation_energy) &&
-                 same_bits(a.friction_energy, b.friction_energy) && a.newton == b.newton &&
-                 a.krylov == b.krylov && a.linear_solves == b.linear_solves &&
+                 same_bits(a.friction_energy, b.friction_energy) &&
+                 same_bits(a.closing_energy, b.closing_energy) && same_bits(a.closing_work, b.closing_work) &&
+                 a.newton == b.newton && a.krylov == b.krylov && a.linear_solves == b.linear_solves &&
                  same_bits(a.forces, b.forces) && a.parameters == b.parameters && a.scheme == b.scheme &&
                  same(a.contact, b.contact) && !a.remesh == !b.remesh &&
                  (!a.remesh || same(*a.remesh, *b.remesh)) && a.pairs.size() == b.pairs.size() &&

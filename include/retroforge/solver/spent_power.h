@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/solver/equilibrium.h>
+
+/// @file
+/// The power that is spent in an increment, and the force that follows from it, right where gaps close.
+///
+/// A point that a die would reach after a part theta of the increment comes towards it at the speed u at which
+/// it arrives at the increment's end, instead of at its own, u_f = u/theta. It is pressed all the while, and
+/// the die's force N does the work N u that no force does in truth. So the power that the dies give,
+///   sum_d R_d·v_d = D + C,   C = sum N u,   D: deformation and friction,
+/// is larger than what is spent, D. What is spent in truth, on the average over the increment, lies between:
+///   - Where single points arrive at a body that flows, the potential Phi = D/(1 + m) of the power law is
+///     Phi_f + dPhi (1 - theta)^2, and N = 2 dPhi (1 - theta)/u_f. The truth, theta D(u_f) + (1 - theta) D(0),
+///     is D + (1 + m)/2 C.
+///   - Where a die arrives at all points at once, the body flows as if the die came slower:
+///     D = c (v - u)^(1+m), C = c (v - u)^m u. The truth, c (v - u) v^m, is D^(1-m) (D + C)^m.
+/// Both are linear in u, so that they hold for a gap that closes in several increments, too. Between the two,
+/// the share of the second is for each die
+///   kappa = (sum N u)^2 / (sum N sum N u^2 + (0.001 D)^2),
+/// which is 1 where all pressed points close at one speed, about the share of the arriving points in the
+/// force where most of them rest, and 0 where nothing closes but what the penalty lets sink in.
+///
+/// With  w C  for what is added to D, all forces are multiplied by  (D + w C) / (D + C):  the power of the dies
+/// is then what is spent, and the forces are in equilibrium as before.
+namespace retroforge
+{
+  /// Energy [mJ] or power [mJ/s] by what it is spent on.
+  template <typename Number>
+  struct EnergyParts
+  {
+    Number deformation = Number(0.), friction = Number(0.);
+    Number closing = Number(0.); ///< w C: what the sums over the stages lack where gaps close
+
+    Number total() const { return deformation + friction + closing; }
+  };
+
+  /// What a stage contributes to the power of its increment. Terms are sums over the stages, weighted as the
+  /// time scheme does, and over ranks; their number is n_power_terms().
+  /// @return this rank's part
+  template <typename Number>
+  std::vector<Number> power_terms(const EquilibriumView<Number> &view);
+
+  /// Returns how many terms there are.
+  inline std::size_t n_power_terms(const std::size_t n_dies)
+  {
+    return 3 + 3 * n_dies;
+  }
+
+  /// Adds the derivatives of  weights·power_terms.
+  void reverse_power_terms(const EquilibriumView<double> &view,
+                           const std::vector<double>     &weights,
+                           EquilibriumBar                &bar);
+
+  /// Returns what is spent in an increment with these terms [mJ/s].
+  template <typename Number>
+  EnergyParts<Number> spent_power(const std::vector<Number> &terms);
+
+  /// Returns C, the power of the dies that is spent on nothing [mJ/s].
+  template <typename Number>
+  Number closing_power(const std::vector<Number> &terms);
+
+  /// Returns  (D + w C) / (D + C),  by which forces of dies are multiplied; 1 where the dies have no power.
+  template <typename Number>
+  Number force_factor(const std::vector<Number> &terms);
+} // namespace retroforge

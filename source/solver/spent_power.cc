@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/dual.h>
+#include <retroforge/solver/contact_pullback.h>
+#include <retroforge/solver/spent_power.h>
+
+namespace retroforge
+{
+  namespace
+  {
+    // Order of the terms: deformation, friction, m, then three moments of each die.
+    constexpr std::size_t of_friction = 1, of_m = 2, of_dies = 3;
+
+    /// Part of the power below which closing is no arrival: there kappa would follow the last digits.
+    constexpr double negligible_closing = 0.001;
+
+    /// m is no sum: one rank has it.
+    bool has_number_of_metal(const Scene &scene)
+    {
+      return dealii::Utilities::MPI::this_mpi_process(scene.discretization.comm()) == 0;
+    }
+
+    template <typename Number>
+    bool is_counted(const Equilibrium<Number> &stage, const unsigned int p)
+    {
+      return stage.contact.counts_closing &&
+             stage.scene.discretization.owns(stage.contact.pairs[p].point.nodes[0]);
+    }
+  } // namespace
+
+  template <typename Number>
+  std::vector<Number> power_terms(const EquilibriumView<Number> &view)
+  {
+    const Equilibrium<Number> &stage = view.stage;
+    std::vector<Number>        terms(n_power_terms(stage.scene.dies.size()), Number(0.));
+    std::tie(terms[0], terms[of_friction]) = stage.power(view.W, view.active);
+    if (has_number_of_metal(stage.scene))
+      terms[of_m] = stage.physics.material.law.m;
+    for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
+      if (is_counted(stage, p))
+      {
+        const auto moments =
+          closing_moments(stage.contact_node(p, view.W, view.active), stage.physics.contact);
+        for (unsigned int i = 0; i < 3; ++i)
+          terms[of_dies + 3 * stage.contact.pairs[p].die + i] += moments[i];
+      }
+    return terms;
+  }
+
+  void reverse_power_terms(const EquilibriumView<double> &view,
+                           const std::vector<double>     &weights,
+                           EquilibriumBar                &bar)
+  {
+    const Equilibrium<double> &stage = view.stage;
+    Assert(weights.size() >= n_power_terms(stage.scene.dies.size()),
+           dealii::ExcDimensionMismatch(weights.size(), n_power_terms(stage.scene.dies.size())));
+    reverse_power(view, weights[0], weights[of_friction], bar);
+    if (has_number_of_metal(stage.scene))
+      bar.physics.material.law.m += weights[of_m];
+    ContactPullback pullback(view, bar);
+    for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
+      if (is_counted(stage, p))
+      {
+        const double *of_die = &weights[of_dies + 3 * stage.contact.pairs[p].die];
+        pullback.add(p,
+                     reverse_closing_moments(stage.contact_node(p, view.W, view.active),
+                                             stage.physics.contact,
+                                             {{of_die[0], of_die[1], of_die[2]}}));
+      }
+    pullback.finish();
+  }
+
+  template <typename Number>
+  Number closing_power(const std::vector<Number> &terms)
+  {
+    Number C(0.);
+    for (std::size_t d = of_dies; d < terms.size(); d += 3)
+      C += terms[d + 1];
+    return C;
+  }
+
+  template <typename Number>
+  EnergyParts<Number> spent_power(const std::vector<Number> &terms)
+  {
+    Assert(terms.size() >= of_dies && (terms.size() - of_dies) % 3 == 0,
+           dealii::ExcMessage("the terms of an increment's power are three, and three of each die"));
+    const Number       &m = terms[of_m];
+    EnergyParts<Number> parts{terms[0], terms[of_friction], Number(0.)};
+    const Number        D = parts.total();
+    Number              at_once(0.);
+    for (std::size_t d = of_dies; d < terms.size(); d += 3)
+    {
+      const Number *moments = &terms[d];
+      const Number  squares = moments[0] * moments[2] + (negligible_closing * D) * (negligible_closing * D);
+      if (value_of(squares) > 0.)
+        at_once += moments[1] * (moments[1] * moments[1] / squares);
+    }
+    parts.closing = 0.5 * (1. + m) * (closing_power(terms) - at_once);
+    // Below 0 dies give way all at once: the first order of the same.
+    if (value_of(at_once) > 0. && value_of(D) > 0.)
+      parts.closing += D * (power(Number(1. + at_once / D), m) - 1.);
+    else
+      parts.closing += m * at_once;
+    return parts;
+  }
+
+  template <typename Number>
+  Number force_factor(const std::vector<Number> &terms)
+  {
+    const EnergyParts<Number> parts = spent_power(terms);
+    const Number              given = parts.deformation + parts.friction + closing_power(terms);
+    return value_of(given) > 0. ? Number(parts.total() / given) : Number(1.);
+  }
+
+#define RETROFORGE_INSTANTIATE(Number)                                       \
+  template std::vector<Number> power_terms(const EquilibriumView<Number> &); \
+  template EnergyParts<Number> spent_power(const std::vector<Number> &);     \
+  template Number              closing_power(const std::vector<Number> &);   \
+  template Number              force_factor(const std::vector<Number> &);
+  RETROFORGE_INSTANTIATE(double)
+  RETROFORGE_INSTANTIATE(Dual)
+#undef RETROFORGE_INSTANTIATE
+} // namespace retroforge
