@@ -42,7 +42,8 @@ namespace retroforge
           if (mesh.is_surface(face))
             for (const NodeIndex node : face.nodes)
               held[node] = held[node] || touches(mesh.X[node]);
-      const double moved = correct_volume(mesh, report.volume_before, held, parameters.ridge_angle);
+      auto [moved, directions] = correct_volume(mesh, report.volume_before, held, parameters.ridge_angle);
+      result.spread            = std::move(directions);
       result.correction.resize(mesh.n_nodes());
       for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
       {

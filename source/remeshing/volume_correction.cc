@@ -72,20 +72,6 @@ namespace retroforge
       return constraints;
     }
 
-    // g_k = dV/dX_k: a third of the area vectors of the faces at k.
-    NodalVectors<double> area_vectors(const TetMesh &mesh)
-    {
-      NodalVectors<double> g(mesh.n_nodes());
-      for (const auto &face : mesh.faces)
-      {
-        const auto &n = face.nodes;
-        const Vec3  a = cross_product_3d(mesh.X[n[1]] - mesh.X[n[0]], mesh.X[n[2]] - mesh.X[n[0]]) / 6.;
-        for (const NodeIndex node : n)
-          g[node] += a;
-      }
-      return g;
-    }
-
     struct Directions
     {
       NodalVectors<double> u;
@@ -141,25 +127,39 @@ namespace retroforge
     }
   } // namespace
 
-  double correct_volume(TetMesh                 &mesh,
-                        const double             wanted_volume,
-                        const std::vector<bool> &held,
-                        const double             ridge_angle)
+  NodalVectors<double> volume_gradient(const std::vector<BoundaryFace> &faces, const NodalVectors<double> &X)
+  {
+    NodalVectors<double> g(X.size());
+    for (const auto &face : faces)
+    {
+      const auto &n = face.nodes;
+      const Vec3  a = cross_product_3d(X[n[1]] - X[n[0]], X[n[2]] - X[n[0]]) / 6.;
+      for (const NodeIndex node : n)
+        g[node] += a;
+    }
+    return g;
+  }
+
+  VolumeCorrection correct_volume(TetMesh                 &mesh,
+                                  const double             wanted_volume,
+                                  const std::vector<bool> &held,
+                                  const double             ridge_angle)
   {
     const double tolerance = 1e-14 * wanted_volume;
     double       missing   = wanted_volume - volume(mesh.cells, mesh.X);
-    if (std::abs(missing) <= negligible * wanted_volume)
-      return 0;
-    const auto normals = face_unit_normals(mesh.faces, mesh.X);
-    auto       g       = area_vectors(mesh);
-    auto       moves =
+    const bool   is_right  = std::abs(missing) <= negligible * wanted_volume;
+    const auto   normals   = face_unit_normals(mesh.faces, mesh.X);
+    const auto   g         = volume_gradient(mesh.faces, mesh.X);
+    auto         moves =
       directions(mesh, g, node_constraints(mesh, normals, flat_faces(mesh, normals, ridge_angle)), held);
     if (moves.area < 1e-3 * surface_area(mesh) && std::abs(missing) > negligible_if_flat * wanted_volume)
       moves = directions(
         mesh, g, node_constraints(mesh, normals, std::vector<bool>(mesh.faces.size(), false)), held);
 
+    if (moves.area < 1e-3 * surface_area(mesh))
+      return {};
     double distance = 0;
-    for (unsigned int i = 0; i < max_iterations && std::abs(missing) > tolerance; ++i)
+    for (unsigned int i = 0; !is_right && i < max_iterations && std::abs(missing) > tolerance; ++i)
     {
       if (moves.area < 1e-3 * surface_area(mesh))
         break;
@@ -170,6 +170,6 @@ namespace retroforge
       if (step == 0. || !(std::abs(missing) < before))
         break; // rounding, or no room
     }
-    return std::abs(distance);
+    return {std::abs(distance), std::move(moves.u)};
   }
 } // namespace retroforge

@@ -368,6 +368,7 @@ namespace retroforge
   {
     auto                   record = std::make_shared<RemeshRecord>();
     std::vector<NodeIndex> old_node;
+    NodalVectors<double>   spread;
     const auto             make_numbered = [&]() {
       const NodalVectors<double> rounded = on_grid(X);
       const SizeField            size =
@@ -381,10 +382,14 @@ namespace retroforge
       old_node.resize(number.size());
       for (NodeIndex k = 0; k < number.size(); ++k)
         old_node[number[k]] = made.old_node[k];
+      spread.resize(made.spread.size());
+      for (NodeIndex k = 0; k < spread.size(); ++k)
+        spread[number[k]] = made.spread[k];
       return std::move(made.mesh);
     };
     record->mesh = make_on_root("Remeshing", make_numbered, comm_, &old_node);
     MPI_Bcast(&record->removed_volume, 1, MPI_DOUBLE, 0, comm_);
+    record->spread    = dealii::Utilities::MPI::broadcast(comm_, spread, 0);
     record->X_before  = X;
     const auto timing = timings.scope("transfer");
     record->transfer  = make_transfer(mesh, X, record->mesh, old_node);

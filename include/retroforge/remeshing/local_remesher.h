@@ -21,6 +21,8 @@ namespace retroforge
     /// Displacement of each kept node by the volume correction; zero for those that kept their position bit
     /// for bit.
     NodalVectors<double> correction;
+    /// Directions in which nodes may move for the sake of the volume (VolumeCorrection::directions).
+    NodalVectors<double> spread;
     RemeshingReport      report;
   };
 

@@ -7,6 +7,16 @@
 
 namespace retroforge
 {
+  /// How a volume was corrected.
+  struct VolumeCorrection
+  {
+    double               distance = 0.; ///< |d|, the farthest that a node moved [mm]
+    NodalVectors<double> directions;    ///< u; empty where no surface can move
+  };
+
+  /// Returns dV/dX_k of each node: a third of the area vectors of the faces at it [mm^2].
+  NodalVectors<double> volume_gradient(const std::vector<BoundaryFace> &faces, const NodalVectors<double> &X);
+
   /// Gives a mesh a wanted volume by moving the nodes of its curved surface, all by the same distance along
   /// the outward normal: spread so thinly it stays invisible, where correcting only touched nodes would make
   /// bumps.
@@ -19,7 +29,6 @@ namespace retroforge
   /// of the error stays.
   /// @param held         nodes that must not move
   /// @param ridge_angle  faces of one patch that turn by more bound a flat piece [degrees]
-  /// @return the farthest a node moved [length]
-  double
+  VolumeCorrection
   correct_volume(TetMesh &mesh, double wanted_volume, const std::vector<bool> &held, double ridge_angle);
 } // namespace retroforge

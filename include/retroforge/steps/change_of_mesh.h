@@ -7,9 +7,27 @@
 
 /// @file
 /// The step that takes the workpiece from one mesh to the next. What happens to a member of the state follows
-/// from its kind: positions X' = J X + c, one number per node q' = J q, one per cell transfer_cells().
+/// from its kind: positions X' = J X + c + d u, one number per node q' = J q, one per cell transfer_cells().
+///
+/// The offset c is a constant. With it alone a change of X would change the volume of the new mesh by another
+/// amount than that of the old one, by some per mille, and most derivatives with it, since the volume is what
+/// energy and filling depend on most. So the distance d by which the free surface moves along u
+/// (RemeshRecord::spread), as remeshing itself corrects the volume, is such that
+///   V'(J X + c + d u) - V(X)
+/// stays what it was when the mesh was made, where d = 0.
 namespace retroforge
 {
+  /// Returns the positions of the new nodes [mm].
+  template <typename Number>
+  NodalVectors<Number>
+  positions_after(const TetMesh &old_mesh, const RemeshRecord &remesh, const NodalVectors<Number> &X);
+
+  /// Returns the derivatives in X of a scalar from those in the new positions, where d = 0.
+  NodalVectors<double> reverse_positions_after(const TetMesh              &old_mesh,
+                                               const RemeshRecord         &remesh,
+                                               const NodalVectors<double> &X,
+                                               const NodalVectors<double> &positions_bar);
+
   /// Takes a member of the state to the new mesh, each kind by its overload; on dual numbers its tangent.
   template <typename Number>
   struct MemberTransfer

@@ -127,7 +127,7 @@ void volume_corrections()
   TetMesh      mesh   = cylinder("6", "");
   const auto   X      = mesh.X;
   const double wanted = 1.002 * volume(mesh.cells, mesh.X);
-  const double moved  = correct_volume(mesh, wanted, std::vector<bool>(mesh.n_nodes(), false), 40.);
+  const double moved  = correct_volume(mesh, wanted, std::vector<bool>(mesh.n_nodes(), false), 40.).distance;
   double       ends = 0, most = 0;
   for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
   {

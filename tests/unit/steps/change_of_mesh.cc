@@ -60,6 +60,7 @@ namespace
     meshes.remesh.X_before = meshes.X;
     meshes.remesh.mesh     = std::move(made.mesh);
     meshes.remesh.transfer = make_transfer(meshes.old_mesh, meshes.X, meshes.remesh.mesh, made.old_node);
+    meshes.remesh.spread   = std::move(made.spread);
     return meshes;
   }
 
@@ -165,6 +166,21 @@ int main(int argc, char **argv)
                  change_mesh(old_mesh, meshes.remesh, before).strain ==
                  transfer_cells<double>(old_mesh, before.X, meshes.remesh.transfer, new_mesh, before.strain))
             << "\n";
+
+  // How much more the new mesh's volume changes than the old one's, over what it changes.
+  const auto excess = [&](const RemeshRecord &remesh) {
+    NodalVectors<double> moved = meshes.X;
+    for (Vec3 &x : moved)
+      x = Vec3({1.01 * x[0], 1.01 * x[1] + 0.05 * std::sin(x[2]), x[2]});
+    const double was = volume(old_mesh.cells, meshes.X), change = volume(old_mesh.cells, moved) - was;
+    return std::abs(volume(new_mesh.cells, positions_after(old_mesh, remesh, moved)) -
+                    volume(new_mesh.cells, new_mesh.X) - change) /
+           change;
+  };
+  RemeshRecord by_offset = meshes.remesh;
+  by_offset.spread.clear();
+  std::cout << "the volume changes as it did: " << yes(excess(meshes.remesh) < 1e-11)
+            << ", by the offset alone it does not: " << yes(excess(by_offset) > 1e-5) << "\n";
 
   const auto small = [](const double defect) { return yes(defect < 1e-14); };
   const auto none  = [](auto &field) { for_each_number([](double &x) { x = 0.; }, field); };
