@@ -12,7 +12,10 @@ namespace retroforge
     constexpr std::size_t of_friction = 1, of_m = 2, of_dies = 3;
 
     /// Part of the power below which closing is no arrival: there kappa would follow the last digits.
-    constexpr double negligible_closing = 0.001;
+    constexpr double negligible_closing = 0.005;
+
+    /// Part of an increment that a die presses after it arrived, below which it does not count.
+    constexpr double just_touching = 1e-12;
 
     /// m is no sum: one rank has it.
     bool has_number_of_metal(const Scene &scene)
@@ -96,11 +99,12 @@ namespace retroforge
         at_once += moments[1] * (moments[1] * moments[1] / squares);
     }
     parts.closing = 0.5 * (1. + m) * (closing_power(terms) - at_once);
-    // Below 0 dies give way all at once: the first order of the same.
-    if (value_of(at_once) > 0. && value_of(D) > 0.)
-      parts.closing += D * (power(Number(1. + at_once / D), m) - 1.);
-    else
+    // Below 0 dies give way all at once: the first order of the same. A die that hardly reaches the metal by
+    // the end of the increment spends nothing.
+    if (value_of(at_once) <= 0.)
       parts.closing += m * at_once;
+    else if (value_of(D) > just_touching * value_of(at_once))
+      parts.closing += D * (power(Number(1. + at_once / D), m) - 1.);
     return parts;
   }
 

@@ -19,7 +19,7 @@
 ///     D = c (v - u)^(1+m), C = c (v - u)^m u. The truth, c (v - u) v^m, is D^(1-m) (D + C)^m.
 /// Both are linear in u, so that they hold for a gap that closes in several increments, too. Between the two,
 /// the share of the second is for each die
-///   kappa = (sum N u)^2 / (sum N sum N u^2 + (0.001 D)^2),
+///   kappa = (sum N u)^2 / (sum N sum N u^2 + (0.005 D)^2),
 /// which is 1 where all pressed points close at one speed, about the share of the arriving points in the
 /// force where most of them rest, and 0 where nothing closes but what the penalty lets sink in.
 ///
