@@ -11,8 +11,8 @@ namespace retroforge
     // Order of the terms: deformation, friction, m, then three moments of each die.
     constexpr std::size_t of_friction = 1, of_m = 2, of_dies = 3;
 
-    /// Part of the power below which closing is no arrival: there kappa would follow the last digits.
-    constexpr double negligible_closing = 0.005;
+    /// Speed of closing, as a part of the die's, below which points rest: there kappa would follow the last digits.
+    constexpr double at_rest = 0.005;
 
     /// Part of an increment that a die presses after it arrived, below which it does not count.
     constexpr double just_touching = 1e-12;
@@ -94,16 +94,18 @@ namespace retroforge
     for (std::size_t d = of_dies; d < terms.size(); d += 3)
     {
       const Number *moments = &terms[d];
-      const Number  squares = moments[0] * moments[2] + (negligible_closing * D) * (negligible_closing * D);
-      if (value_of(squares) > 0.)
-        at_once += moments[1] * (moments[1] * moments[1] / squares);
+      const Number  rest = (at_rest * D) * (at_rest * D), square = moments[0] * moments[2] + rest;
+      if (value_of(square) > 0.)
+        at_once += moments[1] * ((moments[1] * moments[1] + rest) / square);
     }
     parts.closing = 0.5 * (1. + m) * (closing_power(terms) - at_once);
-    // Below 0 dies give way all at once: the first order of the same. A die that hardly reaches the metal by
-    // the end of the increment spends nothing.
-    if (value_of(at_once) <= 0.)
-      parts.closing += m * at_once;
-    else if (value_of(D) > just_touching * value_of(at_once))
+    // A die that hardly reaches the metal by the end of the increment spends nothing; one that gives way to it
+    // faster than it could close follows the tangent.
+    const double least = -0.5 * value_of(D);
+    if (value_of(at_once) < least)
+      parts.closing +=
+        D * (power(Number(0.5), m) - 1.) + m * power(Number(0.5), Number(m - 1.)) * (at_once + 0.5 * D);
+    else if (value_of(D) > just_touching * std::abs(value_of(at_once)))
       parts.closing += D * (power(Number(1. + at_once / D), m) - 1.);
     return parts;
   }

@@ -19,7 +19,7 @@ from block_meshes import block, msh  # noqa: E402
 from whole_runs import ROOT, changed, command, judge, main, prm, run, start, summary_of, text_of, write  # noqa: E402
 
 SIDE, N = 20.0, 4
-STEP = 1e-4  # of motions of some mm; no contact is decided otherwise within it
+STEP = 6e-5  # of motions of some mm; no contact is decided otherwise within it
 OBJECTIVES = ("energy", "mean strain")
 TIGHT = {"Newton": {"tolerance": 1e-13}, "Adjoint": {"tolerance": 1e-14}, "Remeshing": {"when": "never"}, "Output": {"fields every": 0}}
 SCENE = changed(TIGHT, {

@@ -33,6 +33,7 @@ Parameters flat_dies(const double penetration)
   p.press.stroke         = 3.;
   p.press.increments     = 4;
   p.contact.penetration  = penetration;
+  p.contact.counts_closing = false; // with it the two are one number (unit/steps/closing_gap)
   p.newton.tolerance     = 1e-12;
   p.linear_solver.method = LinearSolverParameters::Method::direct;
   return p;
@@ -60,11 +61,10 @@ double difference(const double penetration)
   const RecordedRun     run(flat_dies(penetration));
   const EnergyObjective energy;
   const auto            energy_rows           = rows(run, energy);
-  const auto [deformation, friction, closing] = EnergyObjective::split(energy_rows);
+  const auto energy_parts = EnergyObjective::split(energy_rows);
   Errors errors;
-  errors.compare("deformation energy", deformation, run.state().energy.deformation);
-  errors.compare("friction energy", friction, run.state().energy.friction);
-  errors.compare("closing energy", closing, run.state().energy.closing);
+  errors.compare("deformation energy", energy_parts.deformation, run.state().energy.deformation);
+  errors.compare("friction energy", energy_parts.friction, run.state().energy.friction);
   errors.compare("energy", energy.value(energy_rows), run.state().energy.total());
   std::cout << "penetration " << penetration << std::endl;
   errors.print(1e-12);

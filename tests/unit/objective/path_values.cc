@@ -132,6 +132,22 @@ public:
     return std::pow(sum / areas, 1. / exponent);
   }
 
+  /// Sum of what the nodes of the top push on, a third of all surface faces at each, of a cube of side q and
+  /// height h [mm^2].
+  double pushed_area(const double q, const double h) const
+  {
+    const auto at = [&](const NodeIndex k) {
+      return Vec3({x(k)[0] * q / edge, x(k)[1] * q / edge, x(k)[2] * h / edge});
+    };
+    double sum = 0.;
+    for (const BoundaryFace &face : scene_.mesh.faces)
+      for (const NodeIndex k : face.nodes)
+        if (is_on_top(k))
+          sum += 0.5 / 3. *
+                 cross(at(face.nodes[1]) - at(face.nodes[0]), at(face.nodes[2]) - at(face.nodes[0])).norm();
+    return sum;
+  }
+
 private:
   const Vec3 &x(const NodeIndex k) const { return scene_.mesh.X[k]; }
   bool        is_linear() const { return scene_.discretization.pair() == ElementPair::mini; }
@@ -174,7 +190,7 @@ void check_values(const Upsetting &run)
   {
     const double begin = i * stroke / n_increments, end = (i + 1) * stroke / n_increments;
     energy += hand.dt * (v + faster) * hand.effort;
-    closing += hand.dt * rho * faster * faster * hand.q * hand.q; // all of it where m = 1
+    closing += hand.dt * rho * faster * faster * run.pushed_area(hand.q, hand.h); // all of it where m = 1
     mean += hand.effort * std::max(0., std::min(8.6, end) - std::max(4.1, begin)) / 4.5;
     largest = std::max(largest, hand.effort);
     for (int alpha = 1; alpha <= 4; ++alpha)

@@ -37,6 +37,7 @@ Parameters frictionless_block()
   p.press.increments       = 1;
   p.contact.approach       = 1.;
   p.contact.penetration    = 1e-8;
+  p.contact.counts_closing = false; // forces are then those that pressures add up to
   p.newton.tolerance       = 1e-11;
   p.linear_solver.method   = LinearSolverParameters::Method::direct;
   return p;

@@ -5,7 +5,7 @@
 // arrives within an increment, at all nodes at once. In closed form the energy is
 //   E = c (h1^-m - h0^-m)/m,  c = sqrt(3)^(m+1) K v^m V,  and  dE/dg = -c h1^(-m-1).
 // - Energy and derivative by the offset of the die, in 15 and 40 increments, both pairs of elements, power laws
-//   and Newtonian metal: 2e-4 and 1e-2; those of the stages alone lack up to some per cent.
+//   and Newtonian metal: 2e-4 and 5e-3; those of the stages alone lack up to some per cent.
 // - The work of the forces is the energy, and without what is spent on gaps that close it is not.
 // - On the tilted block, whose nodes arrive one by one, the derivatives of the energy and of both efforts agree
 //   with the direct method and with differences of replays, the exponent m among them.
@@ -76,14 +76,14 @@ namespace
       for (const IncrementRecord &record : run.records)
         work += record.forces[upper] * Vec3({0., 0., -record.step});
       const double slope = run.adjoint().process.dies[upper].displacement[2];
-      std::printf("  %s, gap %.2f, %2u increments: energy within 2e-4: %s, slope within 1e-2: %s, the "
+      std::printf("  %s, gap %.2f, %2u increments: energy within 2e-4: %s, slope within 5e-3: %s, the "
                   "forces' work: %s; "
                   "deformation alone is short by 4e-4 or more: %s\n",
                   pair == ElementPair::mini ? "mini" : "P2-P1",
                   gap,
                   increments,
                   yes(std::abs(energy.total() / exact.energy - 1.) < 2e-4),
-                  yes(std::abs(slope / exact.slope - 1.) < 1e-2),
+                  yes(std::abs(slope / exact.slope - 1.) < 5e-3),
                   yes(std::abs(work / energy.total() - 1.) < 1e-8),
                   yes(energy.deformation / exact.energy - 1. < -4e-4));
     }
@@ -192,17 +192,17 @@ namespace
       {
         const double D = std::pow(1. - theta, 1. + m), N = std::pow(1. - theta, m), truth = 1. - theta;
         const auto   at_once = terms(D, m, {{0.4 * N, theta}, {0.6 * N, theta}});
-        slower               = slower && std::abs(spent_power(at_once).total() / truth - 1.) < 2e-3;
+        slower               = slower && std::abs(spent_power(at_once).total() / truth - 1.) < 1e-12;
         forces = forces && std::abs((D + N * theta) * force_factor(at_once) / spent_power(at_once).total() -
                                     1.) < 1e-14;
       }
-      // One point of a thousandth of the force.
-      const auto   one = terms(1., m, {{1., 0.}, {1e-3, 0.2}});
-      const double C   = 1e-3 * 0.2;
-      single           = single && std::abs(spent_power(one).closing / C / (0.5 * (1. + m)) - 1.) < 1e-3;
+      // One point of a hundredth of the force.
+      const auto   one = terms(1., m, {{1., 0.}, {1e-2, 0.3}});
+      const double C   = 1e-2 * 0.3;
+      single           = single && std::abs(spent_power(one).closing / C / (0.5 * (1. + m)) - 1.) < 0.05;
       const double u   = 1e-7;
       const auto   by_penalty = terms(1., m, {{1., u}});
-      sunk = sunk && std::abs(spent_power(by_penalty).closing / u / (0.5 * (1. + m)) - 1.) < 1e-6;
+      sunk                    = sunk && std::abs(spent_power(by_penalty).closing / u / m - 1.) < 1e-6;
     }
     std::printf("by hand: a die that comes slower: %s, one of many: %s, sunk in: %s, forces: %s\n",
                 yes(slower),
