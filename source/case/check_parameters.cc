@@ -25,13 +25,15 @@ namespace retroforge
     prm.add_parameter("taylor halvings", taylor_halvings, "Units: none.", Integer(2));
     prm.add_parameter("replayed bar",
                       replayed_bar,
-                      "Relative error that the best replayed central difference must reach: the forces of contact, penalties times "
+                      "Relative error that the best replayed central difference must reach: the forces of "
+                      "contact, penalties times "
                       "small differences of speeds, are known to some 1e-10. Units: none.",
                       Double(0.));
-    prm.add_parameter("tangent bar",
-                      tangent_bar,
-                      "Relative difference allowed between adjoint and direct method, for the same reason. Units: none.",
-                      Double(0.));
+    prm.add_parameter(
+      "tangent bar",
+      tangent_bar,
+      "Relative difference allowed between adjoint and direct method, for the same reason. Units: none.",
+      Double(0.));
     prm.add_parameter(
       "taylor bar", taylor_bar, "Least order of the Taylor remainder. Units: none.", Double(0.));
     prm.leave_subsection();

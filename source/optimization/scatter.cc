@@ -63,7 +63,9 @@ namespace retroforge
 
   Evaluation Scatter::combined(const std::vector<double> &mu, const std::vector<Evaluation> &samples) const
   {
-    AssertDimension(samples.size(), n_samples());
+    Assert(samples.size() == n_samples() ||
+             (!samples.empty() && samples.size() < n_samples() && samples.back().failed()),
+           dealii::ExcMessage("there is a forging for each value, up to one that fails"));
     if (empty())
       return samples.front();
     Evaluation all;

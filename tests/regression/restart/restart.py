@@ -19,7 +19,7 @@ from whole_runs import contents, changed, cube, history_of, judge, main, prm, ru
 CASE = changed(cube(20, 7, 12, 6, **{"largest move": 0.18, "max cuts": 0}), {
     "Die upper": {"facing": "0.08, 0.05, -1"}, "Contact": {"penetration": 1e-4}, "Remeshing": {"when": "never"},
     "Objectives": {"names": "energy, mean strain"}, "Design": {"parameters": "material/m, billet/height"},
-    "Check": {"steps": "1e-5, 1e-6", "taylor start": 3e-4, "taylor halvings": 2, "free differences": "false"}})
+    "Check": {"steps": "1e-5, 1e-6", "taylor start": 1e-4, "taylor halvings": 2, "free differences": "false"}})
 
 FINER = ("Remeshing/when=increments", "Remeshing/every=4", "Press/increments=20", "Press/largest move=0.042", "Press/max cuts=1")
 OTHER = (*FINER[:2], "Press/increments=60", "Press/scheme=euler", "Contact/layer=0.8", "Contact/approach=1.5", "Newton/tolerance=1e-10")

@@ -28,14 +28,14 @@ Parameters flat_dies(const double penetration)
   p.dies[1].velocity    = Vec3({0, 0, -100});
   for (DieParameters &die : p.dies)
     die.friction = 0.4;
-  p.material.law.m       = 0.3;
-  p.material.law.e0      = 0.01;
-  p.press.stroke         = 3.;
-  p.press.increments     = 4;
-  p.contact.penetration  = penetration;
+  p.material.law.m         = 0.3;
+  p.material.law.e0        = 0.01;
+  p.press.stroke           = 3.;
+  p.press.increments       = 4;
+  p.contact.penetration    = penetration;
   p.contact.counts_closing = false; // with it the two are one number (unit/steps/closing_gap)
-  p.newton.tolerance     = 1e-12;
-  p.linear_solver.method = LinearSolverParameters::Method::direct;
+  p.newton.tolerance       = 1e-12;
+  p.linear_solver.method   = LinearSolverParameters::Method::direct;
   return p;
 }
 
@@ -60,9 +60,9 @@ double difference(const double penetration)
 {
   const RecordedRun     run(flat_dies(penetration));
   const EnergyObjective energy;
-  const auto            energy_rows           = rows(run, energy);
-  const auto energy_parts = EnergyObjective::split(energy_rows);
-  Errors errors;
+  const auto            energy_rows  = rows(run, energy);
+  const auto            energy_parts = EnergyObjective::split(energy_rows);
+  Errors                errors;
   errors.compare("deformation energy", energy_parts.deformation, run.state().energy.deformation);
   errors.compare("friction energy", energy_parts.friction, run.state().energy.friction);
   errors.compare("energy", energy.value(energy_rows), run.state().energy.total());
