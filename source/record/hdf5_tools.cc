@@ -3,6 +3,7 @@
 #include <retroforge/record/hdf5_tools.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <type_traits>
@@ -364,6 +365,12 @@ namespace retroforge::hdf5
     check(H5Dread(dataset, string_type(length), H5S_ALL, H5S_ALL, H5P_DEFAULT, value.data()), name);
     value.resize(std::strlen(value.c_str()));
     return value;
+  }
+
+  void check_finite(const double *values, const std::size_t n, const std::string &name)
+  {
+    if (!std::all_of(values, values + n, [](const double value) { return std::isfinite(value); }))
+      throw Failure(name + " holds a number that is not finite");
   }
 
 #define RETROFORGE_INSTANTIATE(Number)                                                                   \

@@ -5,6 +5,7 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/fingerprint.h>
 #include <retroforge/mesh/mesh_checks.h>
+#include <retroforge/record/contact_record.h>
 #include <retroforge/record/record_format.h>
 
 #include <algorithm>
@@ -34,25 +35,18 @@ namespace retroforge
       return X;
     }
 
-    /// Records hold finite numbers only: those of a step that diverged are not written.
-    void check_finite(const double *values, const std::size_t n, const std::string &name)
-    {
-      if (!std::all_of(values, values + n, [](const double value) { return std::isfinite(value); }))
-        throw hdf5::Failure(name + " holds a number that is not finite");
-    }
-
     std::vector<double>
     read_numbers(const hid_t parent, const std::string &name, const std::vector<hsize_t> &shape)
     {
       std::vector<double> values = hdf5::read_array<double>(parent, name, shape);
-      check_finite(values.data(), values.size(), name);
+      hdf5::check_finite(values.data(), values.size(), name);
       return values;
     }
 
     double read_number(const hid_t object, const std::string &name)
     {
       const double value = hdf5::read_attribute<double>(object, name);
-      check_finite(&value, 1, name);
+      hdf5::check_finite(&value, 1, name);
       return value;
     }
 
@@ -87,7 +81,7 @@ namespace retroforge
         Plane plane;
         hdf5::read_attribute(group, "point", plane.point.begin_raw(), 3);
         hdf5::read_attribute(group, "normal", plane.normal.begin_raw(), 3);
-        check_finite(plane.point.begin_raw(), 3, "point");
+        hdf5::check_finite(plane.point.begin_raw(), 3, "point");
         if (!(std::abs(plane.normal.norm() - 1.) < 1e-6))
           throw hdf5::Failure("the normal of " + name + " has not length one");
         patch.symmetry = plane;
@@ -218,26 +212,6 @@ namespace retroforge
       check_mesh(remesh->mesh, where);
       J.set_offset(remesh->X_before, remesh->mesh.X);
       return remesh;
-    }
-
-    void write_contact(const hid_t group, const ContactNumerics &contact)
-    {
-      const double numbers[] = {
-        contact.approach, contact.layer, contact.step, contact.ramp.width, contact.edge_stiffness};
-      const unsigned int sharp = contact.ramp.sharp ? 1 : 0, counts_closing = contact.counts_closing ? 1 : 0;
-      hdf5::write_attribute(group, "contact", numbers, 5);
-      hdf5::write_attribute(group, "sharp", &sharp);
-      hdf5::write_attribute(group, "counts_closing", &counts_closing);
-    }
-
-    ContactNumerics read_contact(const hid_t group)
-    {
-      double numbers[5];
-      hdf5::read_attribute(group, "contact", numbers, 5);
-      check_finite(numbers, 5, "contact");
-      const auto sharp          = hdf5::read_attribute<unsigned int>(group, "sharp");
-      const auto counts_closing = hdf5::read_attribute<unsigned int>(group, "counts_closing");
-      return {numbers[0], numbers[1], numbers[2], {numbers[3], sharp != 0}, numbers[4], counts_closing != 0};
     }
 
     void write_solves(const hid_t                     group,

@@ -119,4 +119,7 @@ namespace retroforge::hdf5
   /// UTF-8, of any length. May not hold zero bytes.
   void        write_string(hid_t parent, const std::string &name, const std::string &value);
   std::string read_string(hid_t parent, const std::string &name);
+
+  /// Throws Failure unless all n numbers are finite: those of a step that diverged are not written.
+  void check_finite(const double *values, std::size_t n, const std::string &name);
 } // namespace retroforge::hdf5
