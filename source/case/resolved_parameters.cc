@@ -11,23 +11,25 @@
 
 namespace retroforge
 {
+  /// Of the billet's extent along the way: a step that is fine for all but what is filled or nearly closed.
+  constexpr double fine_step = 2.5e-3;
+
   BilletSize Parameters::size_of(const TetMesh &mesh) const
   {
-    const double side = std::cbrt(volume(mesh.cells, mesh.X));
-    if (!billet.is_from_file())
-      return {side, billet.whole_height()};
-    const Vec3 &velocity = dies[leading_die()].velocity;
-    const Vec3  way      = velocity / velocity.norm();
-    double      lowest = std::numeric_limits<double>::max(), highest = std::numeric_limits<double>::lowest();
+    const double side     = std::cbrt(volume(mesh.cells, mesh.X));
+    const Vec3  &velocity = dies[leading_die()].velocity;
+    const Vec3   way      = velocity / velocity.norm();
+    double       lowest = std::numeric_limits<double>::max(), highest = std::numeric_limits<double>::lowest();
     for (const Vec3 &x : mesh.X)
     {
       lowest  = std::min(lowest, x * way);
       highest = std::max(highest, x * way);
     }
-    const bool halved = std::any_of(mesh.patches.begin(), mesh.patches.end(), [&](const Patch &patch) {
+    const bool   halved = std::any_of(mesh.patches.begin(), mesh.patches.end(), [&](const Patch &patch) {
       return patch.symmetry && std::abs(patch.symmetry->normal * way) > 1. - 1e-6;
     });
-    return {side, (halved ? 2. : 1.) * (highest - lowest)};
+    const double extent = (halved ? 2. : 1.) * (highest - lowest);
+    return {side, billet.is_from_file() ? extent : billet.whole_height(), extent};
   }
 
   void Parameters::check_derived(const BilletSize &size) const
@@ -69,18 +71,25 @@ namespace retroforge
 
   Parameters &Parameters::resolve_defaults(const BilletSize &size)
   {
-    const double smooth_step = 2.5e-3 * size.height;
     if (press.increments == 0)
     {
-      constexpr double most   = 1e9;
-      const double     number = std::max(1., std::ceil(closing_path() / smooth_step - 1e-9));
-      if (!(number <= most))
+      constexpr double most    = 1e8;
+      const auto       of_size = [&](const double step) {
+        return std::max(1., std::ceil(closing_path() / (step * size.extent) - 1e-9));
+      };
+      if (const double number = of_size(fine_step); !(number <= most))
         throw Error("Press/stroke",
-                    "is so long that it takes " + as_text(number) + " increments",
-                    "there may be 1e9",
+                    "is so long that it may take " + as_text(number) + " increments",
+                    "there may be 1e8",
                     "shorten the stroke, or set Press/increments");
-      press.increments = number;
+      press.largest_strain  = std::sqrt(press.accuracy);
+      press.increments      = of_size(*press.largest_strain);
+      press.most_increments = 10 * std::max(of_size(fine_step), of_size(*press.largest_strain));
     }
+    else
+      press.most_increments = 10 * std::min(press.increments, 100000000u);
+    touching_gap_ =
+      contact.approach * (press.largest_strain ? fine_step * size.extent : closing_path() / press.increments);
     check_derived(size);
     const Process<double> made = process(size);
     edge_stiffness_            = std::min(
@@ -142,7 +151,7 @@ namespace retroforge
                                      press.stroke,
                                      material.law.K,
                                      made_billet,
-                                     step_model().contact.ramp}));
+                                     FrictionRamp{touching_gap_, step_model().contact.ramp.sharp}}));
     return made;
   }
 
@@ -163,12 +172,13 @@ namespace retroforge
     model.contact.edge_stiffness = edge_stiffness_;
     model.contact.counts_closing = contact.counts_closing;
     model.contact.ramp.width     = contact.ramp_width * contact.approach * closing;
+    model.contact.ramp.wall      = contact.ramp_at_walls;
     const double layer           = model.contact.ramp.sharp ? 0. : contact.layer;
     model.contact.layer          = layer * contact.approach * closing;
     model.contact.step           = step;
     // Where a node meets the approach speed that closes at that of the dies.
     const double arrival = layer == 0. ? 1. : layer * std::sinh(1. / layer);
-    model.reach = std::max({3., 3. * contact.ramp_width, 1.5 * arrival}) * contact.approach * closing;
+    model.reach = std::max({3., 1.5 * contact.ramp_width, 1.5 * arrival}) * contact.approach * closing;
     model.adjoint_tolerance = adjoint.tolerance;
     model.shape_derivatives = adjoint.shape_derivatives;
     return model;

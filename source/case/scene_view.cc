@@ -147,7 +147,7 @@ namespace retroforge
       return;
     Parameters &parameters = parts.parameters;
     attempt([&]() { parts.mesh = make_billet(parameters.billet, MPI_COMM_SELF); });
-    BilletSize size = {1., 1.}; // where it is unknown: what follows from it is not shown
+    BilletSize size = {1., 1., 1.}; // where it is unknown: what follows from it is not shown
     if (parts.mesh)
     {
       parts.X = parts.mesh->X;

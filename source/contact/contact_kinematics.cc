@@ -93,7 +93,7 @@ namespace retroforge
     {
       std::vector<double> own_bar = ramps_bar, at;
       for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-        at.push_back(ramp(contact.projections[p].delta, contact.pairs[p].touching));
+        at.push_back(own_ramp(contact, ramp, p, contact.projections[p].delta));
       std::vector<double> before; // of the node, at each step
       for (const auto &[node, edge] : contact.touched_by_edges)
       {
@@ -187,12 +187,14 @@ namespace retroforge
     contact.tau                                                = approach.tau;
     contact.approach                                           = approach.law;
     contact.quadratic                                          = edges != nullptr;
-    PairOfVelocityNode index;
+    const RampScales<Number> scales(approach.ramp, states);
+    PairOfVelocityNode       index;
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
       if (pairs[p].point.has_own_velocity())
         index[{pairs[p].die, pairs[p].point.velocity_node}] = p;
-      contact.ramps.push_back(approach.ramp(contact.projections[p].delta, pairs[p].touching));
+      contact.scales.push_back(scales(pairs[p].die, contact.projections[p].n));
+      contact.ramps.push_back(own_ramp(contact, approach.ramp, p, contact.projections[p].delta));
     }
     if (edges)
     {
@@ -239,28 +241,31 @@ namespace retroforge
     AssertDimension(bar.n.size(), contact.pairs.size());
     AssertDimension(X_bar.size(), view.X.size());
     AssertDimension(dies_bar.size(), view.dies.size());
-    std::vector<double> gaps_bar = bar.delta;
+    std::vector<double> gaps_bar = bar.delta, scales_bar(contact.pairs.size(), 0.);
     if (contact.quadratic)
-      reverse_level_gaps(view.X, ramp, contact, bar.ramp, gaps_bar, X_bar);
+      reverse_level_gaps(view.X, ramp, contact, bar.ramp, gaps_bar, scales_bar, X_bar);
     else
     {
       const std::vector<double> ramps_bar = reverse_touched_by_edges(contact, ramp, bar.ramp);
       for (unsigned int p = 0; p < gaps_bar.size(); ++p)
-        gaps_bar[p] += ramps_bar[p] * ramp.derivative(contact.projections[p].delta);
+        reverse_own_ramp(
+          contact, ramp, p, contact.projections[p].delta, ramps_bar[p], gaps_bar[p], scales_bar[p]);
     }
+    const RampScales<double> scales(ramp, view.states);
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
     {
       // Of the sums of all ranks, a rank has the part of its own points.
-      if (gaps_bar[p] == 0. && bar.n[p].norm_square() == 0.)
+      if (gaps_bar[p] == 0. && scales_bar[p] == 0. && bar.n[p].norm_square() == 0.)
         continue;
       const ContactPair &pair    = contact.pairs[p];
       DieState<double>  &die_bar = dies_bar[pair.die];
-      Vec3               at_point;
+      Vec3               at_point, n_bar = bar.n[p];
+      scales.reverse(pair.die, contact.projections[p].n, scales_bar[p], n_bar, dies_bar);
       view.dies[pair.die].reverse_project(pair.point.position(view.X),
                                           view.states[pair.die].displacement,
                                           pair.feature,
                                           gaps_bar[p],
-                                          bar.n[p],
+                                          n_bar,
                                           at_point,
                                           die_bar.displacement,
                                           die_bar.vertices.empty() ? nullptr : &die_bar.vertices);

@@ -62,12 +62,17 @@ namespace retroforge
       "0, or the sharp law, for none. In units of approach times the path by which the dies close in an "
       "increment: its stroke, where one die moves. Units: none.",
       dealii::Patterns::Double(0.));
+    prm.add_parameter("ramp width",
+                      ramp_width,
+                      "Gap over which friction sets in where dies close head-on, in units of approach times "
+                      "the path by which "
+                      "the dies close in an increment: its stroke, where one die moves. Units: none.",
+                      dealii::Patterns::Double(1e-6, 100.));
     prm.add_parameter(
-      "ramp width",
-      ramp_width,
-      "Gap over which friction sets in, in units of approach times the path by which the dies close in an "
-      "increment: its stroke, where one die moves. Units: none.",
-      dealii::Patterns::Double(1e-6, 100.));
+      "ramp at walls",
+      ramp_at_walls,
+      "Part of that gap over which friction sets in at walls, along which dies close. Units: none.",
+      dealii::Patterns::Double(1e-3, 1.));
     prm.add_parameter(
       "penetration",
       penetration,
@@ -91,8 +96,14 @@ namespace retroforge
     prm.leave_subsection();
     tag(prm, "Contact", SettingRole::scene);
     // Measured in increments, or of the mesh.
-    for (const char *setting :
-         {"points", "closing work", "largest depth", "edge sinking", "approach", "layer", "ramp width"})
+    for (const char *setting : {"points",
+                                "closing work",
+                                "largest depth",
+                                "edge sinking",
+                                "approach",
+                                "layer",
+                                "ramp width",
+                                "ramp at walls"})
       tag(prm, std::string("Contact/") + setting, SettingRole::numerics);
   }
 

@@ -7,6 +7,10 @@
 
 namespace retroforge
 {
+  /// Relative difference of squared speeds up to which the choice between two velocities is not left to
+  /// rounding.
+  constexpr double as_fast = 1e-9;
+
   template <typename Number>
   Number FrictionRamp::operator()(const Number &delta, const bool touching) const
   {
@@ -27,6 +31,62 @@ namespace retroforge
     return -30. * t * t * (1. - t) * (1. - t) / width;
   }
 
+  template <typename Number>
+  RampScales<Number>::RampScales(const FrictionRamp &ramp, const std::vector<DieState<Number>> &states)
+      : wall_(ramp.wall)
+  {
+    Assert(wall_ > 0. && wall_ <= 1., dealii::ExcMessage("walls have a part of the ramp's width"));
+    if (wall_ == 1.)
+      return;
+    for (unsigned int d = 0; d < states.size(); ++d)
+    {
+      Closing fastest{states[d].velocity};
+      for (unsigned int b = 0; b < states.size(); ++b)
+      {
+        const Vector3<Number> relative = states[d].velocity - states[b].velocity;
+        if (b != d &&
+            value_of(relative * relative) > value_of(fastest.velocity * fastest.velocity) * (1. + as_fast))
+          fastest = {relative, b};
+      }
+      closing_.push_back(fastest);
+    }
+  }
+
+  template <typename Number>
+  Number RampScales<Number>::operator()(const unsigned int die, const Vector3<Number> &n) const
+  {
+    using std::sqrt;
+    if (closing_.empty())
+      return Number(1.);
+    const Vector3<Number> &v  = closing_[die].velocity;
+    const Number           v2 = v * v, n_v = n * v;
+    if (value_of(v2) == 0.)
+      return Number(1.);
+    return sqrt(Number(wall_ * wall_ + (1. - wall_ * wall_) * (n_v * n_v / v2)));
+  }
+
+  template <typename Number>
+  void RampScales<Number>::reverse(const unsigned int             die,
+                                   const Vector3<Number>         &n,
+                                   const double                   s_bar,
+                                   Vector3<Number>               &n_bar,
+                                   std::vector<DieState<Number>> &states_bar) const
+  {
+    if (closing_.empty() || s_bar == 0.)
+      return;
+    const Vector3<Number> &v  = closing_[die].velocity;
+    const Number           v2 = v * v, n_v = n * v;
+    if (value_of(v2) == 0.)
+      return;
+    // First in n, then in v, of (n·v)^2/|v|^2.
+    const Number along_bar = s_bar * (1. - wall_ * wall_) * n_v / (v2 * (*this)(die, n));
+    n_bar += along_bar * v;
+    const Vector3<Number> v_bar = along_bar * (n - n_v / v2 * v);
+    states_bar[die].velocity += v_bar;
+    if (closing_[die].other != invalid_index)
+      states_bar[closing_[die].other].velocity -= v_bar;
+  }
+
   namespace
   {
     /// Least bulge of a die into an edge that counts, as a part of the edge's length, as seen from its ends.
@@ -38,6 +98,7 @@ namespace retroforge
       unsigned int point;
       DieFeature   feature;
       double       delta;
+      bool         touching; ///< delta <= width of the ramp there
     };
 
     /// Returns the features of die d that points 0 … n - 1 see within reach, ascending. Each rank looks at
@@ -45,20 +106,25 @@ namespace retroforge
     /// @param position  of a point
     template <typename Position>
     std::vector<Seen> seen_by(const ContactView<double> &view,
+                              const FrictionRamp        &ramp,
                               const unsigned int         d,
                               const std::size_t          n,
                               const double               reach,
                               const Position            &position)
     {
-      std::vector<Seen> seen;
+      const RampScales<double> scales(ramp, view.states);
+      std::vector<Seen>        seen;
       const auto [begin, end] = share_of_rank(n, view.comm);
       for (std::size_t i = begin; i < end; ++i)
       {
         const Vec3 x = position(i);
         if (const DieFeature feature = view.dies[d].closest(x, view.states[d].displacement, reach);
             feature.found())
+        {
+          const auto [delta, normal] = view.dies[d].project(x, view.states[d], feature);
           seen.push_back(
-            {static_cast<unsigned int>(i), feature, view.dies[d].project(x, view.states[d], feature).delta});
+            {static_cast<unsigned int>(i), feature, delta, delta <= ramp.width * scales(d, normal)});
+        }
       }
       return joined(std::move(seen), view.comm);
     }
@@ -78,13 +144,14 @@ namespace retroforge
       const auto             middle = [&](const std::size_t e) {
         return ContactPoint::middle(edges[e][0], edges[e][1]).position(X);
       };
-      for (const auto &[e, feature, at_middle] : seen_by(view, d, edges.size(), reach, middle))
+      for (const auto &[e, feature, at_middle, touching] :
+           seen_by(view, ramp, d, edges.size(), reach, middle))
       {
         const auto &[a, b] = edges[e];
         if (at_middle <= reach &&
             at_middle < 0.5 * (delta[a] + delta[b]) - least_bulge * (X[a] - X[b]).norm())
         {
-          pairs.push_back({ContactPoint::middle(a, b), d, at_middle <= ramp.width, feature});
+          pairs.push_back({ContactPoint::middle(a, b), d, touching, feature});
           for (const NodeIndex k : edges[e])
             if (!(delta[k] <= reach))
               ends.push_back(k);
@@ -94,7 +161,7 @@ namespace retroforge
       ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
       const auto     node      = [&](const std::size_t i) { return X[ends[i]]; };
       constexpr auto any_reach = std::numeric_limits<double>::max();
-      for (const Seen &seen : seen_by(view, d, ends.size(), any_reach, node))
+      for (const Seen &seen : seen_by(view, ramp, d, ends.size(), any_reach, node))
         pairs.push_back({ContactPoint::node(ends[seen.point]), d, false, seen.feature});
     }
   } // namespace
@@ -125,17 +192,18 @@ namespace retroforge
         continue;
       const auto add = [&](const ContactPoint &point, const Seen &seen) {
         if (seen.delta <= reach)
-          pairs.push_back({point, d, seen.delta <= ramp.width, seen.feature});
+          pairs.push_back({point, d, seen.touching, seen.feature});
       };
       std::vector<double> delta(X.size(), std::numeric_limits<double>::infinity());
-      for (const Seen &seen : seen_by(view, d, nodes.size(), reach, node))
+      for (const Seen &seen : seen_by(view, ramp, d, nodes.size(), reach, node))
       {
         delta[nodes[seen.point]] = seen.delta;
         add(ContactPoint::node(nodes[seen.point]), seen);
       }
       if (view.edges)
-        for (const Seen &seen : seen_by(
-               view, d, edges.size(), reach, [&](const std::size_t e) { return middle(e).position(X); }))
+        for (const Seen &seen : seen_by(view, ramp, d, edges.size(), reach, [&](const std::size_t e) {
+               return middle(e).position(X);
+             }))
           add(middle(seen.point), seen);
       else if (with_edges && view.dies[d].surface())
         add_edges(view, d, delta, ramp, reach, pairs);
@@ -145,4 +213,8 @@ namespace retroforge
 
   template double FrictionRamp::operator()(const double &, bool) const;
   template Dual FrictionRamp::operator()(const Dual &, bool) const;
+  template RampScales<double>::RampScales(const FrictionRamp &, const std::vector<DieState<double>> &);
+  template RampScales<Dual>::RampScales(const FrictionRamp &, const std::vector<DieState<Dual>> &);
+  template double RampScales<double>::operator()(unsigned int, const Vec3 &) const;
+  template Dual RampScales<Dual>::operator()(unsigned int, const Vector3<Dual> &) const;
 } // namespace retroforge

@@ -44,7 +44,7 @@ namespace retroforge
       bulge.length      = sqrt(Number(edge * edge));
       const Number size = value_of(bulge.b) < 0. ? Number(-bulge.b) : bulge.b;
       bulge.c           = smoothness(Number(size / bulge.length - smooth_bulge), true);
-      bulge.w           = ramp(gaps[chord.middle], pair.touching);
+      bulge.w           = own_ramp(contact, ramp, chord.middle, gaps[chord.middle]);
       return bulge;
     }
 
@@ -88,7 +88,7 @@ namespace retroforge
     {
       const Chord &chord   = contact.chords[e];
       const auto   touches = [&](const unsigned int p) {
-        return ramp(contact.own_gaps[p], contact.pairs[p].touching) >= half;
+        return own_ramp(contact, ramp, p, contact.own_gaps[p]) >= half;
       };
       if (!touches(chord.middle) && !(touches(chord.ends[0]) && touches(chord.ends[1])))
         continue;
@@ -116,7 +116,7 @@ namespace retroforge
     const Offsets<Number> offsets(bulges, contact);
     const auto            set = [&](const unsigned int p, const Number &gap) {
       contact.projections[p].delta = gap;
-      contact.ramps[p]             = ramp(gap, contact.pairs[p].touching);
+      contact.ramps[p]             = own_ramp(contact, ramp, p, gap);
     };
     for (const Chord &chord : contact.chords)
       for (const unsigned int v : chord.ends)
@@ -141,25 +141,31 @@ namespace retroforge
                           const ContactSet<double>   &contact,
                           const std::vector<double>  &ramps_bar,
                           std::vector<double>        &gaps_bar,
+                          std::vector<double>        &scales_bar,
                           NodalVectors<double>       &X_bar)
   {
     AssertDimension(ramps_bar.size(), contact.pairs.size());
     AssertDimension(gaps_bar.size(), contact.pairs.size());
+    AssertDimension(scales_bar.size(), contact.pairs.size());
     AssertDimension(X_bar.size(), X.size());
     const auto            bulges = bulges_of(X, ramp, contact);
     const Offsets<double> offsets(bulges, contact);
-    const auto            gap   = [&](const unsigned int p) { return contact.projections[p].delta; };
-    std::vector<double>   w_bar = ramps_bar, c_bar(bulges.size(), 0.);
+    const auto            gap = [&](const unsigned int p) { return contact.projections[p].delta; };
+    const auto reverse_ramp   = [&](const unsigned int p, const double at, const double of, double &at_bar) {
+      reverse_own_ramp(contact, ramp, p, at, of, at_bar, scales_bar[p]);
+    };
+    std::vector<double> w_bar = ramps_bar, c_bar(bulges.size(), 0.);
     // The middles' gaps, which depend on their ends'.
     for (std::size_t e = 0; e < bulges.size(); ++e)
     {
       const auto &[m, ends, images] = contact.chords[e];
-      const double at_middle        = gaps_bar[m] + w_bar[m] * ramp.derivative(gap(m));
-      const double apart            = 0.5 * (gap(ends[0]) + gap(ends[1])) - contact.own_gaps[m];
-      const double both             = contact.ramps[ends[0]] * contact.ramps[ends[1]];
-      w_bar[m]                      = 0.;
-      gaps_bar[m]                   = (1. - both * bulges[e].c) * at_middle;
-      c_bar[e]                      = both * apart * at_middle;
+      double at_middle              = gaps_bar[m];
+      reverse_ramp(m, gap(m), w_bar[m], at_middle);
+      const double apart = 0.5 * (gap(ends[0]) + gap(ends[1])) - contact.own_gaps[m];
+      const double both  = contact.ramps[ends[0]] * contact.ramps[ends[1]];
+      w_bar[m]           = 0.;
+      gaps_bar[m]        = (1. - both * bulges[e].c) * at_middle;
+      c_bar[e]           = both * apart * at_middle;
       for (unsigned int i = 0; i < 2; ++i)
       {
         gaps_bar[ends[i]] += 0.5 * both * bulges[e].c * at_middle;
@@ -168,7 +174,7 @@ namespace retroforge
     }
     // The ramps of all others, which depend on nothing but their gaps, and the vertices' offsets.
     for (unsigned int p = 0; p < gaps_bar.size(); ++p)
-      gaps_bar[p] += w_bar[p] * ramp.derivative(gap(p));
+      reverse_ramp(p, gap(p), w_bar[p], gaps_bar[p]);
     const std::vector<double> levelled_bar = gaps_bar;
     for (std::size_t e = 0; e < bulges.size(); ++e)
     {
@@ -186,7 +192,8 @@ namespace retroforge
       }
       const double size_bar = c_bar[e] * smoothness.derivative(bulge.excess()) / bulge.length;
       b_bar += bulge.b < 0. ? -size_bar : size_bar;
-      gaps_bar[m] += own_w_bar * ramp.derivative(contact.own_gaps[m]) - b_bar;
+      reverse_ramp(m, contact.own_gaps[m], own_w_bar, gaps_bar[m]);
+      gaps_bar[m] -= b_bar;
       for (const unsigned int v : ends)
         gaps_bar[v] += 0.5 * b_bar;
       const auto &nodes = contact.pairs[m].point.nodes;

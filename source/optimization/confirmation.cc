@@ -24,7 +24,11 @@ namespace retroforge
       set("Billet/element size", part * forging_case.parameters.billet.element_size);
       if (forging_case.parameters.remeshing.element_size > 0.)
         set("Remeshing/element size", part * forging_case.parameters.remeshing.element_size);
-      set("Press/increments", std::ceil(forging_case.parameters.press.increments / part - 1e-9));
+      const PressParameters &press = forging_case.parameters.press;
+      if (press.largest_strain)
+        set("Press/accuracy", std::max(press.accuracy * part * part, 1e-6));
+      else
+        set("Press/increments", std::ceil(press.increments / part - 1e-9));
       return command;
     }
 

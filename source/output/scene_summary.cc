@@ -239,8 +239,10 @@ namespace retroforge
       out << "  press\n    stroke " << as_text(press.stroke) << " mm of die " << press.leading_die << ", "
           << as_text(press.seconds) << " s";
       if (press.increments > 0) // else they follow from the billet
-        out << "; " << press.increments << " increments" << (press.is_free ? " (chosen by the program)" : "")
-            << " of " << as_text(press.stroke / press.increments) << " mm, "
+        out << "; "
+            << (press.is_free ? "increments chosen by the program, of at most "
+                              : std::to_string(press.increments) + " increments of ")
+            << as_text(press.stroke / press.increments) << " mm, "
             << as_text(press.seconds / press.increments) << " s each";
       out << '\n';
     }

@@ -75,13 +75,16 @@ namespace retroforge
 
   std::string resume_hint_after_failure(const Case &forging_case, const double stroke, const bool remakes)
   {
-    const std::string remeshing =
+    const PressParameters &press = forging_case.parameters.press;
+    const std::string      remeshing =
       remakes ? "'Remeshing/element size=" + as_text(0.7 * forging_case.edge_length()) + "'"
-              : "Remeshing/when=quality";
+                   : "Remeshing/when=quality";
     return "go on from stroke " + as_text(stroke) +
            " mm, up to which it is recorded, by the same command with --resume" +
            (forging_case.command.overwrite ? " in place of --overwrite" : "") +
-           " and other numerics, for instance --set Press/increments=" +
-           std::to_string(2 * forging_case.parameters.press.increments) + " or --set " + remeshing;
+           " and other numerics, for instance --set Press/" +
+           (press.largest_strain ? "accuracy=" + as_text(0.25 * press.accuracy)
+                                 : "increments=" + std::to_string(2 * press.increments)) +
+           " or --set " + remeshing;
   }
 } // namespace retroforge

@@ -119,7 +119,8 @@ namespace retroforge
 
   void RunOutput::watch_edges(const IncrementEvent &event)
   {
-    const EdgeFit fit = edge_fit(event.X_before, event.record.contact.ramp, event.solved.start->contact);
+    const EdgeFit fit =
+      edge_fit(event.X_before, event.record.contact.ramp_in(event.record.step), event.solved.start->contact);
     if (fit.spanning > spanned_.spanning)
       spanned_ = {fit.touching,
                   fit.spanning,

@@ -16,7 +16,7 @@ namespace retroforge
       , dt(process.duration(place(record)))
       , contact(make_contact_set<Number>(scene.view(physics.dies, state.X),
                                          record.pairs,
-                                         {record.contact.ramp,
+                                         {record.contact.ramp_in(record.step),
                                           Number(record.contact.approach * dt),
                                           record.contact.approach_law(record.step),
                                           record.contact.edge_stiffness,
@@ -185,22 +185,24 @@ namespace retroforge
     const Physics<double> physics = process.over(place(record));
     if (!replay)
     {
-      record.scheme  = model_.scheme.name;
-      record.contact = model_.contact;
+      record.scheme = model_.scheme.name;
+      if (record.contact.step == 0.)
+        record.contact = model_.contact;
     }
     // A run that is resumed must not differ from one that was not.
     system_.reset();
-    std::size_t n_watched = 0;
-    for (double reach = model_.reach;; reach *= 2.)
+    std::size_t  n_watched   = 0;
+    const double least_reach = model_.reach * (record.contact.step / model_.contact.step);
+    for (double reach = least_reach;; reach *= 2.)
     {
       // A wider search that finds nothing more has found all there is.
       bool all_found = false;
       if (!replay)
       {
         const auto timing = timings_.scope("contact");
-        record.pairs =
-          find_contact_pairs(scene_.view(physics.dies, X), record.contact.ramp, reach, model_.edges_touch);
-        all_found = reach > model_.reach && record.pairs.size() == n_watched;
+        record.pairs      = find_contact_pairs(
+          scene_.view(physics.dies, X), record.contact.ramp_in(record.step), reach, model_.edges_touch);
+        all_found = reach > least_reach && record.pairs.size() == n_watched;
         n_watched = record.pairs.size();
       }
       const auto start  = start_of(process, state, record);

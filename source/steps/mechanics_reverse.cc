@@ -128,7 +128,7 @@ namespace retroforge
         if (s == 0)
           reverse_contact_set(scene_.view(start.physics.dies, X),
                               start.contact,
-                              record.contact.ramp,
+                              record.contact.ramp_in(record.step),
                               bar.contact.part(),
                               position_bar.part(),
                               physics.dies);

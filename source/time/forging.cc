@@ -12,6 +12,12 @@ namespace retroforge
   /// Increments between looks at whether the surface of a mesh that is not remade crosses itself.
   constexpr unsigned int fold_interval = 5;
 
+  /// Of a step for accuracy: where metal flows that fast, a part of it that does not matter does.
+  constexpr unsigned int most_halvings = 6;
+
+  /// The last increment of an operation is about this part of what its strain would let it be.
+  constexpr double shortest_at_end = 12.;
+
   Forging::Forging(const ForgingModel    &model,
                    const PressParameters &press,
                    const StrokeStep      &end,
@@ -32,6 +38,26 @@ namespace retroforge
     state.epoch     = std::move(epoch);
     return state;
   }
+
+  namespace
+  {
+    /// Mean of the strains of an increment over the metal, weighted with themselves: that of the metal that
+    /// flows.
+    double mean_flow_strain(const TetMesh                   &mesh,
+                            const WorkpieceState<3, double> &after,
+                            const CellField<double>         &strain_before)
+    {
+      double sum = 0., of_squares = 0.;
+      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+      {
+        const double weighted =
+          (after.strain[c] - strain_before[c]) * cell_geometry(corners(mesh.cells[c], after.X)).volume;
+        sum += weighted;
+        of_squares += (after.strain[c] - strain_before[c]) * weighted;
+      }
+      return sum > 0. ? of_squares / sum : 0.;
+    }
+  } // namespace
 
   std::optional<StepRejection> Forging::attempt(const Process<double> &process,
                                                 const ForgingState    &state,
@@ -136,7 +162,8 @@ namespace retroforge
                                  ForgingState          &state,
                                  const Observer        &observer) const
   {
-    const NodalVectors<double> X_before = state.workpiece.X;
+    const NodalVectors<double> X_before      = state.workpiece.X;
+    const CellField<double>    strain_before = state.workpiece.strain;
     if (Increment::reads_history(process))
       state.starts.push_back(without_positions(state.workpiece));
     {
@@ -148,6 +175,8 @@ namespace retroforge
     state.solution             = LastSolution{solved.last().W.V.complete(*discretization.condensed_nodes()),
                                   solved.last().W.P.complete(*discretization.pressure_nodes())};
     state.slip                 = limits_.slip(process, record, X_before, state.workpiece.X) / record.step;
+    state.strain_rate =
+      mean_flow_strain(state.epoch->scene.mesh, state.workpiece, strain_before) / record.step;
     state.stroke += record.step;
     state.energy.deformation += record.deformation_energy;
     state.energy.friction += record.friction_energy;
@@ -157,15 +186,44 @@ namespace retroforge
     state.krylov += record.krylov;
     state.linear_solves += record.linear_solves;
     ++state.increments;
-    const double whole = record.contact.step, done = (state.stroke - state.numerics_stroke) / whole;
-    while (whole / (1 << state.depth) > record.step * (1. + 1e-9) && state.depth < 30)
-      ++state.depth;
-    // Back to longer steps once a whole number of them fits, and nothing slips too far in them.
-    while (state.depth > 0 && limits_.allow(state.slip * whole / (1 << (state.depth - 1))) &&
-           std::abs(done * (1 << (state.depth - 1)) - std::round(done * (1 << (state.depth - 1)))) < 1e-9)
-      --state.depth;
+    choose_depth(record.step, last_stroke(process, state) - state.stroke, state);
     if (observer)
       observer({record, X_before, solved, state, process.whole_time(state.stroke, state.operation)});
+  }
+
+  std::optional<StepRejection> Forging::too_strained(const ForgingState    &state,
+                                                     const SolvedIncrement &solved) const
+  {
+    if (state.strain_rate > 0. || !limits_.choose_steps())
+      return {};
+    const auto timing = timings_.scope("checks");
+    auto       after  = state.workpiece;
+    state.epoch->increment.advance(solved, after);
+    return limits_.strain_rejection(mean_flow_strain(state.epoch->scene.mesh, after, state.workpiece.strain));
+  }
+
+  void Forging::choose_depth(const double last_step, const double left, ForgingState &state) const
+  {
+    constexpr unsigned int deepest = 30;
+    const double           whole = nominal_step(), done = (state.stroke - state.numerics_stroke) / whole;
+    const auto             step = [&](const unsigned int depth) { return std::ldexp(whole, -int(depth)); };
+    while (step(state.depth) > last_step * (1. + 1e-9) && state.depth < deepest)
+      ++state.depth;
+    while (!limits_.allow_strain(state.strain_rate * step(state.depth)) && state.depth < most_halvings)
+      ++state.depth;
+    // Back to longer steps once a whole number of them fits, and nothing slips or is strained too far in them.
+    const auto bears = [&](const unsigned int depth) {
+      const double number = std::ldexp(done, depth);
+      return limits_.allow(state.slip * step(depth)) &&
+             limits_.allow_strain(state.strain_rate * step(depth)) &&
+             std::abs(number - std::round(number)) < 1e-9;
+    };
+    while (state.depth > 0 && bears(state.depth - 1))
+      --state.depth;
+    // A force is that of the middle of an increment, and what a press must bring up is that of the end.
+    const double least = limits_.borne_step(state.strain_rate) / shortest_at_end;
+    while (left > 0. && step(state.depth) > 0.5 * left * (1. + 1e-9) && step(state.depth + 1) > least)
+      ++state.depth;
   }
 
   void Forging::change_numerics(std::optional<std::string> parameters, ForgingState &state)
@@ -243,6 +301,8 @@ namespace retroforge
       record.operation = state.operation;
       record.stroke    = state.stroke;
       record.step = std::min(nominal_step() / (1 << state.depth), last_stroke(process, state) - state.stroke);
+      record.contact =
+        limits_.choose_steps() ? model_.step.contact.in_steps_of(record.step) : model_.step.contact;
       record.parameters = std::exchange(state.parameters, std::nullopt);
       SolvedIncrement solved;
       InitialGuess    guess   = state.next;
@@ -250,6 +310,8 @@ namespace retroforge
       for (;;)
       {
         auto rejection = attempt(process, state, guess, record, solved);
+        if (!rejection)
+          rejection = too_strained(state, solved);
         if (!rejection)
           break;
         is_full = rejection->is_full |= is_full;
@@ -261,6 +323,8 @@ namespace retroforge
         }
         record.step = std::ldexp(record.step, -static_cast<int>(rejection->halvings));
         record.cuts += rejection->halvings;
+        if (rejection->for_accuracy)
+          record.contact = model_.step.contact.in_steps_of(record.step);
         if (limits_.too_short(record.step))
         {
           // A fold that is closing is the true reason.

@@ -22,9 +22,6 @@ namespace retroforge
   /// in them: metal that has no room goes into the corners of dies, where a node feels one of their faces.
   constexpr double touching_when_full = 0.95, inside_when_full = 2e-3;
 
-  /// Times Press/increments that cuts may make of them.
-  constexpr unsigned int most_increments = 10;
-
   namespace
   {
     std::string at(const Vec3 &x)
@@ -86,6 +83,18 @@ namespace retroforge
     // Velocities hardly depend on the increment's length: what it must be is known at once.
     return StepRejection{
       "a node would slip along " + slip.where, halvings(slip.of_edge / press_.largest_slip), false};
+  }
+
+  std::optional<StepRejection> IncrementLimits::strain_rejection(const double strain) const
+  {
+    constexpr double clearly = 1.5;
+    if (allow_strain(strain / clearly))
+      return {};
+    return StepRejection{"the metal would be strained by " + as_text(strain),
+                         halvings(strain / *press_.largest_strain),
+                         false,
+                         false,
+                         true};
   }
 
   bool IncrementLimits::is_full(const Process<double>      &process,
@@ -288,15 +297,18 @@ namespace retroforge
         "at most Press/largest volume change may be lost",
         "if the dies nearly close there, shorten the stroke; else use more increments or a finer mesh");
     }
-    if (const unsigned int n = state.increments - state.numerics_increments;
-        n > most_increments * press_.increments)
+    if (const unsigned int n = state.increments - state.numerics_increments; n > press_.most_increments)
     {
       what << "was cut so often that " << n << " increments brought it to " << state.stroke << " mm";
       throw Error("Press/stroke",
                   what.str(),
-                  "a run may take " + std::to_string(most_increments) + " times Press/increments",
-                  "if the dies nearly close or the cavity is full there, shorten the stroke; else raise "
-                  "Press/increments");
+                  press_.largest_strain
+                    ? "where the program chooses them, a run may take " +
+                        std::to_string(press_.most_increments)
+                    : "a run may take " + std::to_string(press_.most_increments / press_.increments) +
+                        " times Press/increments",
+                  "if the dies nearly close or the cavity is full there, shorten the stroke; else raise " +
+                    std::string(press_.largest_strain ? "Press/accuracy" : "Press/increments"));
     }
   }
 

@@ -32,9 +32,15 @@ namespace retroforge
     prm.add_parameter("stroke", stroke, "Path of the leading die. Units: mm.", Double(1e-300));
     prm.add_parameter("increments",
                       increments,
-                      "Number of equal increments of stroke, before any is cut; 0 for steps of 0.25 % of the "
-                      "billet's height, with which the energy is smooth in the design. Units: none.",
+                      "Number of equal increments of stroke, before any is cut; 0 for as many as `accuracy' "
+                      "needs, short where the metal flows fast. Units: none.",
                       Integer(0));
+    prm.add_parameter("accuracy",
+                      accuracy,
+                      "Relative error of the energy in time to aim at where `increments' is 0: its square "
+                      "root is the largest "
+                      "strain of an increment, in the mean over where metal flows. Units: none.",
+                      Double(1e-6, 0.1));
     prm.add_parameter(
       "scheme", scheme, "Time scheme: " + join(described) + ". Units: none.", Selection(choices));
     prm.add_parameter(

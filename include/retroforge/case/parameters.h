@@ -29,6 +29,7 @@ namespace retroforge
   {
     double side;   ///< cube root of the mesh's volume [mm]
     double height; ///< height of the whole billet; for one from a file, along the way of the leading die [mm]
+    double extent; ///< of the whole billet along the way of the leading die [mm]
   };
 
   /// All settings of a parameter file.
@@ -111,7 +112,9 @@ namespace retroforge
     /// @param file  of the case, beside which other files are looked for
     static Parameters of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo);
 
-    double edge_stiffness_ = 1.; ///< penalty of edges over that of nodes, once defaults are resolved
+    // Once defaults are resolved:
+    double edge_stiffness_ = 1.; ///< penalty of edges over that of nodes
+    double touching_gap_   = 0.; ///< gap up to which objectives see nodes touch in part [mm]
 
     /// By which the dies close over the stroke [mm]: the stroke itself, where one die moves.
     double                        closing_path() const;

@@ -37,19 +37,37 @@ namespace retroforge
   /// used.
   struct ContactNumerics
   {
-    double       approach = 1.; ///< approach time in increments: tau = approach * dt
-    double       layer    = 0.; ///< layer l of the approach speed [mm]; 0: none
-    double       step     = 0.; ///< stroke of a whole increment [mm]
-    FrictionRamp ramp;
+    double       approach = 1.;       ///< approach time in increments: tau = approach * dt
+    double       layer    = 0.;       ///< layer l of the approach speed [mm]; 0: none
+    double       step     = 0.;       ///< stroke of a whole increment [mm]
+    FrictionRamp ramp;                ///< of a whole increment
     double       edge_stiffness = 1.; ///< penalty of edges over that of nodes, dimensionless
     /// Whether energies and forces have their part of the work on gaps that close (spent_power.h).
     bool counts_closing = true;
 
     /// Returns the approach law of an increment with the given stroke [mm].
-    ApproachLaw approach_law(const double stroke) const
+    ApproachLaw approach_law(const double stroke) const { return {layer, part_of(stroke)}; }
+
+    /// Returns the ramp in an increment with the given stroke [mm].
+    FrictionRamp ramp_in(const double stroke) const
     {
-      return {layer, step > 0. ? std::min(1., stroke / step) : 1.};
+      FrictionRamp cut = ramp;
+      cut.width *= part_of(stroke);
+      return cut;
     }
+
+    /// Returns those of whole increments with another stroke [mm].
+    ContactNumerics in_steps_of(const double stroke) const
+    {
+      ContactNumerics other = *this;
+      other.step            = stroke;
+      other.layer *= stroke / step;
+      other.ramp.width *= stroke / step;
+      return other;
+    }
+
+  private:
+    double part_of(const double stroke) const { return step > 0. ? std::min(1., stroke / step) : 1.; }
   };
 
   /// An edge of the surface, whose ends and middle are in reach of one curved die.
@@ -73,7 +91,8 @@ namespace retroforge
 
     std::vector<ContactPair>        pairs;
     std::vector<Projection<Number>> projections; ///< for each pair, at X_i
-    /// w(delta) for each pair; for a node at which edges may touch in its place, 1 - (1 - w) product (1 -
+    std::vector<Number>             scales;      ///< of the ramp of each pair: RampScales
+    /// w(delta/s) for each pair; for a node at which edges may touch in its place, 1 - (1 - w) product (1 -
     /// w_edge).
     std::vector<Number> ramps;
     /// The factors of this product: (pair of a node, pair of an edge at it).
@@ -94,6 +113,30 @@ namespace retroforge
     double              edge_stiffness = 1.;   ///< penalty of edges over that of nodes, dimensionless
     bool                counts_closing = true; ///< as ContactNumerics::counts_closing
   };
+
+  /// w(gap/s) of pair p.
+  template <typename Number>
+  Number own_ramp(const ContactSet<Number> &contact,
+                  const FrictionRamp       &ramp,
+                  const unsigned int        p,
+                  const Number             &gap)
+  {
+    return ramp(Number(gap / contact.scales[p]), contact.pairs[p].touching);
+  }
+
+  /// Adds the derivatives of  w_bar * own_ramp(...)  in the gap and the scale.
+  inline void reverse_own_ramp(const ContactSet<double> &contact,
+                               const FrictionRamp       &ramp,
+                               const unsigned int        p,
+                               const double              gap,
+                               const double              w_bar,
+                               double                   &gap_bar,
+                               double                   &scale_bar)
+  {
+    const double s = contact.scales[p], slope = w_bar * ramp.derivative(gap / s);
+    gap_bar += slope / s;
+    scale_bar -= slope * gap / (s * s);
+  }
 
   /// Derivatives in the increment's data: what ContactSet depends on is filled in later, by
   /// reverse_contact_set.
@@ -122,7 +165,7 @@ namespace retroforge
                                       const std::vector<ContactPair> &pairs,
                                       const ContactApproach<Number>  &approach);
 
-  /// Pull-back of make_contact_set: adds to X_bar, to the dies' displacements, and to vertices where there is
+  /// Pull-back of make_contact_set: adds to X_bar, to the dies' displacements and velocities, and to vertices where there is
   /// an entry for each.
   void reverse_contact_set(const ContactView<double>     &view,
                            const ContactSet<double>      &contact,

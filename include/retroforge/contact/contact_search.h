@@ -24,10 +24,14 @@ namespace retroforge
   /// w(delta): 1 where the node touches, 0 where it is out of reach.
   /// Smooth: 1 - 10t^3 + 15t^4 - 6t^5 with t = delta/width on [0, 1], twice differentiable, because nodes in
   /// contact stand exactly at delta = 0. Sharp: 1 for delta <= width.
+  ///
+  /// The width is that where dies close head-on. A wall along which they close comes near the metal slower, and
+  /// has less of it: see RampScales.
   struct FrictionRamp
   {
     double width = 0.; ///< [mm]
     bool   sharp = false;
+    double wall  = 1.; ///< part of the width that walls have, at most 1
 
     /// @param touching  the recorded decision delta <= width, which alone counts when sharp
     template <typename Number>
@@ -35,12 +39,43 @@ namespace retroforge
     double derivative(double delta) const;
   };
 
+  /// Parts of a ramp's width that points of the dies have,
+  ///   s = sqrt(wall^2 + (1 - wall^2) (n·e)^2),
+  /// n the normal of the die at the point, e the direction in which the die and the others close: that of the
+  /// largest of v_d and v_d - v_b, b the other dies. It is 1 where a die closes head-on, and where e is not
+  /// defined; ramps are w(delta/s).
+  template <typename Number>
+  class RampScales
+  {
+  public:
+    RampScales(const FrictionRamp &ramp, const std::vector<DieState<Number>> &states);
+
+    Number operator()(unsigned int die, const Vector3<Number> &n) const;
+
+    /// Adds the derivatives of  s_bar * (*this)(die, n).
+    void reverse(unsigned int                   die,
+                 const Vector3<Number>         &n,
+                 double                         s_bar,
+                 Vector3<Number>               &n_bar,
+                 std::vector<DieState<Number>> &states_bar) const;
+
+  private:
+    struct Closing
+    {
+      Vector3<Number> velocity; ///< relative to `other`, or to the metal
+      unsigned int    other = invalid_index;
+    };
+
+    double               wall_;
+    std::vector<Closing> closing_; ///< for each die, where walls differ; else empty
+  };
+
   /// A point in reach of a die: a recorded decision.
   struct ContactPair
   {
     ContactPoint point;
     unsigned int die;
-    bool         touching; ///< delta <= width of the friction ramp
+    bool         touching; ///< delta <= width of the friction ramp there
     DieFeature   feature;  ///< feature of the die closest to the point
   };
 

@@ -69,12 +69,14 @@ namespace retroforge
   void level_gaps(const NodalVectors<Number> &X, const FrictionRamp &ramp, ContactSet<Number> &contact);
 
   /// Pull-back of level_gaps.
-  /// @param gaps_bar   derivatives in the levelled gaps; become those in the own gaps
-  /// @param ramps_bar  derivatives in the ramps
+  /// @param gaps_bar    derivatives in the levelled gaps; become those in the own gaps
+  /// @param ramps_bar   derivatives in the ramps
+  /// @param scales_bar  those in the ramps' scales are added
   void reverse_level_gaps(const NodalVectors<double> &X,
                           const FrictionRamp         &ramp,
                           const ContactSet<double>   &contact,
                           const std::vector<double>  &ramps_bar,
                           std::vector<double>        &gaps_bar,
+                          std::vector<double>        &scales_bar,
                           NodalVectors<double>       &X_bar);
 } // namespace retroforge

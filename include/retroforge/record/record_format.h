@@ -22,7 +22,8 @@
 ///     /increment_000000 ...   attributes: run, n_nodes, n_velocity_nodes, operation, stroke, step, cuts,
 ///                             deformation_energy, friction_energy, closing_energy, closing_work, newton, krylov,
 ///                             linear_solves, sharp (the ramp is), counts_closing (energies do), and
-///                             contact [5] double: approach, layer, step, width of the ramp, edge_stiffness
+///                             contact [6] double: approach, layer, step, width of the ramp, edge_stiffness, part of
+///                             the ramp's width at walls
 ///       scheme                                  text          name of the time scheme
 ///       parameters                              text          only where other settings hold from here on
 ///       forces                [n_dies][3]             double [N]

@@ -16,8 +16,8 @@ namespace retroforge
     double                      time;
   };
 
-  /// The time loop through the operations of a process: increments of equal stroke, halved while an element
-  /// would invert or a node would cross too much of an edge, on meshes that are remade when they must. In a
+  /// The time loop through the operations of a process: increments of equal stroke, or as long as an accuracy
+  /// bears, halved while an element would invert or a node would cross too much of an edge, on meshes that are remade when they must. In a
   /// replay what was recorded is obeyed instead.
   class Forging
   {
@@ -87,6 +87,12 @@ namespace retroforge
                           const SolvedIncrement &solved,
                           ForgingState          &state,
                           const Observer        &observer) const;
+
+    /// Chooses how often the next increment is halved, after one of last_step [mm].
+    /// @param left  stroke to the end of the operation [mm]
+    void choose_depth(double last_step, double left, ForgingState &state) const;
+    /// Returns whether a first increment, of which nothing was known, strains the metal too much.
+    std::optional<StepRejection> too_strained(const ForgingState &state, const SolvedIncrement &solved) const;
 
     /// Stroke of an increment that is not cut [mm].
     double nominal_step() const { return model_.step.contact.step; }

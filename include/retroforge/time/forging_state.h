@@ -27,7 +27,8 @@ namespace retroforge
     double                      volume         = 0.; ///< at the start of the run [mm^3]
     double                      removed_volume = 0.; ///< metal thinner than an element taken away [mm^3]
     unsigned int                depth          = 0;  ///< an increment is the whole one / 2^depth
-    double slip = 0.; ///< of the last increment: largest one along a curved die, in edges [mm^-1]
+    double slip        = 0.; ///< of the last increment: largest one along a curved die, in edges [mm^-1]
+    double strain_rate = 0.; ///< of the last increment: mean strain where metal flows [mm^-1]
 
     /// Where the present numerics began to hold: stroke [mm] and increments before.
     double                     numerics_stroke     = 0.;

@@ -7,6 +7,7 @@
 #include <retroforge/time/press_parameters.h>
 #include <retroforge/time/remesher.h>
 
+#include <limits>
 #include <optional>
 
 namespace retroforge
@@ -15,9 +16,10 @@ namespace retroforge
   struct StepRejection
   {
     std::string  reason;
-    unsigned int halvings = 1;     ///< that will do
-    bool         of_mesh  = true;  ///< a better mesh may be enough
-    bool         is_full  = false; ///< there is no room for the metal
+    unsigned int halvings     = 1;     ///< that will do
+    bool         of_mesh      = true;  ///< a better mesh may be enough
+    bool         is_full      = false; ///< there is no room for the metal
+    bool         for_accuracy = false; ///< the increment is sound
   };
 
   /// The end of a forging in which there is no room left for the metal: no other numerics help.
@@ -58,6 +60,27 @@ namespace retroforge
 
     /// Whether nodes may slip that far, over the edge length wanted there.
     bool allow(const double slip) const { return slip <= press_.largest_slip; }
+
+    /// Whether the metal may be strained that far in an increment, in the mean over where it flows.
+    bool allow_strain(const double strain) const
+    {
+      return !press_.largest_strain || strain <= *press_.largest_strain;
+    }
+
+    /// Returns why an increment that strains the metal so is too long for the accuracy, if it is.
+    std::optional<StepRejection> strain_rejection(double strain) const;
+
+    /// Returns the longest step that strain allows where a mm of stroke strains the metal so; infinite where it
+    /// does not matter [mm].
+    double borne_step(const double strain_rate) const
+    {
+      return press_.largest_strain && strain_rate > 0. ? *press_.largest_strain / strain_rate
+                                                       : std::numeric_limits<double>::infinity();
+    }
+
+    /// Whether steps follow from the accuracy that is wanted: what contact measures in increments then follows
+    /// each step.
+    bool choose_steps() const { return press_.largest_strain.has_value(); }
 
     /// Whether an increment presses metal into dies that has no room between them.
     /// @param X  positions after it

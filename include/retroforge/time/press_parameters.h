@@ -7,6 +7,7 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <optional>
 #include <string>
 
 namespace retroforge
@@ -16,14 +17,19 @@ namespace retroforge
     std::string         leading_die;
     std::string         motion_type = "constant speed";
     std::vector<double> motion_numbers; ///< of this type
-    double              stroke          = 10.;
-    unsigned int        increments      = 0;
-    std::string         scheme          = Scheme::all().front().name;
-    double              smallest_volume = 0.2;
-    double              largest_move    = 0.5;
-    double              largest_slip    = 1.;
-    unsigned int        max_cuts        = 8;
-    double              largest_loss    = 0.02;
+    double              stroke     = 10.;
+    unsigned int        increments = 0;
+    double              accuracy   = 1e-3;
+    /// What the program chooses where `increments` is 0: the largest mean strain of an increment, and how many
+    /// there may be.
+    std::optional<double> largest_strain;
+    unsigned int          most_increments = 0;
+    std::string           scheme          = Scheme::all().front().name;
+    double                smallest_volume = 0.2;
+    double                largest_move    = 0.5;
+    double                largest_slip    = 1.;
+    unsigned int          max_cuts        = 8;
+    double                largest_loss    = 0.02;
 
     void add_parameters(dealii::ParameterHandler &prm);
 

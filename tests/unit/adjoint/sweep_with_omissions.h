@@ -31,7 +31,8 @@ namespace retroforge
     normals,       // corner normals of a smooth die in its vertices
     edge_ramp,     // what edges let nodes touch
     edge_area,     // d S / dX of edges
-    closing        // the work on gaps that close
+    closing,       // the work on gaps that close
+    wall           // width of the ramp by the die's normal
   };
 
   /// A facet of a smooth die and a point, as project_smoothly() has them: 21 numbers.
@@ -171,7 +172,7 @@ namespace retroforge
     if (omitted == Term::edge_ramp)
       return own_bar;
     for (unsigned int p = 0; p < pairs.size(); ++p)
-      own.push_back(ramp(contact.projections[p].delta, pairs[p].touching));
+      own.push_back(ramp(contact.projections[p].delta / contact.scales[p], pairs[p].touching));
     for (unsigned int p = 0; p < pairs.size(); ++p)
     {
       if (!pairs[p].point.is_node())
@@ -215,11 +216,26 @@ namespace retroforge
         normals.emplace(d, CornerNormals(*dies[d].surface(), feature_angle, 1.));
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
     {
-      const ContactPair &pair   = contact.pairs[p];
-      const Die         &die    = dies[pair.die];
-      const double delta_bar    = bar.delta[p] + ramps_bar[p] * ramp.derivative(contact.projections[p].delta);
-      Vec3        &displacement = dies_bar[pair.die].displacement;
-      Vec3         at_point;
+      const ContactPair &pair = contact.pairs[p];
+      const Die         &die  = dies[pair.die];
+      const double       s = contact.scales[p], gap = contact.projections[p].delta;
+      const double       slope     = ramps_bar[p] * ramp.derivative(gap / s);
+      const double       delta_bar = bar.delta[p] + slope / s;
+      Vec3               n_bar     = bar.n[p];
+      if (omitted != Term::wall && slope != 0.)
+      {
+        // One die moves: it and the others close along its velocity.
+        const Vec3 *way = nullptr;
+        for (const DieState<double> &state : states)
+          if (state.velocity.norm() > 0.)
+            way = &state.velocity;
+        const Vec3   e       = *way / way->norm();
+        const double along   = contact.projections[p].n * e;
+        const double s_slope = (1. - ramp.wall * ramp.wall) * along / s;
+        n_bar -= slope * gap / (s * s) * s_slope * e;
+      }
+      Vec3 &displacement = dies_bar[pair.die].displacement;
+      Vec3  at_point;
       if (die.surface() && pair.feature.kind == 0)
       {
         reverse_smooth(die,
@@ -227,7 +243,7 @@ namespace retroforge
                        pair.feature,
                        pair.point.position(X) - states[pair.die].displacement,
                        delta_bar,
-                       bar.n[p],
+                       n_bar,
                        omitted,
                        at_point,
                        dies_bar[pair.die].vertices);
@@ -238,7 +254,7 @@ namespace retroforge
                             states[pair.die].displacement,
                             pair.feature,
                             delta_bar,
-                            bar.n[p],
+                            n_bar,
                             at_point,
                             displacement,
                             die.surface() ? &dies_bar[pair.die].vertices : nullptr);
@@ -387,7 +403,7 @@ namespace retroforge
     const double                      dt      = problem.process().duration(place(record));
     const ContactSet<double>          contact = make_contact_set<double>(scene.view(physics.dies, X),
                                                                 record.pairs,
-                                                                {record.contact.ramp,
+                                                                {record.contact.ramp_in(record.step),
                                                                           record.contact.approach * dt,
                                                                           record.contact.approach_law(record.step),
                                                                           record.contact.edge_stiffness});
@@ -437,7 +453,15 @@ namespace retroforge
       bar.dt = 0.;
     if (omitted == Term::tau)
       bar.tau = 0.;
-    reverse_set(scene.dies, physics.dies, contact, record.contact.ramp, X, contact_bar, omitted, G, bar.dies);
+    reverse_set(scene.dies,
+                physics.dies,
+                contact,
+                record.contact.ramp_in(record.step),
+                X,
+                contact_bar,
+                omitted,
+                G,
+                bar.dies);
     reverse_over(problem.process(), place(record), record.contact.approach, bar, process_bar);
   }
 

@@ -252,7 +252,8 @@ struct CornerScene
             Die("side", Vec3({5., 0., 0.}), side / side.norm())};
     if (lower != Lower::plane)
       dies[0] = Die("lower", wavy_sheet(quadratic ? 0.7 : 0.3), 2., {lower == Lower::smooth, 60., 1.});
-    states = {{Vec3(), 0.1 * random.vector(), 0.3, {}}, {Vec3(), 0.1 * random.vector(), 0.2, {}}};
+    states = {{Vec3({0.3, -0.2, 0.9}), 0.1 * random.vector(), 0.3, {}},
+              {Vec3({-0.7, 0.4, 0.1}), 0.1 * random.vector(), 0.2, {}}};
     pairs  = find_contact_pairs(view(states, X), ramp, 1.5 * ramp.width, true);
   }
 
@@ -325,14 +326,15 @@ void check_mesh(const CornerScene &scene, Random &random, const Moved &moved, Er
     X_dot[k] = moved.nodes ? random.vector() : Vec3();
     X.push_back(with_direction(scene.X[k], X_dot[k]));
   }
-  std::vector<Vec3>                 displacement_dot;
+  std::vector<Vec3>                 displacement_dot, velocity_dot;
   std::vector<NodalVectors<double>> vertices_dot;
   std::vector<DieState<Dual>>       states;
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
   {
     const DieState<double> &state = scene.states[d];
     displacement_dot.push_back(moved.dies ? random.vector() : Vec3());
-    states.push_back({with_direction(state.velocity, Vec3()),
+    velocity_dot.push_back(moved.dies && scene.ramp.wall < 1. ? random.vector() : Vec3());
+    states.push_back({with_direction(state.velocity, velocity_dot.back()),
                       with_direction(state.displacement, displacement_dot.back()),
                       Dual(state.friction),
                       {}});
@@ -373,8 +375,8 @@ void check_mesh(const CornerScene &scene, Random &random, const Moved &moved, Er
   reverse_contact_set(scene.view(scene.states, scene.X), contact, scene.ramp, bar, X_bar, dies_bar);
   double backward = dot(X_dot, X_bar);
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
-    backward +=
-      dot(displacement_dot[d], dies_bar[d].displacement) + dot(vertices_dot[d], dies_bar[d].vertices);
+    backward += dot(displacement_dot[d], dies_bar[d].displacement) +
+                dot(velocity_dot[d], dies_bar[d].velocity) + dot(vertices_dot[d], dies_bar[d].vertices);
   errors.compare(moved.name(), backward, forward);
   // All vertices moved alike are a displacement of the die.
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
@@ -393,7 +395,7 @@ std::vector<double> own_ramps(const CornerScene &scene, const ContactSet<double>
 {
   std::vector<double> ramps;
   for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-    ramps.push_back(scene.ramp(contact.projections[p].delta, contact.pairs[p].touching));
+    ramps.push_back(own_ramp(contact, scene.ramp, p, contact.projections[p].delta));
   return ramps;
 }
 
@@ -474,7 +476,7 @@ void check_middles(const CornerScene &scene, const ContactSet<double> &contact, 
     return invalid_index;
   };
   const auto ramp = [&](const unsigned int p, const double gap) {
-    return scene.ramp(gap, contact.pairs[p].touching);
+    return own_ramp(contact, scene.ramp, p, gap);
   };
   unsigned int n_kind[3] = {0, 0, 0}; // smooth, between, sharp
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
@@ -694,6 +696,11 @@ int main(int argc, char **argv)
       for (const bool sharp : {false, true})
         largest =
           std::max(largest, check_meshes({lower == Lower::plane ? 0.9 : 0.4, sharp}, lower, quadratic));
+  std::cout << "narrower at walls" << std::endl;
+  for (const bool quadratic : {false, true})
+    for (const Lower lower : {Lower::plane, Lower::smooth, Lower::facets})
+      largest =
+        std::max(largest, check_meshes({lower == Lower::plane ? 0.9 : 0.6, false, 0.4}, lower, quadratic));
   check_ramp();
   check_layer();
   std::cout << "FIGURE contact_derivative_error " << largest << std::endl;
