@@ -2,146 +2,456 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/core/shares.h>
-#include <retroforge/core/text.h>
+#include <retroforge/objective/local_derivatives.h>
 #include <retroforge/objective/objective_settings.h>
 #include <retroforge/objective/unfilled_volume.h>
 
-#include <algorithm>
-
 namespace retroforge
 {
-  UnfilledVolume::UnfilledVolume(TargetSurface      target,
-                                 const Cavity       cavity,
-                                 const unsigned int n_samples,
-                                 const double       layer)
-      : target_(std::move(target)), cavity_(cavity), n_samples_(n_samples), layer_(layer)
+  namespace
   {
-    if (!(layer >= 1.))
-      throw Error("Unfilled volume",
-                  "the layer is " + as_text(layer) + " spacings thick",
-                  "it must be at least 1, or the volume jumps from sample to sample",
-                  "use 2");
-    if (!(n_samples > 2. * layer))
-      throw Error("Unfilled volume",
-                  "there are " + std::to_string(n_samples) + " samples along the longest edge",
-                  "there must be more than two layers of them",
-                  "use 30 to 100");
-    if (cavity == Cavity::within && !target_.shape().is_closed() && !target_.region())
+    /// The shape as a die around it: triangles turned round, on facets as they are.
+    Die inside_out(const TriangleSurface &shape)
+    {
+      std::vector<Triangle> triangles = shape.triangles();
+      for (Triangle &triangle : triangles)
+        std::swap(triangle[1], triangle[2]);
+      DieSurfaceLaw law;
+      law.smooth = false;
+      // Points outside by more are not at the surface.
+      const double depth = 0.01 * shape.diagonal();
+      return Die("target", TriangleSurface("target", shape.vertices(), std::move(triangles)), depth, law);
+    }
+
+    /// Coordinates of the point of a tetrahedron that shadows are seen from: in no plane of symmetry of it.
+    constexpr double eye_of_cell[4] = {0.31, 0.27, 0.23, 0.19};
+
+    template <typename Number>
+    Vector3<Number> eye_of(const Tetrahedron<Number> &x)
+    {
+      Vector3<Number> eye;
+      for (unsigned int k = 0; k < 4; ++k)
+        eye += x[k] * Number(eye_of_cell[k]);
+      return eye;
+    }
+
+    template <typename Number>
+    Tetrahedron<Number> corners_of(const FinalView<Number> &view, const CellIndex c)
+    {
+      Tetrahedron<Number> x;
+      for (unsigned int k = 0; k < 4; ++k)
+        x[k] = view.X[view.scene.mesh.cells[c][k]];
+      return x;
+    }
+
+    template <typename Number>
+    std::array<Vector3<Number>, 3> corners_of(const NodalVectors<Number> &x, const Triangle &triangle)
+    {
+      return {{x[triangle[0]], x[triangle[1]], x[triangle[2]]}};
+    }
+
+    template <typename Number>
+    std::array<Vector3<Number>, 3> shifted(std::array<Vector3<Number>, 3> x, const Vector3<Number> &shift)
+    {
+      for (auto &corner : x)
+        corner += shift;
+      return x;
+    }
+
+    /// Middles of the edges of a triangle.
+    template <typename Number>
+    std::array<Vector3<Number>, 3> middles(const std::array<Vector3<Number>, 3> &x)
+    {
+      return {{(x[0] + x[1]) * Number(0.5), (x[1] + x[2]) * Number(0.5), (x[2] + x[0]) * Number(0.5)}};
+    }
+
+    template <std::size_t n>
+    bool all_inside(const std::array<Vec3, n> &x, const std::vector<HalfSpace<double>> &half_spaces)
+    {
+      for (const auto &space : half_spaces)
+        for (const Vec3 &point : x)
+          if (space.excess(point) > 0.)
+            return false;
+      return true;
+    }
+
+    template <typename Number, std::size_t n>
+    std::array<Vec3, n> values_of(const std::array<Vector3<Number>, n> &x)
+    {
+      std::array<Vec3, n> values;
+      for (std::size_t k = 0; k < n; ++k)
+        for (unsigned int i = 0; i < 3; ++i)
+          values[k][i] = value_of(x[k][i]);
+      return values;
+    }
+  } // namespace
+
+  /// The surface where a view has it, and the region there.
+  template <typename Number>
+  struct UnfilledVolume::Surface
+  {
+    DieState<Number>                  state;
+    NodalVectors<Number>              vertices; ///< without the displacement
+    RegionPlace<Number>               place;
+    std::vector<HalfSpace<Number>>    half_spaces;
+    std::vector<HalfSpace<double>>    values; ///< of the half-spaces
+
+    Surface(const UnfilledVolume &objective, const FinalView<Number> &view, const Region &region)
+    {
+      if (!objective.is_within())
+        state.displacement = view.dies[objective.index_].displacement;
+      if (view.target)
+        vertices = state.vertices = *view.target;
+      else
+        convert(objective.die_.surface()->vertices(), vertices);
+      place       = region.place(vertices, state.displacement);
+      half_spaces = region.half_spaces(place);
+      for (const auto &space : half_spaces)
+      {
+        HalfSpace<double> value;
+        for (unsigned int i = 0; i < 3; ++i)
+          value.normal[i] = value_of(space.normal[i]);
+        value.offset = value_of(space.offset);
+        values.push_back(value);
+      }
+    }
+
+    /// The part of a facet of the workpiece, or one where it stands, that is in the region.
+    Number share(const std::array<Vector3<Number>, 3> &x) const
+    {
+      return all_inside(values_of(x), values) ? Number(1.) : share_of_facet(x, half_spaces);
+    }
+  };
+
+  UnfilledVolume::UnfilledVolume(Die die, const unsigned int index, const std::optional<Box> &region)
+      : die_(std::move(die)), index_(index), region_(region)
+  {
+  }
+
+  UnfilledVolume::UnfilledVolume(const TargetSurface &shape)
+      : die_(inside_out(shape.shape())), index_(shape.die()), region_(shape.region())
+  {
+    Assert(is_within(), dealii::ExcMessage("a shape that is wanted stands still"));
+    if (!shape.shape().is_closed() && !region_)
       throw Error("Unfilled volume",
                   "the target is open and has no region",
                   "there is no inside of an open surface",
                   "close it, or give a region that ends at the planes of symmetry");
   }
 
-  UnfilledVolume::Grid UnfilledVolume::make_grid(const FinalView<double> &view) const
+  UnfilledVolume::Decisions UnfilledVolume::compute_decisions(const FinalView<double> &view) const
   {
-    Box        box     = target_.region() ? *target_.region() : bounding_box(target_.vertices(view));
-    const auto longest = [&] {
-      const Vec3 size = box.second - box.first;
-      return std::max({size[0], size[1], size[2]});
-    };
-    if (!target_.region()) // room for the layer around the target: half of layer * longest() / n_samples
-    {
-      const double margin = 0.5 * layer_ * longest() / (n_samples_ - layer_);
-      for (unsigned int i = 0; i < 3; ++i)
-      {
-        box.first[i] += target_.displacement(view)[i] - margin;
-        box.second[i] += target_.displacement(view)[i] + margin;
-      }
-    }
-    box = Sector(view.scene.mesh).clipped(box);
-    for (unsigned int i = 0; i < 3; ++i)
-      if (!(box.first[i] < box.second[i]))
-        throw Error("Unfilled volume",
-                    "the target lies behind a symmetry plane",
-                    "only what faces the model is compared with it",
-                    "move the target, or turn the plane's normal round");
-    const Vec3 size = box.second - box.first;
-    Grid       grid{{}, box.first, {}, layer_ * longest() / n_samples_};
+    const Die              die          = view.target ? die_.moved(*view.target) : die_;
+    const TriangleSurface &surface      = *die.surface();
+    const Vec3             displacement = is_within() ? Vec3() : view.dies[index_].displacement;
+    Decisions              decisions;
+    decisions.region = make_region(die, displacement, region_, view.scene.mesh);
+    BoundingBox around(decisions.region.box.first);
+    around.include(decisions.region.box.second);
+    const double margin = 0.01 * (around.upper - around.lower).norm();
+    const Vec3   shift  = decisions.region.follows_die ? displacement : Vec3();
     for (unsigned int i = 0; i < 3; ++i)
     {
-      grid.n[i]       = std::max(1., std::round(n_samples_ * size[i] / longest()));
-      grid.spacing[i] = size[i] / grid.n[i];
+      around.lower[i] += shift[i] - margin;
+      around.upper[i] += shift[i] + margin;
     }
-    return grid;
+    const auto [begin, end] = share_of_rank(surface.n_facets(), view.scene.discretization.comm());
+    for (std::size_t f = begin; f < end; ++f)
+      if (around.intersects(
+            BoundingBox(shifted(corners_of(surface.vertices(), surface.triangles()[f]), displacement))))
+        decisions.facets.push_back(f);
+    decisions.at_die = find_facets_at_die(view, die, displacement, {around.lower, around.upper});
+    return decide_cells(view, die, std::move(decisions));
   }
 
-  Vec3 UnfilledVolume::Grid::sample(const unsigned int g) const
+  UnfilledVolume::Decisions
+  UnfilledVolume::decide_cells(const FinalView<double> &view, const Die &die, Decisions decisions) const
   {
-    const unsigned int i[3] = {g % n[0], g / n[0] % n[1], g / n[0] / n[1]};
-    Vec3               x;
-    for (unsigned int d = 0; d < 3; ++d)
-      x[d] = origin[d] + (i[d] + 0.5) * spacing[d];
-    return x;
+    const BoxTree tree(is_within() ? boxes_of_facets(*die.surface()) : std::vector<BoundingBox>());
+    const auto [begin, end] = share_of_rank(view.scene.mesh.n_cells(), view.scene.discretization.comm());
+    for (CellIndex c = begin; c < end; ++c)
+    {
+      Cell cell{c, true, {}};
+      if (is_within())
+      {
+        const auto  x = corners_of(view, c);
+        BoundingBox around(x);
+        const Vec3  margin = 0.05 * (around.upper - around.lower);
+        around.lower -= margin;
+        around.upper += margin;
+        cell.facets       = tree.intersecting(around);
+        cell.eye_in_front = die.facet_distance(eye_of(x), Vec3()) > 0.;
+        if (!cell.eye_in_front && cell.facets.empty())
+          continue;
+      }
+      decisions.cells.push_back(std::move(cell));
+    }
+    return decisions;
   }
 
   namespace
   {
-    /// H of a layer of that width.
     template <typename Number>
-    Number smooth_step(const Number &x, const double width)
+    Number volume_of_cell(const UnfilledVolume::Cell           &cell,
+                          const Tetrahedron<Number>            &x,
+                          const std::vector<HalfSpace<Number>> &half_spaces)
     {
-      return 1. - FrictionRamp{width, false}(Number(x + 0.5 * width), false);
-    }
-
-    double smooth_step_slope(const double x, const double width)
-    {
-      return -FrictionRamp{width, false}.derivative(x + 0.5 * width);
+      return cell.eye_in_front
+               ? clipped_volume(x, half_spaces.data(), half_spaces.data() + half_spaces.size())
+               : Number(0.);
     }
   } // namespace
-
-  UnfilledVolume::Decisions UnfilledVolume::compute_decisions(const FinalView<double> &view) const
-  {
-    const Grid                 grid = make_grid(view);
-    Decisions                  decisions{grid.width, WorkpieceSurface(view), {}};
-    const TriangleSurface     &workpiece = decisions.workpiece.shape();
-    const TriangleSurface      target    = target_.moved(view);
-    const ClosestFeature       closest_target(target), closest_workpiece(workpiece);
-    const NodalVectors<double> vertices = decisions.workpiece.vertices(view);
-    const Sector               sector(view.scene.mesh);
-    const auto counts       = [&](const double depth) { return smooth_step(depth, grid.width) > 0.; };
-    const auto [begin, end] = share_of_rank(grid.n_samples(), view.scene.discretization.comm());
-    for (unsigned int g = begin; g < end; ++g)
-    {
-      Sample sample;
-      sample.x = grid.sample(g);
-      sample.volume =
-        grid.spacing[0] * grid.spacing[1] * grid.spacing[2] * sector.share(sample.x, grid.spacing);
-      if (sample.volume == 0.)
-        continue;
-      // Behind the rim of an open surface is inside what it bounds.
-      sample.target = closest_target(sample.x - target_.displacement(view));
-      if (sample.target.found() ? !counts(sign() * target_.distance(view, sample.x, sample.target))
-                                : cavity_ == Cavity::in_front)
-        continue;
-      sample.workpiece = closest_workpiece(sample.x);
-      if (sample.workpiece.found() &&
-          counts(project_on_feature(workpiece, vertices, sample.workpiece, sample.x, Vec3()).delta))
-        decisions.samples.push_back(sample);
-    }
-    return decisions;
-  }
 
   template <typename Number>
   std::vector<Number> UnfilledVolume::compute_integrals(const FinalView<Number> &view,
                                                         const Decisions         &decisions) const
   {
-    const auto &[width, workpiece, samples] = decisions;
-    const NodalVectors<Number> vertices     = workpiece.vertices(view);
-    Number                     sum(0.);
-    for (const Sample &sample : samples)
+    const Surface<Number> surface(*this, view, decisions.region);
+    const auto           &triangles    = die_.surface()->triangles();
+    const auto           &displacement = surface.state.displacement;
+    Number                cavity(0.), metal(0.), at_facets(0.);
+    // On one rank, as the others sum up their facets.
+    if (decisions.region.eye_in_front &&
+        dealii::Utilities::MPI::this_mpi_process(view.scene.discretization.comm()) == 0)
+      cavity += decisions.region.volume(surface.place);
+    for (const unsigned int f : decisions.facets)
     {
-      Vector3<Number> x;
-      for (unsigned int i = 0; i < 3; ++i)
-        x[i] = Number(sample.x[i]);
-      const Number u =
-        project_on_feature(workpiece.shape(), vertices, sample.workpiece, x, Vector3<Number>()).delta;
-      const Number c = sample.target.found()
-                         ? smooth_step(Number(sign() * target_.distance(view, x, sample.target)), width)
-                         : Number(1.);
-      sum += sample.volume * c * smooth_step(u, width);
+      const auto x = shifted(corners_of(surface.vertices, triangles[f]), displacement);
+      cavity += decisions.region.shadow(surface.place, x);
+      if (is_within())
+        continue;
+      std::array<Number, 3> delta;
+      const auto            points = middles(x);
+      for (unsigned int q = 0; q < 3; ++q)
+        delta[q] = die_.project(points[q], surface.state, DieFeature{f, 0}).delta;
+      cavity += surface.share(x) * volume_of_bulge(x, delta);
     }
-    return {sum};
+    for (const Cell &cell : decisions.cells)
+    {
+      const auto x = corners_of(view, cell.cell);
+      metal += volume_of_cell(cell, x, surface.half_spaces);
+      for (const unsigned int f : cell.facets)
+        metal += shadow_in_tetrahedron(
+          x, eye_of(x), corners_of(surface.vertices, triangles[f]), surface.half_spaces);
+    }
+    for (const FacetAtDie &facet : decisions.at_die)
+    {
+      const auto        x      = corners_of(view.X, facet.nodes);
+      const auto        points = FacetAtDie::points(x);
+      FacetGaps<Number> gaps;
+      for (unsigned int q = 0; q < 7; ++q)
+      {
+        const auto projection = die_.project(points[q], surface.state, facet.features[q]);
+        gaps.delta[q]         = projection.delta;
+        if (q < 3)
+          gaps.n[q] = projection.n;
+      }
+      at_facets += surface.share(x) * volume_at_facet(x, gaps, !is_within());
+    }
+    return {cavity, metal, at_facets};
+  }
+
+  void UnfilledVolume::reverse_cavity(const FinalView<double> &view,
+                                      const Decisions         &decisions,
+                                      const double             weight,
+                                      FinalBar                &bar) const
+  {
+    const Region          &region = decisions.region;
+    const Surface<double>  surface(*this, view, region);
+    const Die              die          = view.target ? die_.moved(*view.target) : die_;
+    const auto            &triangles    = die_.surface()->triangles();
+    const Vec3            &displacement = surface.state.displacement;
+    const bool             by_vertices  = bar.target.size() == surface.vertices.size();
+    Vec3                   displacement_bar;
+    double                 mouth_bar = 0.;
+    const auto             vertex    = [&](const unsigned int v, const Vec3 &x_bar) {
+      if (by_vertices)
+        bar.target[v] += x_bar;
+    };
+    const auto place_of = [&](LocalArguments &argument) {
+      RegionPlace<LocalArguments::Number> place;
+      place.shift = argument(surface.place.shift);
+      place.mouth = argument(surface.place.mouth);
+      return place;
+    };
+    const auto add_place = [&](const LocalArguments::Number &part, const unsigned int first) {
+      if (region.follows_die)
+        displacement_bar += derivative(part, first, weight);
+      mouth_bar += weight * part.dx(first + 3);
+    };
+    if (region.eye_in_front &&
+        dealii::Utilities::MPI::this_mpi_process(view.scene.discretization.comm()) == 0)
+    {
+      LocalArguments argument;
+      add_place(region.volume(place_of(argument)), 0);
+    }
+    for (const unsigned int f : decisions.facets)
+    {
+      LocalArguments      argument;
+      const auto          x_at = shifted(corners_of(surface.vertices, triangles[f]), displacement);
+      const auto          x = argument(x_at);
+      const auto          place = place_of(argument);
+      std::array<Vec3, 3> x_bar;
+      auto                part = region.shadow(place, x);
+      if (!is_within())
+      {
+        std::array<LocalArguments::Number, 3> delta;
+        const auto                            points = middles(x_at);
+        for (unsigned int q = 0; q < 3; ++q)
+          delta[q] = argument(die.project(points[q], displacement, DieFeature{f, 0}).delta);
+        part += (all_inside(x_at, surface.values) ? LocalArguments::Number(1.)
+                                                  : share_of_facet(x, region.half_spaces(place))) *
+                volume_of_bulge(x, delta);
+        for (unsigned int q = 0; q < 3; ++q)
+        {
+          Vec3 point_bar;
+          die.reverse_project(points[q],
+                              displacement,
+                              DieFeature{f, 0},
+                              weight * part.dx(13 + q),
+                              Vec3(),
+                              point_bar,
+                              displacement_bar,
+                              by_vertices ? &bar.target : nullptr);
+          x_bar[q] += 0.5 * point_bar;
+          x_bar[(q + 1) % 3] += 0.5 * point_bar;
+        }
+      }
+      add_place(part, 9);
+      for (unsigned int k = 0; k < 3; ++k)
+      {
+        x_bar[k] += derivative(part, 3 * k, weight);
+        displacement_bar += x_bar[k];
+        vertex(triangles[f][k], x_bar[k]);
+      }
+    }
+    if (region.mouth_vertex != invalid_index)
+      vertex(region.mouth_vertex, mouth_bar * region.axis);
+    if (!is_within())
+      bar.dies[index_].displacement += displacement_bar;
+  }
+
+  void UnfilledVolume::reverse_cells(const FinalView<double> &view,
+                                     const Decisions         &decisions,
+                                     const double             weight,
+                                     FinalBar                &bar) const
+  {
+    const Region         &region = decisions.region;
+    const Surface<double> surface(*this, view, region);
+    const auto           &triangles   = die_.surface()->triangles();
+    const bool            by_vertices = bar.target.size() == surface.vertices.size();
+    Vec3                  shift_bar;
+    double                mouth_bar = 0.;
+    for (const Cell &cell : decisions.cells)
+    {
+      const auto     x_at = corners_of(view, cell.cell);
+      LocalArguments argument;
+      const auto     x = argument(x_at);
+      const auto     add = [&](const LocalArguments::Number &part) {
+        for (unsigned int k = 0; k < 4; ++k)
+          bar.X[view.scene.mesh.cells[cell.cell][k]] += derivative(part, 3 * k, weight);
+      };
+      if (cell.eye_in_front && all_inside(x_at, surface.values))
+        add(signed_volume(x));
+      else if (cell.eye_in_front)
+      {
+        RegionPlace<LocalArguments::Number> place;
+        place.shift     = argument(surface.place.shift);
+        place.mouth     = argument(surface.place.mouth);
+        const auto part = volume_of_cell(cell, x, region.half_spaces(place));
+        add(part);
+        shift_bar += derivative(part, 12, weight);
+        mouth_bar += weight * part.dx(15);
+      }
+      for (const unsigned int f : cell.facets) // within a shape, which stands still
+      {
+        LocalArguments of_pair;
+        const auto     corners = of_pair(x_at);
+        const auto     facet   = of_pair(corners_of(surface.vertices, triangles[f]));
+        RegionPlace<LocalArguments::Number> still;
+        const auto part = shadow_in_tetrahedron(corners, eye_of(corners), facet, region.half_spaces(still));
+        add(part);
+        for (unsigned int k = 0; k < 3 && by_vertices; ++k)
+          bar.target[triangles[f][k]] += derivative(part, 12 + 3 * k, weight);
+      }
+    }
+    if (region.follows_die && !is_within())
+      bar.dies[index_].displacement += shift_bar;
+    if (region.mouth_vertex != invalid_index && by_vertices)
+      bar.target[region.mouth_vertex] += mouth_bar * region.axis;
+  }
+
+  void UnfilledVolume::reverse_facets(const FinalView<double> &view,
+                                      const Decisions         &decisions,
+                                      const double             weight,
+                                      FinalBar                &bar) const
+  {
+    const Region         &region = decisions.region;
+    const Surface<double> surface(*this, view, region);
+    const Die             die          = view.target ? die_.moved(*view.target) : die_;
+    const Vec3           &displacement = surface.state.displacement;
+    const bool            by_vertices  = bar.target.size() == surface.vertices.size();
+    Vec3                  displacement_bar;
+    double                mouth_bar = 0.;
+    for (const FacetAtDie &facet : decisions.at_die)
+    {
+      const auto           x_at   = corners_of(view.X, facet.nodes);
+      const auto           points = FacetAtDie::points(x_at);
+      std::array<Vec3, 3>  x_bar;
+      std::array<Vec3, 7>  points_bar, n_bar;
+      LocalArguments       of_gaps;
+      const auto           x = of_gaps(x_at);
+      FacetGaps<LocalArguments::Number> gaps;
+      std::array<Vec3, 3>               n;
+      for (unsigned int q = 0; q < 7; ++q)
+      {
+        const auto projection = die.project(points[q], displacement, facet.features[q]);
+        gaps.delta[q]         = of_gaps(projection.delta);
+        if (q < 3)
+          n[q] = projection.n;
+      }
+      gaps.n             = of_gaps(n);
+      const auto   part  = volume_at_facet(x, gaps, !is_within());
+      const double share = surface.share(x_at);
+      if (share == 0.)
+        continue;
+      if (!all_inside(x_at, surface.values))
+      {
+        LocalArguments                      of_share;
+        const auto                          corners = of_share(x_at);
+        RegionPlace<LocalArguments::Number> place;
+        place.shift         = of_share(surface.place.shift);
+        place.mouth         = of_share(surface.place.mouth);
+        const auto   of_all = share_of_facet(corners, region.half_spaces(place));
+        const double volume = weight * part.val();
+        for (unsigned int k = 0; k < 3; ++k)
+          x_bar[k] += derivative(of_all, 3 * k, volume);
+        if (region.follows_die)
+          displacement_bar += derivative(of_all, 9, volume);
+        mouth_bar += volume * of_all.dx(12);
+      }
+      for (unsigned int k = 0; k < 3; ++k)
+      {
+        x_bar[k] += derivative(part, 3 * k, weight * share);
+        n_bar[k] = derivative(part, 16 + 3 * k, weight * share);
+      }
+      for (unsigned int q = 0; q < 7; ++q)
+        die.reverse_project(points[q],
+                            displacement,
+                            facet.features[q],
+                            weight * share * part.dx(9 + q),
+                            n_bar[q],
+                            points_bar[q],
+                            displacement_bar,
+                            by_vertices ? &bar.target : nullptr);
+      FacetAtDie::add_points(points_bar, x_bar);
+      for (unsigned int k = 0; k < 3; ++k)
+        bar.X[facet.nodes[k]] += x_bar[k];
+    }
+    if (!is_within())
+      bar.dies[index_].displacement += displacement_bar;
+    if (region.mouth_vertex != invalid_index && by_vertices)
+      bar.target[region.mouth_vertex] += mouth_bar * region.axis;
   }
 
   void UnfilledVolume::reverse_integrals(const FinalView<double>   &view,
@@ -149,29 +459,9 @@ namespace retroforge
                                          const std::vector<double> &weights,
                                          FinalBar                  &bar) const
   {
-    const double          width     = decisions.width;
-    const TriangleSurface workpiece = decisions.workpiece.moved(view), target = target_.moved(view);
-    NodalVectors<double>  workpiece_bar(workpiece.vertices().size());
-    Vec3                  unused; // samples stand still
-    for (const Sample &sample : decisions.samples)
-    {
-      const double weight = weights[0] * sample.volume;
-      const double u =
-        project_on_feature(workpiece, workpiece.vertices(), sample.workpiece, sample.x, Vec3()).delta;
-      double c = 1.;
-      if (sample.target.found())
-      {
-        const double depth = sign() * target_.distance(view, sample.x, sample.target);
-        c                  = smooth_step(depth, width);
-        if (const double depth_bar = weight * smooth_step(u, width) * smooth_step_slope(depth, width);
-            depth_bar != 0.)
-          target_.reverse_distance(view, target, sample.x, sample.target, sign() * depth_bar, unused, bar);
-      }
-      if (const double u_bar = weight * c * smooth_step_slope(u, width); u_bar != 0.)
-        reverse_project_on_feature(
-          workpiece, sample.workpiece, sample.x, Vec3(), u_bar, Vec3(), unused, unused, &workpiece_bar);
-    }
-    decisions.workpiece.add(workpiece_bar, bar);
+    reverse_cavity(view, decisions, weights[0], bar);
+    reverse_cells(view, decisions, weights[1], bar);
+    reverse_facets(view, decisions, weights[2], bar);
   }
 
   template std::vector<double> UnfilledVolume::compute_integrals(const FinalView<double> &,
@@ -183,29 +473,17 @@ namespace retroforge
   {
     struct UnfilledVolumeType : TargetType
     {
-      unsigned int samples = 40;
-      double       layer   = 2.;
-
-      void add_parameters(dealii::ParameterHandler &prm) override
-      {
-        TargetType::add_parameters(prm);
-        prm.add_parameter("samples",
-                          samples,
-                          "Of an unfilled volume, along the longest edge. Units: none.",
-                          dealii::Patterns::Integer(3, 1000));
-        prm.add_parameter("layer",
-                          layer,
-                          "Over which its samples fade out. Units: spacings of the samples.",
-                          dealii::Patterns::Double(1.));
-      }
-
       void make(const std::string      &where,
                 const ObjectiveContext &context,
                 NamedObjective         &objective) const override
       {
-        objective.scaling = SymmetryScaling::part;
-        objective.at_end  = std::make_unique<UnfilledVolume>(
-          target.make(where, context), target.is_die() ? Cavity::in_front : Cavity::within, samples, layer);
+        const TargetSurface surface = target.make(where, context);
+        objective.scaling           = SymmetryScaling::part;
+        if (target.is_die())
+          objective.at_end =
+            std::make_unique<UnfilledVolume>(context.dies[surface.die()], surface.die(), surface.region());
+        else
+          objective.at_end = std::make_unique<UnfilledVolume>(surface);
       }
     };
   } // namespace

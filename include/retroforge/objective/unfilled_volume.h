@@ -2,68 +2,68 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/objective/facet_gaps.h>
 #include <retroforge/objective/objective_type.h>
-#include <retroforge/objective/sector.h>
 #include <retroforge/objective/target_surface.h>
-#include <retroforge/objective/workpiece_surface.h>
 
 namespace retroforge
 {
-  /// The region that material should fill: within a closed surface (the desired shape, normals outwards), or
-  /// in front of a die's face.
-  enum class Cavity
-  {
-    within,
-    in_front
-  };
-
-  /// Volume of a cavity that the workpiece does not reach [mm^3], by samples on a grid:
-  ///   sum_g dV H(c_g) H(u_g),   H(x) = 1 - w(x + l/2),
-  /// c_g the depth of sample g in the cavity, u_g its distance from the workpiece, both > 0 where it counts,
-  /// and H a step smoothed over the layer l (w the smooth FrictionRamp of width l). Symmetric about the
-  /// surfaces, so the layer's error is of second order in it, and a plane has none but that of the grid.
+  /// Volume of a cavity that the workpiece does not reach [mm^3]:
+  ///   Phi = |C| - |W| - sum_f s_f v_f,
+  /// C the cavity, what lies in front of a die, or within a shape, in its region (cavity.h); W the workpiece
+  /// there; v_f the volume between a facet of it and a die it lies on, s_f the part of the facet in the region
+  /// (facet_gaps.h).
   ///
-  /// Unlike the double projection it is a volume also where both surfaces are far apart. Samples lie in the
-  /// target's region, whose sides cut sharply, or around the whole target if it has none. Of both, only the
-  /// sector counts that symmetry planes left of the workpiece.
-  /// Frozen: the samples, those that count, and their closest features.
+  /// Before a die |W| is the workpiece's volume in the region, and C has the smooth surface that the facets of
+  /// the die stand for, by the gaps at the middles of their edges; v_f sees to it that metal in the die fills
+  /// no other place. Within a shape, W is what of the workpiece lies in C, tetrahedron by tetrahedron: metal
+  /// outside (flash) does not count. Only the sector counts that symmetry planes left of the workpiece.
+  ///
+  /// Exact for flat walls, to fourth order in the facets' size for others. Frozen: the region without its
+  /// mouth's place, from where its shadows are seen, which facets lie at the die, and the features they see.
   class UnfilledVolume : public FinalObjectiveOf<UnfilledVolume>
   {
   public:
-    /// @param n_samples  along the longest edge of the grid
-    /// @param layer      l, in spacings of the samples: at least 1, or they would jump
-    /// @throws Error
-    UnfilledVolume(TargetSurface target, Cavity cavity, unsigned int n_samples, double layer = 2.);
+    /// Before a die.
+    /// @param index   number of the die in the scene
+    /// @param region  or what lies behind the die's mouth
+    UnfilledVolume(Die die, unsigned int index, const std::optional<Box> &region = {});
+
+    /// Within a shape that stands still, its normals outwards.
+    /// @throws Error  for an open shape without a region
+    explicit UnfilledVolume(const TargetSurface &shape);
 
     std::string  name() const override { return "unfilled volume"; }
     std::string  unit() const override { return "mm^3"; }
-    unsigned int target_die() const override { return target_.die(); }
+    unsigned int target_die() const override { return index_; }
 
-    struct Sample
+    /// Tetrahedra of the workpiece within a shape, or cut by it.
+    struct Cell
     {
-      Vec3       x;
-      double     volume;            ///< volume that the sample stands for, in the sector [mm^3]
-      DieFeature target, workpiece; ///< a target of none: deep in a cavity within
+      CellIndex                 cell;
+      bool                      eye_in_front; ///< whether a point of it is within the shape
+      std::vector<unsigned int> facets;       ///< of the shape that may cut it
     };
 
-    /// The workpiece's surface at that moment, and what of the grid counts.
     struct Decisions
     {
-      double              width; ///< l [mm]
-      WorkpieceSurface    workpiece;
-      std::vector<Sample> samples; ///< of this rank's share
+      Region                    region;
+      std::vector<unsigned int> facets; ///< of the surface, that may be in the region: this rank's
+      std::vector<Cell>         cells;  ///< this rank's
+      std::vector<FacetAtDie>   at_die; ///< this rank's
     };
 
-    /// @throws Error  when the workpiece's surface is folded onto itself
+    /// @throws Error  where there is no cavity
     Decisions compute_decisions(const FinalView<double> &view) const;
 
+    /// Returns |C|, |W|, and the sum over facets.
     template <typename Number>
     std::vector<Number> compute_integrals(const FinalView<Number> &view, const Decisions &decisions) const;
 
     template <typename Number>
     Number combine(const std::vector<Number> &integrals, const Decisions &) const
     {
-      return integrals[0];
+      return integrals[0] - integrals[1] - integrals[2];
     }
 
     void reverse_integrals(const FinalView<double>   &view,
@@ -71,24 +71,34 @@ namespace retroforge
                            const std::vector<double> &weights,
                            FinalBar                  &bar) const;
 
-  private:
-    struct Grid
+    std::map<std::string, double> parts(const std::vector<double> &integrals) const override
     {
-      std::array<unsigned int, 3> n;
-      Vec3                        origin, spacing;
-      double                      width; ///< l
+      return {{"cavity", integrals[0]},
+              {"metal in it", -integrals[1]},
+              {"between facets and die", -integrals[2]}};
+    }
 
-      unsigned int n_samples() const { return n[0] * n[1] * n[2]; }
-      Vec3         sample(unsigned int g) const;
-    };
+    std::map<std::string, double> details(const std::vector<double> &integrals,
+                                          const FinalDecisions &) const override
+    {
+      return {{"of the cavity [%]", 100. * (integrals[0] - integrals[1] - integrals[2]) / integrals[0]}};
+    }
 
-    Grid   make_grid(const FinalView<double> &view) const;
-    double sign() const { return cavity_ == Cavity::within ? -1. : 1.; }
+  private:
+    template <typename Number>
+    struct Surface;
 
-    TargetSurface target_;
-    Cavity        cavity_;
-    unsigned int  n_samples_;
-    double        layer_; ///< in spacings
+    bool is_within() const { return index_ == invalid_index; }
+
+    Decisions decide_cells(const FinalView<double> &view, const Die &die, Decisions decisions) const;
+
+    void reverse_cavity(const FinalView<double> &view, const Decisions &decisions, double weight, FinalBar &bar) const;
+    void reverse_cells(const FinalView<double> &view, const Decisions &decisions, double weight, FinalBar &bar) const;
+    void reverse_facets(const FinalView<double> &view, const Decisions &decisions, double weight, FinalBar &bar) const;
+
+    Die                die_; ///< a shape turned inside out
+    unsigned int       index_;
+    std::optional<Box> region_;
   };
 
   /// Returns the type of this objective, as parameter files offer it.

@@ -245,40 +245,6 @@ void check_filling_of_free_nodes(Errors &errors)
   }
 }
 
-/// Unfilled volume of a cube of edge 1.5 around one of edge 1, and of the space between a flat die and it.
-void check_unfilled()
-{
-  FinalProblem problem(box(Vec3({0.5, 0.5, 0.}), Vec3({1., 1., 1.}), 0.5), {});
-  const auto   larger = scaled(cube(), 1.5, Vec3({-0.25, -0.25, -0.25}));
-  std::cout << "  unfilled, parts in a thousand off:";
-  for (const unsigned int n : {20u, 40u, 80u})
-  {
-    UnfilledVolume unfilled(TargetSurface(larger), Cavity::within, n);
-    std::cout << ' ' << std::round(1e5 * (problem.value(unfilled) / 2.375 - 1.)) / 100.;
-  }
-  // Half of the scene, its symmetry plane the end of the region.
-  const Box      half_space(Vec3({0., -2., -2.}), Vec3({2., 2., 2.}));
-  FinalProblem   half(box(Vec3({0., 0., -0.5}), Vec3({1., 1., 1.}), 0.5, true), {});
-  const auto     centred = scaled(cube(), 1.5, Vec3({-0.75, -0.75, -0.75}));
-  UnfilledVolume of_half(TargetSurface(centred, invalid_index, half_space), Cavity::within, 80);
-  std::cout << std::endl
-            << "  half of the scene: " << std::round(1e5 * (half.value(of_half) / (0.5 * 2.375) - 1.)) / 100.
-            << std::endl;
-  // The same without a region, and a quarter: only their sector counts.
-  UnfilledVolume sector_of_half(TargetSurface(centred), Cavity::within, 80);
-  std::cout << "  half, by its sector: "
-            << std::round(1e5 * (half.value(sector_of_half) / (0.5 * 2.375) - 1.)) / 100. << std::endl;
-  // A sheet z = 0 facing up, the box above it lifted by 0.3: 0.3 times the region's base.
-  const auto     flat = scaled(sheet(4, [](double, double) { return 0.; }), 2., Vec3());
-  const Box      base(Vec3({-0.4, -0.4, -0.5}), Vec3({0.4, 0.4, 0.5}));
-  FinalProblem   lifted(box(Vec3({0., 0., 0.3}), Vec3({1.6, 1.6, 1.}), 0.5), {});
-  UnfilledVolume above(TargetSurface(flat, 0, base), Cavity::in_front, 50);
-  std::cout << "  above a die: " << std::round(1e5 * (lifted.value(above) / (0.3 * 0.64) - 1.)) / 100.;
-  lifted.at.dies[0].displacement = Vec3({0., 0., 0.1});
-  std::cout << ", nearer: " << std::round(1e5 * (lifted.value(above) / (0.2 * 0.64) - 1.)) / 100.
-            << std::endl;
-}
-
 void check_cylinder(Errors &errors)
 {
   BilletParameters parameters;
@@ -339,8 +305,7 @@ double check_all_derivatives()
   const Box        low(Vec3({-1., -1., -1.}), Vec3({1., 1., 0.6}));
   FillingObjective die_filling(TargetSurface(die, 0, low)), closed_filling{TargetSurface(bumpy), 1e-2};
   ShapeDistance    die_distance(TargetSurface(die, 0, low)), closed_distance{TargetSurface(bumpy)};
-  UnfilledVolume   die_unfilled(TargetSurface(die, 0, low), Cavity::in_front, 30, 4.);
-  UnfilledVolume   closed_unfilled(TargetSurface(bumpy), Cavity::within, 24, 4.);
+  UnfilledVolume   die_unfilled(Die("die", *die, 0.3), 0, low), closed_unfilled{TargetSurface(bumpy)};
   const std::vector<std::string> sides = {"side +x", "side +y"};
   const Vec3                     foot({-3., 0., 0.}), axis({0.1, 0.2, 1.});
   RadiusObjective                side(RadiusStatistic::variance, sides, foot, axis);
@@ -396,18 +361,15 @@ int main(int argc, char **argv)
   check_filling_of_half(errors);
   check_filling_of_free_nodes(errors);
   check_cylinder(errors);
-  check_unfilled();
   errors.print(1e-12);
   std::cout << "derivatives" << std::endl;
   const double worst = check_all_derivatives();
   std::cout << "refused" << std::endl;
   refused([] { StrainObjective(StrainStatistic::maximum, {SmoothMaximum::Kind::p_norm, 0.5}); });
   refused([] { FillingObjective{TargetSurface(scaled(cube(), 1., Vec3())), -1.}; });
-  refused([] { UnfilledVolume(TargetSurface(scaled(cube(), 1., Vec3())), Cavity::within, 50, 0.5); });
-  refused([] { UnfilledVolume(TargetSurface(scaled(cube(), 1., Vec3())), Cavity::within, 3); });
   refused([] {
     const auto open = scaled(sheet(2, [](double, double) { return 0.; }), 1., Vec3());
-    UnfilledVolume(TargetSurface(open), Cavity::within, 50);
+    UnfilledVolume{TargetSurface(open)};
   });
   refused([] { RadiusObjective(RadiusStatistic::mean, {}, Vec3(), Vec3({0., 0., 1.})); });
   refused([] { RadiusObjective(RadiusStatistic::mean, {"side"}, Vec3(), Vec3()); });

@@ -59,7 +59,7 @@ Objectives all_objectives(const unsigned int upper)
   at_end("shape distance", ShapeDistance(target));
   at_end("filling", FillingObjective(target, 0.01));
   at_end("filling of free nodes", FillingObjective(target, 0.01, FreeNodes(FrictionRamp{1., false})));
-  at_end("unfilled volume", UnfilledVolume(target, Cavity::within, 24, 4.));
+  at_end("unfilled volume", UnfilledVolume(target));
   return objectives;
 }
 
