@@ -168,11 +168,19 @@ namespace retroforge
     return sums[0] / sums[1];
   }
 
-  MaximumEffort::MaximumEffort(const Effort &effort, const PathWindow &window, const SmoothMaximum &maximum)
-      : effort_(effort), window_(window), maximum_(maximum)
+  MaximumEffort::MaximumEffort(const Effort        &effort,
+                               const PathWindow    &window,
+                               const SmoothMaximum &maximum,
+                               const double         reach)
+      : effort_(effort), window_(window), maximum_(maximum), reach_(reach)
   {
     window.check("Maximum effort");
     maximum.check("Maximum effort");
+    if (!(reach >= 0. && reach <= 1.))
+      throw Error("Maximum effort",
+                  "forces are fitted over " + as_text(reach) + " of the path",
+                  "it must be a part of it, from 0 to 1",
+                  "use 0.15, or 0 for the force of each increment as it is");
   }
 
   double MaximumEffort::true_maximum(const PathRows<double> &rows) const
@@ -189,6 +197,63 @@ namespace retroforge
     return largest;
   }
 
+  template <typename Number>
+  ForcePath<Number> MaximumEffort::path_of(const PathRows<Number> &rows) const
+  {
+    ForcePath<Number> path{{}, {}, {}, 0.};
+    double            end = 0., offset = 0., whole = 0.;
+    for (const PathRow<Number> &row : rows)
+      whole += row.step;
+    for (const PathRow<Number> &row : rows)
+    {
+      if (row.stroke < end) // another operation, which nothing is fitted across to
+        offset += 3. * whole;
+      end                 = row.stroke + 0.5 * row.step;
+      const Number length = window_.overlap(row);
+      if (value_of(length) == 0.)
+        continue;
+      path.force.push_back(effort_.force(row.integrals));
+      path.length.push_back(length);
+      path.place.push_back(offset + row.stroke + 0.5 * row.step);
+      path.reach += reach_ * row.step;
+    }
+    return path;
+  }
+
+  template <typename Number>
+  Number MaximumEffort::evaluate(const PathRows<Number> &rows) const
+  {
+    const ForcePath<Number> path = path_of(rows);
+    check_length(double(path.size()));
+    return maximum_.value(path);
+  }
+
+  PathRows<double> MaximumEffort::reverse_value(const PathRows<double> &rows) const
+  {
+    const ForcePath<double> bar = maximum_.reverse(path_of(rows));
+    PathRows<double>        rows_bar;
+    std::size_t             i = 0; // of those in the window
+    for (const PathRow<double> &row : rows)
+    {
+      PathRow<Dual> at         = constant(row);
+      const bool    is_inside  = window_.overlap(row) > 0.;
+      const auto    derivative = [&](Dual &input) {
+        if (!is_inside)
+          return 0.;
+        input.fastAccessDx(0) = 1.;
+        const double sum =
+          bar.force[i] * effort_.force(at.integrals).dx(0) + bar.length[i] * window_.overlap(at).dx(0);
+        input.fastAccessDx(0) = 0.;
+        return sum;
+      };
+      rows_bar.push_back({{}, derivative(at.dt), derivative(at.time), row.stroke, row.step});
+      for (Dual &integral : at.integrals)
+        rows_bar.back().integrals.push_back(derivative(integral));
+      i += is_inside;
+    }
+    return rows_bar;
+  }
+
   void MaximumEffort::reverse_integrals(const EquilibriumView<double> &view,
                                         const std::vector<double>     &weights,
                                         EquilibriumBar                &bar) const
@@ -202,32 +267,15 @@ namespace retroforge
     return effort_.terms(view);
   }
 
-  template <typename Number>
-  std::vector<Number> MaximumEffort::terms(const PathRow<Number> &row, const double scale) const
-  {
-    const Number length = window_.overlap(row);
-    if (value_of(length) == 0.)
-      return {Number(0.), Number(0.)}; // outside, an effort above the scale must not overflow
-    return {maximum_.term(effort_.force(row.integrals), length, scale), length};
-  }
-
-  template <typename Number>
-  Number MaximumEffort::combine(const std::vector<Number> &sums, const double scale) const
-  {
-    check_length(sums[1]);
-    return maximum_.combine(sums[0], sums[1], scale);
-  }
-
-#define RETROFORGE_INSTANTIATE(Number)                                                                  \
-  template Number              PathWindow::overlap(const PathRow<Number> &) const;                      \
-  template std::vector<Number> Effort::terms(const EquilibriumView<Number> &) const;                    \
-  template Number              Effort::force(const std::vector<Number> &) const;                        \
-  template std::vector<Number> MeanEffort::compute_integrals(const EquilibriumView<Number> &) const;    \
-  template std::vector<Number> MeanEffort::terms(const PathRow<Number> &, double) const;                \
-  template Number              MeanEffort::combine(const std::vector<Number> &, double) const;          \
-  template std::vector<Number> MaximumEffort::compute_integrals(const EquilibriumView<Number> &) const; \
-  template std::vector<Number> MaximumEffort::terms(const PathRow<Number> &, double) const;             \
-  template Number              MaximumEffort::combine(const std::vector<Number> &, double) const;
+#define RETROFORGE_INSTANTIATE(Number)                                                               \
+  template Number              PathWindow::overlap(const PathRow<Number> &) const;                   \
+  template std::vector<Number> Effort::terms(const EquilibriumView<Number> &) const;                 \
+  template Number              Effort::force(const std::vector<Number> &) const;                     \
+  template std::vector<Number> MeanEffort::compute_integrals(const EquilibriumView<Number> &) const; \
+  template std::vector<Number> MeanEffort::terms(const PathRow<Number> &, double) const;             \
+  template Number              MeanEffort::combine(const std::vector<Number> &, double) const;       \
+  template Number              MaximumEffort::evaluate(const PathRows<Number> &) const;              \
+  template std::vector<Number> MaximumEffort::compute_integrals(const EquilibriumView<Number> &) const;
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE
@@ -284,17 +332,23 @@ namespace retroforge
     struct MaximumEffortType : EffortType
     {
       MaximumSettings maximum;
+      double          reach = MaximumEffort::default_reach;
 
       void add_parameters(dealii::ParameterHandler &prm) override
       {
         EffortType::add_parameters(prm);
         maximum.add_parameters(prm);
+        prm.add_parameter("fitted path",
+                          reach,
+                          "The largest force is taken of fits to the increments that lie within this part of "
+                          "the path to either side; 0 for the force of each increment as it is. Units: none.",
+                          dealii::Patterns::Double(0., 1.));
       }
 
       std::unique_ptr<PathObjective>
       make_path(const std::string &where, const Effort &effort, const PathWindow &path_window) const override
       {
-        return std::make_unique<MaximumEffort>(effort, path_window, maximum.make(where));
+        return std::make_unique<MaximumEffort>(effort, path_window, maximum.make(where), reach);
       }
     };
   } // namespace

@@ -2,9 +2,9 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/objective/fitted_maximum.h>
 #include <retroforge/objective/objective_type.h>
 #include <retroforge/objective/path_objective.h>
-#include <retroforge/objective/smooth_maximum.h>
 
 #include <limits>
 
@@ -95,20 +95,24 @@ namespace retroforge
     PathWindow window_;
   };
 
-  /// Smooth maximum of the effort over a window [N], increments weighted with their part of it.
-  /// @cite Laroussi2003, Eq. (100)
-  class MaximumEffort : public PathObjectiveOf<MaximumEffort>
+  /// Largest effort over a window [N], of forces that are fitted along the path of the press
+  /// (fitted_maximum.h), increments weighted with their part of the window. Each operation is a path of its
+  /// own.  @cite Laroussi2003, Eq. (100), for what it measures
+  class MaximumEffort : public PathIntegralsOf<MaximumEffort>
   {
   public:
-    static constexpr unsigned int n_terms = 2;
+    static constexpr double default_reach = 0.15;
 
-    MaximumEffort(const Effort &effort, const PathWindow &window, const SmoothMaximum &maximum);
+    /// @param reach  of the fits, a part of the path that lies in the window; 0: forces as they are  @throws Error
+    MaximumEffort(const Effort        &effort,
+                  const PathWindow    &window,
+                  const SmoothMaximum &maximum,
+                  double               reach = default_reach);
 
     std::string name() const override { return "maximum effort"; }
     std::string unit() const override { return "N"; }
 
-    /// Returns the largest effort of an increment in the window, what value() stays below [N]; 0 if there is
-    /// none.
+    /// Returns the largest effort of an increment in the window [N]; 0 if there is none.
     double true_maximum(const PathRows<double> &rows) const;
 
     std::map<std::string, double> details(const PathRows<double> &rows) const override
@@ -116,22 +120,30 @@ namespace retroforge
       return {{"true maximum", true_maximum(rows)}};
     }
 
+    double value(const PathRows<double> &rows) const override { return evaluate(rows); }
+    Dual   value(const PathRows<Dual> &rows) const override { return evaluate(rows); }
+
+    PathRows<double> reverse_value(const PathRows<double> &rows) const override;
+
     void reverse_integrals(const EquilibriumView<double> &view,
                            const std::vector<double>     &weights,
                            EquilibriumBar                &bar) const override;
 
-    double scale(const PathRows<double> &rows) const { return true_maximum(rows); }
     template <typename Number>
     std::vector<Number> compute_integrals(const EquilibriumView<Number> &view) const;
-    template <typename Number>
-    std::vector<Number> terms(const PathRow<Number> &row, double scale) const;
-    template <typename Number>
-    Number combine(const std::vector<Number> &sums, double scale) const;
 
   private:
+    template <typename Number>
+    Number evaluate(const PathRows<Number> &rows) const;
+
+    /// Returns the rows in the window.
+    template <typename Number>
+    ForcePath<Number> path_of(const PathRows<Number> &rows) const;
+
     Effort        effort_;
     PathWindow    window_;
-    SmoothMaximum maximum_;
+    FittedMaximum maximum_;
+    double        reach_;
   };
 
   /// Return the types of these objectives, as parameter files offer them.

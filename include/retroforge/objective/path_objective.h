@@ -82,15 +82,10 @@ namespace retroforge
   PathRows<double> values_of(const PathRows<Dual> &rows);
   PathRow<Dual>    constant(const PathRow<double> &row);
 
-  /// A PathObjective made from class T, which has the number of its terms and for any Number
-  ///   static constexpr unsigned int n_terms;
+  /// A PathObjective whose integrals are those of class T, for any Number
   ///   std::vector<Number> compute_integrals(const EquilibriumView<Number> &) const;                of this rank
-  ///   std::vector<Number> terms(const PathRow<Number> &, double scale) const;                g
-  ///   Number              combine(const std::vector<Number> &sums, double scale) const;      F
-  /// and, if it needs one,  double scale(const PathRows<double> &) const:  a number that g and F use to avoid
-  /// overflow and on which Phi does not depend; it is not differentiated.
   template <typename T>
-  class PathObjectiveOf : public PathObjective
+  class PathIntegralsOf : public PathObjective
   {
   public:
     RankSum<std::vector<double>> integrals(const EquilibriumView<double> &view) const override
@@ -102,6 +97,27 @@ namespace retroforge
       return sum_integrals(view);
     }
 
+  private:
+    template <typename Number>
+    RankSum<std::vector<Number>> sum_integrals(const EquilibriumView<Number> &view) const
+    {
+      const auto &discretization = view.stage.scene.discretization;
+      Assert(view.W.belongs_to(discretization),
+             dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
+      return {static_cast<const T &>(*this).template compute_integrals<Number>(view), discretization.comm()};
+    }
+  };
+
+  /// One whose value is made from class T as well, which has the number of its terms and for any Number
+  ///   static constexpr unsigned int n_terms;
+  ///   std::vector<Number> terms(const PathRow<Number> &, double scale) const;                g
+  ///   Number              combine(const std::vector<Number> &sums, double scale) const;      F
+  /// and, if it needs one,  double scale(const PathRows<double> &) const:  a number that g and F use to avoid
+  /// overflow and on which Phi does not depend; it is not differentiated.
+  template <typename T>
+  class PathObjectiveOf : public PathIntegralsOf<T>
+  {
+  public:
     double value(const PathRows<double> &rows) const override { return evaluate(rows, self().scale(rows)); }
     Dual   value(const PathRows<Dual> &rows) const override
     {
@@ -122,15 +138,6 @@ namespace retroforge
 
   private:
     const T &self() const { return static_cast<const T &>(*this); }
-
-    template <typename Number>
-    RankSum<std::vector<Number>> sum_integrals(const EquilibriumView<Number> &view) const
-    {
-      const auto &discretization = view.stage.scene.discretization;
-      Assert(view.W.belongs_to(discretization),
-             dealii::ExcMessage("the unknowns are of another discretisation than the stage"));
-      return {self().template compute_integrals<Number>(view), discretization.comm()};
-    }
 
     template <typename Number>
     std::vector<Number> sum_terms(const PathRows<Number> &rows, const double scale) const

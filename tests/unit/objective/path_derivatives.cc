@@ -331,6 +331,8 @@ int main(int argc, char **argv)
   check("maximum effort, p-norm", MaximumEffort(by_power, part_of_time, p_norm));
   check("maximum effort, log-sum-exp", MaximumEffort(by_power, late, exponential));
   check("maximum force, log-sum-exp", MaximumEffort(by_force, part_of_time, exponential));
+  check("maximum effort, fitted to all of the path", MaximumEffort(by_power, part_of_time, p_norm, 1.));
+  check("maximum effort, not fitted", MaximumEffort(by_power, part_of_time, p_norm, 0.));
   check("fold, alpha = 1", FoldObjective(1.));
   check("fold, alpha = 4", FoldObjective(4.));
   check("fold, alpha = 2.5, in a box",
