@@ -36,7 +36,7 @@ namespace retroforge
     hdf5::write_attribute(group, "n_held_motions", &n);
     if (n == 0)
       return;
-    std::vector<double> numbers{hold.kappa};
+    std::vector<double> numbers{hold.drag};
     const auto          append = [&](const Vec3 &x) { numbers.insert(numbers.end(), {x[0], x[1], x[2]}); };
     append(load.force);
     append(load.moment);
@@ -65,7 +65,7 @@ namespace retroforge
       for (unsigned int i = 0; i < 3; ++i)
         x[i] = *next++;
     };
-    hold.kappa = *next++;
+    hold.drag = *next++;
     take(load.force);
     take(load.moment);
     hold.motions.resize(n);

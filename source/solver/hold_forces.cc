@@ -41,7 +41,7 @@ namespace retroforge
     for_each_owned_vertex(stage.scene, [&](const unsigned int place, const NodeIndex k) {
       for (std::size_t j = 0; j < speeds.size(); ++j)
         r.V.at_place(place) +=
-          hold.motions[j].at(stage.X[k]) * Number(hold.kappa / stage.X.size() * speeds[j]);
+          hold.motions[j].at(stage.X[k]) * Number(hold.drag / stage.X.size() * speeds[j]);
     });
   }
 
@@ -58,9 +58,9 @@ namespace retroforge
     const RigidHold           &hold  = stage.contact.hold;
     if (hold.empty())
       return;
-    // lambda·f = kappa sum_j g_j(V) g_j(lambda), and d g_j(V)/dX_k = V_k x turn_j / n.
+    // lambda·f = zeta sum_j g_j(V) g_j(lambda), and d g_j(V)/dX_k = V_k x turn_j / n.
     const std::vector<double> of_V = mean_speeds(stage, view.W.V), of_lambda = mean_speeds(stage, lambda.V);
-    const double              part = hold.kappa / stage.X.size();
+    const double              part = hold.drag / stage.X.size();
     for_each_owned_vertex(stage.scene, [&](const unsigned int place, const NodeIndex k) {
       for (std::size_t j = 0; j < of_V.size(); ++j)
         X_bar[k] +=
@@ -83,7 +83,7 @@ namespace retroforge
     for (std::size_t j = 0; j < speeds.size(); ++j)
       for (const Vec3 &x : stage.X)
       {
-        const Vec3 force = hold.kappa / stage.X.size() * speeds[j] * hold.motions[j].at(x);
+        const Vec3 force = hold.drag / stage.X.size() * speeds[j] * hold.motions[j].at(x);
         load.force += force;
         load.moment += cross(Vec3(x - centre), force);
       }

@@ -202,7 +202,7 @@ namespace retroforge
       return hold;
     hold.motions = loose_motions(scene, contact, X);
     if (!hold.empty())
-      hold.kappa = typical_drag(scene, physics, X) / yield;
+      hold.drag = typical_drag(scene, physics, X) / yield;
     return hold;
   }
 } // namespace retroforge

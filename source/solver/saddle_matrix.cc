@@ -105,7 +105,7 @@ namespace retroforge
       for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
         if (const NodeIndex k = velocities_.node_at(local); k < scene_.mesh.n_nodes())
         {
-          const Vec3 u    = std::sqrt(hold.kappa) / stage.X.size() * motion.at(stage.X[k]);
+          const Vec3 u    = std::sqrt(hold.drag) / stage.X.size() * motion.at(stage.X[k]);
           const Vec3 test = frames_[local].to_tests(u), trial = frames_[local].to_frame(u);
           for (unsigned int i = 0; i < 3; ++i)
           {

@@ -307,7 +307,7 @@ namespace retroforge
     for (const auto &die : process.over(place(record)).dies)
       speed = std::max(speed, die.velocity.norm());
     // Dies that press nothing yet.
-    if (record.hold.empty() || !(largest > noticed * record.hold.kappa * speed))
+    if (record.hold.empty() || !(largest > noticed * record.hold.drag * speed))
       return;
     const double arm  = record.hold_load.moment.norm() / largest,
                  edge = surface_edge(state.epoch->scene, state.workpiece.X);

@@ -4,8 +4,7 @@
 
 A mesh feels the narrow contact of a round bar on its side, or of a block on its edge, as a line: nothing in its equations keeps the
 body from rolling, and a run ends in the first increments unless what is loose is held. Here each such body is forged, in at most
-MOST Newton steps an increment with both of its stages, or the message names the motion. The force of a body of twice the consistency is twice as large, held or
-not, and a half of a body forges as the whole does. Usage: loose_billets.py RETROFORGE"""
+MOST Newton steps an increment with both of its stages, or the message names the motion. Usage: loose_billets.py RETROFORGE"""
 import math
 import os
 import re
@@ -90,7 +89,8 @@ def forged():
         judge(f"{name}: ends", done.returncode == 0, done.stderr)
         steps = [int(row["newton"]) for row in history_of(name)]
         judge(f"{name}: Newton steps", steps and max(steps) <= MOST, steps)
-        judge(f"{name}: volume", abs(summary_of(name)["volume_change"]) < 1e-4, summary_of(name)["volume_change"])
+        change = summary_of(name)["volume_final"] / summary_of(name)["volume_initial"] - 1
+        judge(f"{name}: volume", abs(change) < 1e-4, change)
 
 
 def any_solver():
@@ -115,7 +115,7 @@ def half_of_it():
 
 def derivatives():
     """Adjoint, tangent and replay know what the hold does. Only the hold's number in the free run follows the consistency."""
-    done = run("check", "check", "Press/stroke=0.1", "Press/increments=2", "Design/parameters=billet/radius, material/K, die upper/offset", case="bar8.prm")
+    done = run("check", "check", "Press/stroke=0.15", "Press/increments=3", "Design/parameters=billet/radius, material/K, die upper/offset", case="bar6.prm")
     judge("derivatives pass", done.returncode == 0 and done.stdout.count("passed") >= 4, done.stdout + done.stderr)
     agreement = [abs(float(x)) for x in re.findall(r"^  \S.*?e[+-]\d+ +(-?\d\.\de[+-]\d+) ", done.stdout, re.MULTILINE)]
     judge("adjoint against tangent", len(agreement) >= 4 and max(agreement) < 1e-9, agreement)

@@ -103,8 +103,8 @@ namespace retroforge
       increment.hold.motions.push_back({vector(), vector()});
     if (!increment.hold.empty())
     {
-      increment.hold.kappa = number();
-      increment.hold_load  = {vector(), vector()};
+      increment.hold.drag = number();
+      increment.hold_load = {vector(), vector()};
     }
     for (unsigned int d = 0; d < header.die_facets.size(); ++d)
       increment.forces.push_back(Vec3({number(), number(), number()}));
@@ -189,7 +189,7 @@ namespace retroforge
 
   inline bool same(const RigidHold &a, const RigidHold &b)
   {
-    bool equal = same_bits(a.kappa, b.kappa) && a.motions.size() == b.motions.size();
+    bool equal = same_bits(a.drag, b.drag) && a.motions.size() == b.motions.size();
     for (std::size_t j = 0; equal && j < a.motions.size(); ++j)
       equal = a.motions[j].slide == b.motions[j].slide && a.motions[j].turn == b.motions[j].turn;
     return equal;
