@@ -167,6 +167,7 @@ namespace retroforge
     const double closing         = closing_path() / press.increments;
     model.scheme                 = Scheme::by_name(press.scheme);
     model.edges_touch            = contact.edges_touch;
+    model.holds_loose            = contact.holds_loose;
     model.contact.approach       = contact.approach;
     model.contact.ramp.sharp     = contact.law == ContactParameters::Arrival::sharp;
     model.contact.edge_stiffness = edge_stiffness_;

@@ -36,6 +36,16 @@ namespace retroforge
       "at "
       "the speeds of the increments, forces the reactions to them, and a force from one is not the other. "
       "Units: none.");
+    add_enum<bool>(
+      prm,
+      "loose billet",
+      holds_loose,
+      {{"held", true}, {"free", false}},
+      "Of a billet between dies that touch it along lines or at points only, the rigid motions that these do "
+      "not resist, as a round bar's rolling. held: a drag keeps its mean velocity along them near zero until "
+      "the contacts are wide enough to hold it; a run in which that bears more than a fifth of the force "
+      "stops "
+      "and names the motion. free: nothing holds it. Units: none.");
     prm.add_parameter(
       "largest depth",
       largest_depth,
@@ -98,6 +108,7 @@ namespace retroforge
     // Measured in increments, or of the mesh.
     for (const char *setting : {"points",
                                 "closing work",
+                                "loose billet",
                                 "largest depth",
                                 "edge sinking",
                                 "approach",

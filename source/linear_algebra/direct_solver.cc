@@ -104,7 +104,8 @@ namespace retroforge
     class MergedNumbers
     {
     public:
-      explicit MergedNumbers(const la::BlockSparseMatrix &A)
+      /// @param n_more  rows after all others, which the last rank has
+      MergedNumbers(const la::BlockSparseMatrix &A, const unsigned int n_more)
           : first_(A.n_block_rows()), shift_(A.n_block_rows())
       {
         using namespace dealii::Utilities::MPI;
@@ -129,7 +130,10 @@ namespace retroforge
           if (rank == this_mpi_process(comm))
             n_owned = n - n_before;
         }
-        n_all = n;
+        n_of_blocks = n;
+        n_all       = n + n_more;
+        if (this_mpi_process(comm) + 1 == n_mpi_processes(comm))
+          n_owned += n_more;
       }
 
       unsigned int operator()(const unsigned int block, const int row) const
@@ -138,11 +142,38 @@ namespace retroforge
         return row + shift_[block][owner - first_[block].begin()];
       }
 
-      int n_before = 0, n_owned = 0, n_all = 0;
+      int n_before = 0, n_owned = 0, n_of_blocks = 0, n_all = 0;
 
     private:
       std::vector<std::vector<int>> first_, shift_; ///< of each block and rank
     };
+
+    using Products = std::vector<std::pair<la::Vector, la::Vector>>;
+
+    /// Calls f(row, column, value) for the entries of the rows and columns that products add. Collective.
+    template <typename F>
+    void for_each_entry(const Products &products, const MergedNumbers &number, const F &f)
+    {
+      for (unsigned int j = 0; j < products.size(); ++j)
+      {
+        const auto &[row, column]  = products[j];
+        const unsigned int more    = number.n_of_blocks + j;
+        const bool         is_mine = static_cast<int>(more) >= number.n_before &&
+                             static_cast<int>(more) < number.n_before + number.n_owned;
+        std::vector<std::pair<unsigned int, double>> of_column;
+        for (const auto i : row.locally_owned_elements())
+        {
+          f(number(0, i), more, row(i));
+          of_column.emplace_back(number(0, i), column(i));
+        }
+        for (const auto &part : dealii::Utilities::MPI::all_gather(row.get_mpi_communicator(), of_column))
+          for (const auto &[i, value] : part)
+            if (is_mine)
+              f(more, i, value);
+        if (is_mine)
+          f(more, more, -1.);
+      }
+    }
 
     /// Calls f(row, column, value) for the entries that this rank has, in merged numbers.
     template <typename F>
@@ -169,21 +200,26 @@ namespace retroforge
   unsigned int solve_by_mumps(const la::BlockSparseMatrix &A,
                               const la::BlockVector       &b,
                               la::BlockVector             &x,
-                              const Transposition          transposition)
+                              const Transposition          transposition,
+                              const Products              &products)
   {
-    const MergedNumbers number(A);
+    const MergedNumbers number(A, products.size());
     const MPI_Comm      comm = A.get_mpi_communicator();
     dealii::IndexSet    rows(number.n_all);
     rows.add_range(number.n_before, number.n_before + number.n_owned);
     dealii::DynamicSparsityPattern pattern(number.n_all, number.n_all, rows);
-    for_each_entry(A, number, [&](const unsigned int row, const unsigned int column, double) {
+    const auto                     meet = [&](const unsigned int row, const unsigned int column, double) {
       pattern.add(row, column);
-    });
+    };
+    for_each_entry(A, number, meet);
+    for_each_entry(products, number, meet);
     la::SparseMatrix merged;
     merged.reinit(rows, rows, pattern, comm);
-    for_each_entry(A, number, [&](const unsigned int row, const unsigned int column, const double value) {
+    const auto set = [&](const unsigned int row, const unsigned int column, const double value) {
       merged.set(row, column, value);
-    });
+    };
+    for_each_entry(A, number, set);
+    for_each_entry(products, number, set);
     merged.compress(dealii::VectorOperation::insert);
     la::Vector b_merged(rows, comm), x_merged(rows, comm);
     double    *to = b_merged.begin();

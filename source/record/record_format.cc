@@ -17,7 +17,7 @@ namespace retroforge
 {
   namespace
   {
-    constexpr unsigned int format = 10;
+    constexpr unsigned int format = 11;
 
     static_assert(sizeof(Vec3) == 3 * sizeof(double),
                   "nodal vectors are read and written as arrays of numbers");
@@ -409,6 +409,7 @@ namespace retroforge
     hdf5::write_attribute(group, "linear_solves", &increment.linear_solves);
     hdf5::write_string(group, "scheme", increment.scheme);
     write_contact(group, increment.contact);
+    write_hold(group, increment.hold, increment.hold_load);
     if (increment.parameters)
       hdf5::write_string(group, "parameters", *increment.parameters);
     write_vectors(group, "forces", increment.forces);
@@ -451,21 +452,22 @@ namespace retroforge
     const hdf5::Handle group = open_increment(file, i, shape);
     IncrementHead      head  = read_head(group);
     IncrementRecord    increment;
-    increment.operation          = head.operation;
-    increment.stroke             = head.stroke;
-    increment.step               = head.step;
-    increment.parameters         = std::move(head.parameters);
-    increment.scheme             = hdf5::read_string(group, "scheme");
-    increment.contact            = read_contact(group);
-    increment.cuts               = hdf5::read_attribute<unsigned int>(group, "cuts");
-    increment.deformation_energy = read_number(group, "deformation_energy");
-    increment.friction_energy    = read_number(group, "friction_energy");
-    increment.closing_energy     = read_number(group, "closing_energy");
-    increment.closing_work       = read_number(group, "closing_work");
-    increment.newton             = hdf5::read_attribute<unsigned int>(group, "newton");
-    increment.krylov             = hdf5::read_attribute<unsigned int>(group, "krylov");
-    increment.linear_solves      = hdf5::read_attribute<unsigned int>(group, "linear_solves");
-    increment.forces             = read_vectors(group, "forces", shape.die_facets.size());
+    increment.operation                           = head.operation;
+    increment.stroke                              = head.stroke;
+    increment.step                                = head.step;
+    increment.parameters                          = std::move(head.parameters);
+    increment.scheme                              = hdf5::read_string(group, "scheme");
+    increment.contact                             = read_contact(group);
+    std::tie(increment.hold, increment.hold_load) = read_hold(group);
+    increment.cuts                                = hdf5::read_attribute<unsigned int>(group, "cuts");
+    increment.deformation_energy                  = read_number(group, "deformation_energy");
+    increment.friction_energy                     = read_number(group, "friction_energy");
+    increment.closing_energy                      = read_number(group, "closing_energy");
+    increment.closing_work                        = read_number(group, "closing_work");
+    increment.newton                              = hdf5::read_attribute<unsigned int>(group, "newton");
+    increment.krylov                              = hdf5::read_attribute<unsigned int>(group, "krylov");
+    increment.linear_solves = hdf5::read_attribute<unsigned int>(group, "linear_solves");
+    increment.forces        = read_vectors(group, "forces", shape.die_facets.size());
     const NodeCounts n{hdf5::read_attribute<unsigned int>(group, "n_nodes"),
                        hdf5::read_attribute<unsigned int>(group, "n_velocity_nodes")};
     if (n.velocity < n.mesh)

@@ -3,6 +3,7 @@
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/element/cell_geometry.templates.h>
 #include <retroforge/solver/contact_pullback.h>
+#include <retroforge/solver/hold_forces.h>
 
 namespace retroforge
 {
@@ -104,6 +105,7 @@ namespace retroforge
       if (scene.sees(contact.pairs[p].point))
         contact.pairs[p].point.add_to_velocity(
           contact_force(contact_node(p, W, chosen), physics.material.law, physics.contact), r.V);
+    add_hold_forces(*this, W, r);
     return r;
   }
 
@@ -255,6 +257,7 @@ namespace retroforge
                                                              stage.physics.contact,
                                                              point.velocity(lambda.V)));
     pullback.finish();
+    reverse_hold_forces(view, lambda, bar.X);
   }
 
   void reverse_power(const EquilibriumView<double> &view,

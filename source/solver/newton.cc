@@ -113,10 +113,10 @@ namespace retroforge
   {
     /// Balances bubbles with velocities and pressures that are on their way. Where the metal hardly feels its
     /// rate, a load that a cell cannot bear makes them  |beta| ~ (load / K)^(1/m),  beyond all bounds, and
-    /// systems solved to a part of such a residual say nothing of the rest: those are left as they are.
+    /// steps from there lead nowhere: those are left as they are.
     void solve_bubbles_in_reach(const Equilibrium<double> &stage, const double speed, Field<double> &W)
     {
-      constexpr double farthest       = 1e3; // of the dies' speed
+      constexpr double farthest       = 10.; // of the dies' speed
       const auto      &discretization = stage.scene.discretization;
       if (!discretization.has_bubbles())
         return;
@@ -161,12 +161,22 @@ namespace retroforge
       // Bracketed secant for the root of a monotone function; a rough root is enough.
       double                 low = 0., low_slope = start, high = -1., high_slope = 0.;
       constexpr unsigned int trials     = 12;
-      constexpr double       rough_root = 0.8; // of the slope at the start
+      constexpr double       rough_root = 0.8, uphill = 0.1; // of the slope at the start
       for (unsigned int trial = 0; trial < trials; ++trial)
       {
-        const double s = slope(trial == 0 ? whole : residual_at(a), step);
-        if (std::abs(s) <= rough_root * std::abs(start))
+        double s = slope(trial == 0 ? whole : residual_at(a), step);
+        if (s <= uphill * std::abs(start) && -s <= rough_root * std::abs(start))
           break;
+        // Stresses that hardly feel the rate turn their sign without growing: a slope that is as large on the
+        // way back tells that the root is far behind.
+        if (s > 0. && s <= rough_root * std::abs(start))
+        {
+          const double halfway = slope(residual_at(0.5 * a), step);
+          if (halfway <= uphill * std::abs(start))
+            break;
+          a *= 0.5;
+          s = halfway;
+        }
         if (s > 0.)
         {
           high       = a;

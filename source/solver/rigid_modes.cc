@@ -19,13 +19,13 @@ namespace retroforge
     /// Eigenvalues below this, of one per resisting direction, are of free motions.
     constexpr double unresisted = 1e-8;
 
-    /// x -> slide + turn x (x - centre)/size
-    struct RigidMotion
+    /// x -> slide + turn x (x - centre)/size, of a body.
+    struct RelativeMotion
     {
       Vec3 slide, turn;
 
-      double operator*(const RigidMotion &other) const { return slide * other.slide + turn * other.turn; }
-      void   add(const double factor, const RigidMotion &other)
+      double operator*(const RelativeMotion &other) const { return slide * other.slide + turn * other.turn; }
+      void   add(const double factor, const RelativeMotion &other)
       {
         slide += factor * other.slide;
         turn += factor * other.turn;
@@ -64,13 +64,13 @@ namespace retroforge
       }
 
       /// An orthonormal basis.
-      std::vector<RigidMotion> free_motions()
+      std::vector<RelativeMotion> free_motions()
       {
         dealii::Vector<double>     eigenvalues;
         dealii::FullMatrix<double> eigenvectors;
         gram_.compute_eigenvalues_symmetric(
           -1., unresisted * std::max(1., n_resisting_), 0., eigenvalues, eigenvectors);
-        std::vector<RigidMotion> motions(eigenvalues.size());
+        std::vector<RelativeMotion> motions(eigenvalues.size());
         for (unsigned int m = 0; m < motions.size(); ++m)
           for (unsigned int i = 0; i < 3; ++i)
           {
@@ -88,20 +88,20 @@ namespace retroforge
     };
 
     /// The part of a motion that is made of those of an orthonormal basis.
-    RigidMotion projected(const RigidMotion &motion, const std::vector<RigidMotion> &basis)
+    RelativeMotion projected(const RelativeMotion &motion, const std::vector<RelativeMotion> &basis)
     {
-      RigidMotion sum;
-      for (const RigidMotion &of : basis)
+      RelativeMotion sum;
+      for (const RelativeMotion &of : basis)
         sum.add(motion * of, of);
       return sum;
     }
 
     /// Slides that are among the motions, along the axes where that is possible, each orthogonal to the
     /// others.
-    std::vector<RigidMotion> slides_among(const std::vector<RigidMotion> &motions)
+    std::vector<RelativeMotion> slides_among(const std::vector<RelativeMotion> &motions)
     {
       // Whatever turns is taken out: what is left of the motions spans their slides.
-      std::vector<RigidMotion> left = motions;
+      std::vector<RelativeMotion> left = motions;
       for (unsigned int i = 0; i < 3; ++i)
       {
         const auto pivot = std::max_element(left.begin(), left.end(), [&](const auto &a, const auto &b) {
@@ -109,23 +109,23 @@ namespace retroforge
         });
         if (pivot == left.end() || std::abs(pivot->turn[i]) < 1e-3)
           continue;
-        const RigidMotion turning = *pivot;
+        const RelativeMotion turning = *pivot;
         left.erase(pivot);
-        for (RigidMotion &motion : left)
+        for (RelativeMotion &motion : left)
           motion.add(-motion.turn[i] / turning.turn[i], turning);
       }
       return left;
     }
 
-    std::vector<RigidMotion> orthonormal(const std::vector<RigidMotion> &motions, const double least)
+    std::vector<RelativeMotion> orthonormal(const std::vector<RelativeMotion> &motions, const double least)
     {
-      std::vector<RigidMotion> basis;
-      for (RigidMotion motion : motions)
+      std::vector<RelativeMotion> basis;
+      for (RelativeMotion motion : motions)
       {
         motion.add(-1., projected(motion, basis));
         if (const double length = std::sqrt(motion * motion); length > least)
         {
-          RigidMotion unit;
+          RelativeMotion unit;
           unit.add(1. / length, motion);
           basis.push_back(unit);
         }
@@ -151,11 +151,12 @@ namespace retroforge
     }
 
     /// @param slides  that are free, too: across the axis they would make its place any
-    std::string
-    turn_text(const RigidMotion &motion, const std::vector<RigidMotion> &slides, const Resistance &resistance)
+    std::string turn_text(const RelativeMotion              &motion,
+                          const std::vector<RelativeMotion> &slides,
+                          const Resistance                  &resistance)
     {
       const Vec3 turn = motion.turn;
-      if (std::any_of(slides.begin(), slides.end(), [&](const RigidMotion &slide) {
+      if (std::any_of(slides.begin(), slides.end(), [&](const RelativeMotion &slide) {
             return cross(turn, slide.slide).norm() > 0.1 * turn.norm();
           }))
         return "turn about " + axis_text(turn / turn.norm());
@@ -165,24 +166,25 @@ namespace retroforge
              vector_text(place, 1e-3 * resistance.size());
     }
 
-    std::vector<std::string> in_words(const std::vector<RigidMotion> &motions, const Resistance &resistance)
+    std::vector<std::string> in_words(const std::vector<RelativeMotion> &motions,
+                                      const Resistance                  &resistance)
     {
       // Along and about the axes where that is possible.
-      const std::vector<RigidMotion> sliding = orthonormal(slides_among(motions), 1e-6);
-      std::vector<RigidMotion>       candidates, turning;
+      const std::vector<RelativeMotion> sliding = orthonormal(slides_among(motions), 1e-6);
+      std::vector<RelativeMotion>       candidates, turning;
       for (unsigned int i = 0; i < 3; ++i)
       {
-        RigidMotion slide, turn;
+        RelativeMotion slide, turn;
         slide.slide[i] = turn.turn[i] = 1.;
         candidates.push_back(projected(slide, sliding));
         turning.push_back(projected(turn, motions));
       }
       candidates.insert(candidates.end(), sliding.begin(), sliding.end());
-      const std::vector<RigidMotion> slides = orthonormal(candidates, 0.05);
+      const std::vector<RelativeMotion> slides = orthonormal(candidates, 0.05);
       turning.insert(turning.begin(), slides.begin(), slides.end());
       turning.insert(turning.end(), motions.begin(), motions.end());
-      const std::vector<RigidMotion> all = orthonormal(turning, 0.05);
-      std::vector<std::string>       words;
+      const std::vector<RelativeMotion> all = orthonormal(turning, 0.05);
+      std::vector<std::string>          words;
       for (std::size_t m = 0; m < all.size(); ++m)
         words.push_back(m < slides.size() ? "slide along " + axis_text(all[m].slide)
                                           : turn_text(all[m], slides, resistance));
@@ -233,5 +235,14 @@ namespace retroforge
         }
     }
     return in_words(resistance.free_motions(), resistance);
+  }
+
+  std::vector<std::string> held_motions(const RigidHold &hold, const NodalVectors<double> &X)
+  {
+    const Resistance            body(X);
+    std::vector<RelativeMotion> motions;
+    for (const RigidMotion &motion : hold.motions)
+      motions.push_back({motion.at(body.centre()), body.size() * motion.turn});
+    return in_words(orthonormal(motions, 1e-6), body);
   }
 } // namespace retroforge

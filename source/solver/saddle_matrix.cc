@@ -42,6 +42,7 @@ namespace retroforge
     add_contact(contact);
     put_diagonals_of_fixed(viscous);
     describe_rows();
+    describe_hold(stage);
     if (system_.P)
       fill_interpolation();
   }
@@ -91,6 +92,28 @@ namespace retroforge
             system_.translations[mode * n_rows + row] = frame.axes[i][mode] / scale;
           }
       }
+    }
+  }
+
+  void SaddleMatrix::describe_hold(const Equilibrium<double> &stage)
+  {
+    const RigidHold &hold = stage.contact.hold;
+    system_.held.clear();
+    for (const RigidMotion &motion : hold.motions)
+    {
+      la::BlockVector row = vector(), column = vector();
+      for (unsigned int local = 0; local < velocities_.n_owned(); ++local)
+        if (const NodeIndex k = velocities_.node_at(local); k < scene_.mesh.n_nodes())
+        {
+          const Vec3 u    = std::sqrt(hold.drag) / stage.X.size() * motion.at(stage.X[k]);
+          const Vec3 test = frames_[local].to_tests(u), trial = frames_[local].to_frame(u);
+          for (unsigned int i = 0; i < 3; ++i)
+          {
+            row.block(0).begin()[3 * local + i]    = unknown_scale_.at_place(local)[i] * test[i];
+            column.block(0).begin()[3 * local + i] = unknown_scale_.at_place(local)[i] * trial[i];
+          }
+        }
+      system_.held.emplace_back(row.block(0), column.block(0));
     }
   }
 

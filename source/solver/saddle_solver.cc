@@ -133,6 +133,7 @@ namespace retroforge
       system_.matrix.Tvmult(r, x);
       r.sadd(-1., 1., b);
     }
+    add_held(-1., transposition, r, x);
     return r;
   }
 
@@ -175,12 +176,26 @@ namespace retroforge
     if (transposition == Transposition::transposed)
     {
       system_.matrix.Tvmult(y, x);
+      add_held(1., transposition, y, x);
       return;
     }
     A_->vmult(y.block(0), x.block(0));
     system_.matrix.block(0, 1).vmult_add(y.block(0), x.block(1));
     system_.matrix.block(1, 0).vmult(y.block(1), x.block(0));
     system_.matrix.block(1, 1).vmult_add(y.block(1), x.block(1));
+    add_held(1., transposition, y, x);
+  }
+
+  void SaddleSolver::add_held(const double           factor,
+                              const Transposition    transposition,
+                              la::BlockVector       &y,
+                              const la::BlockVector &x) const
+  {
+    for (const auto &[row, column] : system_.held)
+      if (transposition == Transposition::plain)
+        y.block(0).add(factor * (column * x.block(0)), row);
+      else
+        y.block(0).add(factor * (row * x.block(0)), column);
   }
 
   void SaddleSolver::make_preconditioner()
@@ -285,6 +300,6 @@ namespace retroforge
                                     la::BlockVector       &x) const
   {
     const auto timing = timings_.scope("direct solver");
-    solve_by_mumps(system_.matrix, b, x, transposition);
+    solve_by_mumps(system_.matrix, b, x, transposition, system_.held);
   }
 } // namespace retroforge

@@ -2,6 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <deal.II/base/mpi.h>
 
+#include <retroforge/solver/hold_forces.h>
+#include <retroforge/solver/rigid_modes.h>
 #include <retroforge/solver/stage_motion.h>
 #include <retroforge/steps/mechanics.h>
 
@@ -22,6 +24,7 @@ namespace retroforge
                                           record.contact.edge_stiffness,
                                           record.contact.counts_closing}))
   {
+    contact.hold = record.hold;
     if (process.material.depends_on_state())
       points = point_states(scene.mesh, state);
   }
@@ -147,8 +150,12 @@ namespace retroforge
     const std::size_t   n_dies = scene_.dies.size();
     std::vector<double> terms(n_power_terms(n_dies), 0.);
     record.forces.assign(n_dies, Vec3());
+    record.hold_load = {};
     for (const auto &stage : solved.stages)
     {
+      const HoldLoad load = hold_load(stage->view());
+      record.hold_load.force += stage->weight * load.force;
+      record.hold_load.moment += stage->weight * load.moment;
       const auto whole =
         RankSum<std::vector<double>>(power_terms(stage->view()), scene_.discretization.comm()).complete();
       for (std::size_t k = 0; k < terms.size(); ++k)
@@ -205,8 +212,15 @@ namespace retroforge
         all_found = reach > least_reach && record.pairs.size() == n_watched;
         n_watched = record.pairs.size();
       }
-      const auto start  = start_of(process, state, record);
-      auto       solves = solve_stages(*start, X, replay, all_found, guess, record);
+      auto start = start_of(process, state, record);
+      if (!replay)
+      {
+        record.hold =
+          model_.holds_loose ? hold_of_loose(scene_, start->physics, start->contact, X) : RigidHold();
+        if (!record.hold.empty() || !start->contact.hold.empty())
+          start = start_of(process, state, record);
+      }
+      auto solves = solve_stages(*start, X, replay, all_found, guess, record);
       if (solves.empty())
         continue;
       record.solves          = std::move(solves);

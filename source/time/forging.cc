@@ -332,6 +332,7 @@ namespace retroforge
           limits_.stop(process, state, record, *rejection);
         }
       }
+      limits_.check_hold(process, state, record);
       finish_increment(process, record, solved, state, observer);
       limits_.check_progress(state);
       // With remeshing, the next increment begins with a repair.

@@ -22,6 +22,10 @@ namespace retroforge
   /// in them: metal that has no room goes into the corners of dies, where a node feels one of their faces.
   constexpr double touching_when_full = 0.95, inside_when_full = 2e-3;
 
+  /// What may hold what dies leave loose: a force of this part of the largest of the dies', and its moment at an
+  /// arm of this part of an edge. That much, a mesh that feels a narrow contact as a line may miss.
+  constexpr double most_held = 0.1, longest_arm = 0.7;
+
   namespace
   {
     std::string at(const Vec3 &x)
@@ -58,6 +62,15 @@ namespace retroforge
     double face_area(const BoundaryFace &face, const NodalVectors<double> &X)
     {
       return 0.5 * facet_vector(X[face.nodes[0]], X[face.nodes[1]], X[face.nodes[2]]).norm();
+    }
+
+    /// The mean length of the surface's edges [mm].
+    double surface_edge(const Scene &scene, const NodalVectors<double> &X)
+    {
+      double sum = 0.;
+      for (const auto &[a, b] : scene.topology.surface_edges)
+        sum += (X[b] - X[a]).norm();
+      return sum / scene.topology.surface_edges.size();
     }
 
     /// Of an increment, that bring it down to what is allowed when it is `excess` times as long.
@@ -224,11 +237,11 @@ namespace retroforge
 
   void IncrementLimits::check_held(const Process<double> &process,
                                    const ForgingState    &state,
-                                   const double           stroke,
+                                   const IncrementRecord &record,
                                    const std::string     &what) const
   {
     const Scene             &scene   = state.epoch->scene;
-    const Physics<double>    physics = process.at_stroke(stroke, state.operation);
+    const Physics<double>    physics = process.at_stroke(record.stroke, state.operation);
     std::vector<std::string> touching;
     for (unsigned int d = 0; d < scene.dies.size(); ++d)
       if (touches(scene, state.workpiece.X, scene.dies[d], physics.dies[d].displacement))
@@ -242,7 +255,19 @@ namespace retroforge
     const auto motions =
       free_rigid_motions(scene, physics, state.workpiece.X, model_.step.contact.ramp.width);
     if (is_held && motions.empty())
-      return;
+    {
+      if (model_.step.holds_loose)
+        return;
+      const IncrementStart<double> start(scene, process, state.workpiece, record);
+      const RigidHold loose = hold_of_loose(scene, start.physics, start.contact, state.workpiece.X);
+      if (loose.empty())
+        return;
+      throw Error("Billet",
+                  what + ", and its dies touch it there along lines or at points only: it is free to " +
+                    join(held_motions(loose, state.workpiece.X)),
+                  "contacts, their friction on faces, and symmetry planes must hold it in all directions",
+                  "set Contact/loose billet = held, or cut it by symmetry planes");
+    }
     throw Error(
       "Billet",
       what + ", and " +
@@ -265,7 +290,7 @@ namespace retroforge
          << " mm is too long: " << rejection.reason;
     if (rejection.is_full)
       throw_full(record.stroke);
-    check_held(process, state, record.stroke, what.str());
+    check_held(process, state, record, what.str());
     const char *remedy =
       record.stroke == 0. ? "nothing moved yet, so the stroke is not what is wrong: use values of the usual "
                             "size, penalty and friction above all, more increments, or a better mesh"
@@ -278,6 +303,41 @@ namespace retroforge
                 "an increment may be halved " + std::to_string(press_.max_cuts) +
                   " times (Press/max cuts), and elements must stay sound",
                 remedy);
+  }
+
+  void IncrementLimits::check_hold(const Process<double> &process,
+                                   const ForgingState    &state,
+                                   const IncrementRecord &record) const
+  {
+    constexpr double noticed = 1e-5; // of the force that keeps it from moving with the fastest die
+    double           largest = 0., speed = 0.;
+    for (const Vec3 &force : record.forces)
+      largest = std::max(largest, force.norm());
+    for (const auto &die : process.over(place(record)).dies)
+      speed = std::max(speed, die.velocity.norm());
+    // Dies that press nothing yet.
+    if (record.hold.empty() || !(largest > noticed * record.hold.drag * speed))
+      return;
+    const double arm  = record.hold_load.moment.norm() / largest,
+                 edge = surface_edge(state.epoch->scene, state.workpiece.X);
+    const bool slides = record.hold_load.force.norm() > most_held * largest;
+    if (!slides && !(arm > longest_arm * edge))
+      return;
+    std::ostringstream what;
+    what.precision(3);
+    what << "at stroke " << record.stroke
+         << " mm its dies press it aside, and touch it where nothing holds it: it would "
+         << join(held_motions(record.hold, state.workpiece.X));
+    if (slides)
+      what << "; to hold it takes " << 100. * record.hold_load.force.norm() / largest << " % of their force";
+    else
+      what << "; their forces pass each other at " << arm << " mm";
+    throw Error("Billet",
+                what.str(),
+                "a billet that is touched along lines or at points is held against a tenth of the force, and "
+                "where forces pass each other by less than an edge",
+                "cut it by symmetry planes, turn it so that faces of it touch dies with friction, or use a "
+                "finer mesh or longer increments, with which contacts are wider");
   }
 
   void IncrementLimits::check_progress(const ForgingState &state) const

@@ -4,6 +4,7 @@
 
 #include <retroforge/contact/contact_law.h>
 #include <retroforge/contact/contact_search.h>
+#include <retroforge/contact/rigid_hold.h>
 
 #include <algorithm>
 #include <cmath>
@@ -112,6 +113,7 @@ namespace retroforge
     ApproachLaw         approach;
     double              edge_stiffness = 1.;   ///< penalty of edges over that of nodes, dimensionless
     bool                counts_closing = true; ///< as ContactNumerics::counts_closing
+    RigidHold           hold;                  ///< of what pairs leave loose
   };
 
   /// w(gap/s) of pair p.

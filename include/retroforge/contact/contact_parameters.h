@@ -26,6 +26,7 @@ namespace retroforge
     double  slip_fraction  = 1e-2;
     bool    edges_touch    = true;
     bool    counts_closing = true;
+    bool    holds_loose    = true;
     double  edge_sinking   = 0.01;
     double  largest_depth  = 0.05;
 

@@ -6,6 +6,9 @@
 
 #include <retroforge/linear_algebra/types.h>
 
+#include <utility>
+#include <vector>
+
 namespace retroforge
 {
   /// A linear system has no solution in doubles: it is singular, or its numbers have left their range.
@@ -26,9 +29,11 @@ namespace retroforge
                               Transposition           transposition = Transposition::plain,
                               int                     spare         = 20);
 
-  /// Solves a system with a matrix of blocks.
+  /// Solves a system with a matrix of blocks, to the first of which products row x column are added. They stand
+  /// in rows and columns of their own: [A row; column -1].
   unsigned int solve_by_mumps(const la::BlockSparseMatrix &A,
                               const la::BlockVector       &b,
                               la::BlockVector             &x,
-                              Transposition                transposition = Transposition::plain);
+                              Transposition                transposition = Transposition::plain,
+                              const std::vector<std::pair<la::Vector, la::Vector>> &products = {});
 } // namespace retroforge

@@ -12,4 +12,10 @@ namespace retroforge
 
   /// Reads them.  @throws hdf5::Failure  where they are not there, or not finite
   ContactNumerics read_contact(hid_t group);
+
+  /// Writes what holds the workpiece, and what it bears, alike.
+  void write_hold(hid_t group, const RigidHold &hold, const HoldLoad &load);
+
+  /// Reads it.  @throws hdf5::Failure  as read_contact
+  std::pair<RigidHold, HoldLoad> read_hold(hid_t group);
 } // namespace retroforge

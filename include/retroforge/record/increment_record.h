@@ -52,13 +52,15 @@ namespace retroforge
     std::string                         scheme; ///< in time, by its name
     ContactNumerics                     contact;
     std::vector<ContactPair>            pairs;
+    RigidHold                           hold;   ///< of what the pairs leave loose
     std::vector<SolveRecord>            solves; ///< one per stage of the scheme
     /// Spent in this increment [mJ]; the last one is what deformation and friction of the stages lack where
     /// gaps close (spent_power.h).
     double deformation_energy = 0., friction_energy = 0., closing_energy = 0.;
-    /// Told, and of no use to the backward pass: work of the dies on gaps that close [mJ], force of each die on
-    /// the workpiece [N], iterations.
+    /// Told, and of no use to the backward pass: work of the dies on gaps that close [mJ], what the hold bears,
+    /// force of each die on the workpiece [N], iterations.
     double            closing_work = 0.;
+    HoldLoad          hold_load;
     std::vector<Vec3> forces;
     unsigned int      newton = 0, krylov = 0, linear_solves = 0;
   };

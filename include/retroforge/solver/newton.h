@@ -61,9 +61,10 @@ namespace retroforge
   /// begins with them. Bubbles settle after each step, so that what Newton's method sees is a functional of V
   /// and P alone: a bubble in metal that hardly flows would keep it from converging. At first the slope is
   /// that of the functional with the contacts of the step, and nodes that arrive do so at once
-  /// (contact_steps.h); where that does not converge, of the functional itself. A slope of either sign that
-  /// has become a fifth smaller is enough, which does not ensure that the functional has: an iteration that
-  /// does not settle ends in NoEquilibrium, and the increment is made shorter.
+  /// (contact_steps.h); where that does not converge, of the functional itself. A slope that has
+  /// become a fifth smaller is enough; where it has changed its sign, it must be a tenth, or that halfway must
+  /// not be larger: then the functional is lower than at the start, or hardly higher. An iteration that does not
+  /// settle ends in NoEquilibrium, and the increment is made shorter.
   class Newton
   {
   public:

@@ -18,4 +18,17 @@ namespace retroforge
                                               const Physics<double>      &physics,
                                               const NodalVectors<double> &X,
                                               std::optional<double>       within = {});
+
+  /// Returns what holds a workpiece that touches dies on both sides, or a die and a plane of symmetry, in the
+  /// rigid motions that its contacts, their friction where it acts on faces, and symmetry planes do not resist
+  /// both ways: those that are felt there at less than a third of the root mean square speed. Points that a die
+  /// touches along a line, wherever it runs, do not resist a turn about it. Nothing else is held.
+  /// @param contact  at the start of an increment, positions X
+  RigidHold hold_of_loose(const Scene                &scene,
+                          const Physics<double>      &physics,
+                          const ContactSet<double>   &contact,
+                          const NodalVectors<double> &X);
+
+  /// The motions in words, as those of free_rigid_motions().
+  std::vector<std::string> held_motions(const RigidHold &hold, const NodalVectors<double> &X);
 } // namespace retroforge

@@ -17,6 +17,9 @@ namespace retroforge
     /// Rows of A in which a penalty dwarfs all else, by local number, ascending.
     std::vector<unsigned int> penalised;
     bool                      penalties_couple = false; ///< some of these rows share entries
+    /// Products of vectors of A's local rows and columns that count as added to A, entry by entry, though they
+    /// are kept apart: row_j x column_j. What holds a workpiece is felt by all of it.
+    std::vector<std::pair<la::Vector, la::Vector>> held;
     /// Rigid translations as vectors of A's local rows, one after the other; zero in penalised rows.
     std::vector<double> translations;
     /// Interpolation from linear velocities to those of A, without penalised rows. P is null where A's
@@ -88,6 +91,8 @@ namespace retroforge
     void put_diagonals_of_fixed(const std::vector<double> &viscous) const;
     /// Penalised rows and translations.
     void describe_rows();
+    /// The hold's share of the matrix.
+    void describe_hold(const Equilibrium<double> &stage);
     void fill_interpolation();
     /// Cells with a bubble to eliminate, among the visited ones.
     unsigned int n_eliminated() const;

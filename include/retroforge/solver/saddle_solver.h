@@ -80,6 +80,9 @@ namespace retroforge
     residual(const la::BlockVector &b, Transposition transposition, const la::BlockVector &x) const;
     /// y = M x, or y = M^T x.
     void multiply(Transposition transposition, la::BlockVector &y, const la::BlockVector &x) const;
+    /// y += factor H x, or H^T x, with what SaddleSystem::held adds to the matrix.
+    void
+    add_held(double factor, Transposition transposition, la::BlockVector &y, const la::BlockVector &x) const;
     /// Solves the rows of penalised components exactly, the others held: an error there that the norm hardly
     /// sees would decide which nodes a die pushes, because a contact force is the penalty times a small
     /// difference.

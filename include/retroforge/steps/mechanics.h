@@ -20,6 +20,7 @@ namespace retroforge
     Scheme           scheme = Scheme::all().front();
     ContactNumerics  contact;
     bool             edges_touch       = true;  ///< middles of edges are contact points of curved dies
+    bool             holds_loose       = true;  ///< what dies leave loose is held (RigidHold)
     double           reach             = 0.;    ///< nodes nearer than this to a die are watched [mm]
     double           adjoint_tolerance = 1e-10; ///< of the adjoint and tangent linear systems
     ShapeDerivatives shape_derivatives;         ///< of the backward sweep

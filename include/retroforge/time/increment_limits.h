@@ -98,6 +98,12 @@ namespace retroforge
                            const IncrementRecord &record,
                            const StepRejection   &rejection) const;
 
+    /// Where a solved increment presses a billet aside that nothing but the hold of what is loose holds.
+    /// @throws Error
+    void check_hold(const Process<double> &process,
+                    const ForgingState    &state,
+                    const IncrementRecord &record) const;
+
     /// Where a run can only go on to no good: it takes too many increments, or loses its volume.
     /// @throws Error
     void check_progress(const ForgingState &state) const;
@@ -131,7 +137,7 @@ namespace retroforge
     /// A body that nothing holds has no velocity, however fine its mesh is.  @throws Error  where that is so
     void check_held(const Process<double> &process,
                     const ForgingState    &state,
-                    double                 stroke,
+                    const IncrementRecord &record,
                     const std::string     &what) const;
 
     const ForgingModel    &model_;

@@ -98,6 +98,14 @@ namespace retroforge
       increment.parameters = "set K = 1\nset n = " + std::to_string(i) + "\n";
     increment.scheme  = i % 2 == 0 ? "midpoint" : "euler";
     increment.contact = {number(), number(), number(), {number(), i % 2 == 0}, number(), i % 3 != 1};
+    const auto vector = [&]() { return Vec3({number(), number(), number()}); };
+    for (unsigned int j = 0; j < i % 3; ++j)
+      increment.hold.motions.push_back({vector(), vector()});
+    if (!increment.hold.empty())
+    {
+      increment.hold.drag = number();
+      increment.hold_load = {vector(), vector()};
+    }
     for (unsigned int d = 0; d < header.die_facets.size(); ++d)
       increment.forces.push_back(Vec3({number(), number(), number()}));
     for (NodeIndex k = 0; k < header.mesh.n_nodes(); k += 3)
@@ -179,6 +187,14 @@ namespace retroforge
            same_bits(a.edge_stiffness, b.edge_stiffness) && a.counts_closing == b.counts_closing;
   }
 
+  inline bool same(const RigidHold &a, const RigidHold &b)
+  {
+    bool equal = same_bits(a.drag, b.drag) && a.motions.size() == b.motions.size();
+    for (std::size_t j = 0; equal && j < a.motions.size(); ++j)
+      equal = a.motions[j].slide == b.motions[j].slide && a.motions[j].turn == b.motions[j].turn;
+    return equal;
+  }
+
   inline bool same(const IncrementRecord &a, const IncrementRecord &b)
   {
     bool equal = a.operation == b.operation && same_bits(a.stroke, b.stroke) && same_bits(a.step, b.step) &&
@@ -187,9 +203,10 @@ namespace retroforge
                  same_bits(a.closing_energy, b.closing_energy) && same_bits(a.closing_work, b.closing_work) &&
                  a.newton == b.newton && a.krylov == b.krylov && a.linear_solves == b.linear_solves &&
                  same_bits(a.forces, b.forces) && a.parameters == b.parameters && a.scheme == b.scheme &&
-                 same(a.contact, b.contact) && !a.remesh == !b.remesh &&
-                 (!a.remesh || same(*a.remesh, *b.remesh)) && a.pairs.size() == b.pairs.size() &&
-                 a.solves.size() == b.solves.size();
+                 same(a.contact, b.contact) && same(a.hold, b.hold) &&
+                 a.hold_load.force == b.hold_load.force && a.hold_load.moment == b.hold_load.moment &&
+                 !a.remesh == !b.remesh && (!a.remesh || same(*a.remesh, *b.remesh)) &&
+                 a.pairs.size() == b.pairs.size() && a.solves.size() == b.solves.size();
     for (std::size_t p = 0; equal && p < a.pairs.size(); ++p)
       equal = a.pairs[p].point == b.pairs[p].point && a.pairs[p].die == b.pairs[p].die &&
               a.pairs[p].touching == b.pairs[p].touching && a.pairs[p].feature == b.pairs[p].feature;
