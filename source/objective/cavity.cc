@@ -29,8 +29,8 @@ namespace retroforge
     }
 
     /// The six tetrahedra of a box around its diagonal, by corners numbered in bits.
-    constexpr unsigned int tetrahedra_of_box[6][4] = {
-      {0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+    constexpr unsigned int tetrahedra_of_box[6][4] =
+      {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
 
     template <typename Number>
     Number volume_of_box(const Box                            &box,
@@ -118,19 +118,20 @@ namespace retroforge
     /// The point of the region that is farthest from the surface, of a few.
     void choose_eye(const Die &die, const Vec3 &displacement, Region &region)
     {
-      const auto   place  = region.place(die.surface()->vertices(), displacement);
-      const auto   inside = region.half_spaces(place);
-      const Vec3   size   = region.box.second - region.box.first;
-      const double parts[5] = {0.07, 0.29, 0.51, 0.73, 0.94}; // on no plane of symmetry of a scene
+      const auto   place    = region.place(die.surface()->vertices(), displacement);
+      const auto   inside   = region.half_spaces(place);
+      const Vec3   size     = region.box.second - region.box.first;
+      const double parts[5] = {0.0713, 0.2891, 0.5137, 0.7319, 0.9437}; // on no plane of symmetry of a scene
       double       best     = -1.;
       for (unsigned int g = 0; g < 125; ++g)
       {
         const unsigned int at[3] = {g % 5, g / 5 % 5, g / 25};
         Vec3               x     = region.box.first;
         for (unsigned int i = 0; i < 3; ++i)
-          x[i] += parts[at[i]] * size[i];
-        if (std::any_of(
-              inside.begin(), inside.end(), [&](const auto &space) { return space.excess(x + place.shift) > 0.; }))
+          x[i] += (parts[at[i]] + 0.0071 * i) * size[i];
+        if (std::any_of(inside.begin(), inside.end(), [&](const auto &space) {
+              return space.excess(x + place.shift) > 0.;
+            }))
           continue;
         const double distance = die.facet_distance(x + place.shift, displacement);
         if (std::isfinite(distance) && std::abs(distance) > best)
@@ -186,8 +187,7 @@ namespace retroforge
   }
 
   template <typename Number>
-  Number Region::shadow(const RegionPlace<Number>            &place,
-                        const std::array<Vector3<Number>, 3> &facet) const
+  Number Region::shadow(const RegionPlace<Number> &place, const std::array<Vector3<Number>, 3> &facet) const
   {
     std::vector<HalfSpace<Number>> half_spaces;
     const int sign = make_shadow<Number>(constant<Number>(eye) + place.shift, facet, half_spaces);
@@ -212,10 +212,8 @@ namespace retroforge
     return double(sign) * clipped_volume(x, all.data(), all.data() + all.size());
   }
 
-  Region make_region(const Die                &die,
-                     const Vec3               &displacement,
-                     const std::optional<Box> &box,
-                     const TetMesh            &mesh)
+  Region
+  make_region(const Die &die, const Vec3 &displacement, const std::optional<Box> &box, const TetMesh &mesh)
   {
     const TriangleSurface &surface = *die.surface();
     Region                 region;
@@ -245,14 +243,14 @@ namespace retroforge
     return region;
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                                                   \
-  template std::vector<HalfSpace<Number>> Region::mouth_and_sector(const RegionPlace<Number> &) const;   \
-  template std::vector<HalfSpace<Number>> Region::half_spaces(const RegionPlace<Number> &) const;        \
-  template Number                         Region::volume(const RegionPlace<Number> &) const;             \
+#define RETROFORGE_INSTANTIATE(Number)                                                                       \
+  template std::vector<HalfSpace<Number>> Region::mouth_and_sector(const RegionPlace<Number> &) const;       \
+  template std::vector<HalfSpace<Number>> Region::half_spaces(const RegionPlace<Number> &) const;            \
+  template Number                         Region::volume(const RegionPlace<Number> &) const;                 \
   template Number Region::shadow(const RegionPlace<Number> &, const std::array<Vector3<Number>, 3> &) const; \
-  template Number shadow_in_tetrahedron(const Tetrahedron<Number> &,                                     \
-                                        const Vector3<Number> &,                                         \
-                                        const std::array<Vector3<Number>, 3> &,                          \
+  template Number shadow_in_tetrahedron(const Tetrahedron<Number> &,                                         \
+                                        const Vector3<Number> &,                                             \
+                                        const std::array<Vector3<Number>, 3> &,                              \
                                         const std::vector<HalfSpace<Number>> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)

@@ -22,6 +22,13 @@ namespace retroforge
       return t * t * t * (10. + t * (-15. + 6. * t));
     }
 
+    /// 1 for x <= from, 0 for x >= to.
+    template <typename Number>
+    Number fall(const Number &x, const double from, const double to)
+    {
+      return 1. - step(Number((x - from) / (to - from)));
+    }
+
     /// x+
     template <typename Number>
     Number positive_part(const Number &x, const Number &rounding)
@@ -33,7 +40,13 @@ namespace retroforge
     const double smooth_turn = 1. - std::cos(25. * dealii::numbers::PI / 180.),
                  sharp_turn  = 1. - std::cos(45. * dealii::numbers::PI / 180.);
 
+    /// Bulges over l likewise.
+    constexpr double smooth_bulge = 0.06, sharp_bulge = 0.15;
+
     constexpr double at_corner = 1. / 20., at_middle = 2. / 15., at_centre = 9. / 20.;
+
+    /// Gap over l of a corner that is off the die.
+    constexpr double off_the_die = 0.05;
 
     /// Part of l over which x+ is rounded.
     constexpr double rounding_of_size = 1e-3;
@@ -48,14 +61,12 @@ namespace retroforge
     }
   }
 
-  std::vector<FacetAtDie> find_facets_at_die(const FinalView<double> &view,
-                                             const Die               &die,
-                                             const Vec3              &displacement,
-                                             const Box               &box)
+  std::vector<FacetAtDie>
+  find_facets_at_die(const FinalView<double> &view, const Die &die, const Vec3 &displacement, const Box &box)
   {
-    const auto  triangles   = surface_triangles(view.scene.mesh);
-    const auto  [begin, end] = share_of_rank(triangles.size(), view.scene.discretization.comm());
-    using Place = std::array<NodeIndex, 2>;
+    const auto triangles    = surface_triangles(view.scene.mesh);
+    const auto [begin, end] = share_of_rank(triangles.size(), view.scene.discretization.comm());
+    using Place             = std::array<NodeIndex, 2>;
     std::map<Place, DieFeature> seen; // corners and middles are points of several facets
     std::vector<FacetAtDie>     facets;
     double                      reach = 0.;
@@ -115,15 +126,15 @@ namespace retroforge
     const auto           &d      = gaps.delta;
     const Number          ends   = d[0] + d[1] + d[2];
     const Number          mean   = at_corner * ends + at_middle * (d[3] + d[4] + d[5]) + at_centre * d[6];
-    const Number          corner = ends / 3.;
-    Number                weight = 1. - step(Number(corner / size));
-    for (const Vector3<Number> &n : gaps.n)
-    {
-      const Number turn = 1. - Number(v * n) / twice;
-      weight *= 1. - step(Number((turn - smooth_turn) / (sharp_turn - smooth_turn)));
-    }
-    const Number counted =
-      positive_part(Number(mean - weight * positive_part(Number(mean - corner), r)), r);
+    const Number          corner = ends / 3., bulge = mean - corner;
+    const auto            along = [&](const Vector3<Number> &n) {
+      return fall(Number(1. - Number(v * n) / twice), smooth_turn, sharp_turn);
+    };
+    Number weight = fall(Number(bulge / size), smooth_bulge, sharp_bulge) *
+                    fall(Number(corner / size), 0., 1.) * along(gaps.n[3]);
+    for (unsigned int k = 0; k < 3; ++k)
+      weight *= 1. - (1. - along(gaps.n[k])) * step(Number(d[k] / (off_the_die * size)));
+    const Number counted = positive_part(Number(mean - weight * positive_part(bulge, r)), r);
     const Number between = behind ? mean : positive_part(mean, r);
     return 0.5 * twice * (between - counted);
   }
@@ -133,8 +144,7 @@ namespace retroforge
                         const std::vector<HalfSpace<Number>> &half_spaces)
   {
     const Vector3<Number> v = cross<Number>(x[1] - x[0], x[2] - x[0]);
-    return 2. *
-           Number(clipped_area(x, half_spaces.data(), half_spaces.data() + half_spaces.size()) * v) /
+    return 2. * Number(clipped_area(x, half_spaces.data(), half_spaces.data() + half_spaces.size()) * v) /
            Number(v * v);
   }
 
@@ -144,7 +154,7 @@ namespace retroforge
     return length(cross<Number>(x[1] - x[0], x[2] - x[0])) * (delta[0] + delta[1] + delta[2]) / 6.;
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                                                       \
+#define RETROFORGE_INSTANTIATE(Number)                                                                      \
   template Number volume_at_facet(const std::array<Vector3<Number>, 3> &, const FacetGaps<Number> &, bool); \
   template Number share_of_facet(const std::array<Vector3<Number>, 3> &,                                    \
                                  const std::vector<HalfSpace<Number>> &);                                   \

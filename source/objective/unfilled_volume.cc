@@ -23,6 +23,10 @@ namespace retroforge
       return Die("target", TriangleSurface("target", shape.vertices(), std::move(triangles)), depth, law);
     }
 
+    /// The number of the normal at a point of a facet, for those that have one.
+    constexpr std::array<unsigned int, 7> normal_at = {
+      {0, 1, 2, invalid_index, invalid_index, invalid_index, 3}};
+
     /// Coordinates of the point of a tetrahedron that shadows are seen from: in no plane of symmetry of it.
     constexpr double eye_of_cell[4] = {0.31, 0.27, 0.23, 0.19};
 
@@ -90,11 +94,11 @@ namespace retroforge
   template <typename Number>
   struct UnfilledVolume::Surface
   {
-    DieState<Number>                  state;
-    NodalVectors<Number>              vertices; ///< without the displacement
-    RegionPlace<Number>               place;
-    std::vector<HalfSpace<Number>>    half_spaces;
-    std::vector<HalfSpace<double>>    values; ///< of the half-spaces
+    DieState<Number>               state;
+    NodalVectors<Number>           vertices; ///< without the displacement
+    RegionPlace<Number>            place;
+    std::vector<HalfSpace<Number>> half_spaces;
+    std::vector<HalfSpace<double>> values; ///< of the half-spaces
 
     Surface(const UnfilledVolume &objective, const FinalView<Number> &view, const Region &region)
     {
@@ -243,8 +247,8 @@ namespace retroforge
       {
         const auto projection = die_.project(points[q], surface.state, facet.features[q]);
         gaps.delta[q]         = projection.delta;
-        if (q < 3)
-          gaps.n[q] = projection.n;
+        if (const unsigned int k = normal_at[q]; k != invalid_index)
+          gaps.n[k] = projection.n;
       }
       at_facets += surface.share(x) * volume_at_facet(x, gaps, !is_within());
     }
@@ -256,15 +260,15 @@ namespace retroforge
                                       const double             weight,
                                       FinalBar                &bar) const
   {
-    const Region          &region = decisions.region;
-    const Surface<double>  surface(*this, view, region);
-    const Die              die          = view.target ? die_.moved(*view.target) : die_;
-    const auto            &triangles    = die_.surface()->triangles();
-    const Vec3            &displacement = surface.state.displacement;
-    const bool             by_vertices  = bar.target.size() == surface.vertices.size();
-    Vec3                   displacement_bar;
-    double                 mouth_bar = 0.;
-    const auto             vertex    = [&](const unsigned int v, const Vec3 &x_bar) {
+    const Region         &region = decisions.region;
+    const Surface<double> surface(*this, view, region);
+    const Die             die          = view.target ? die_.moved(*view.target) : die_;
+    const auto           &triangles    = die_.surface()->triangles();
+    const Vec3           &displacement = surface.state.displacement;
+    const bool            by_vertices  = bar.target.size() == surface.vertices.size();
+    Vec3                  displacement_bar;
+    double                mouth_bar = 0.;
+    const auto            vertex    = [&](const unsigned int v, const Vec3 &x_bar) {
       if (by_vertices)
         bar.target[v] += x_bar;
     };
@@ -288,8 +292,8 @@ namespace retroforge
     for (const unsigned int f : decisions.facets)
     {
       LocalArguments      argument;
-      const auto          x_at = shifted(corners_of(surface.vertices, triangles[f]), displacement);
-      const auto          x = argument(x_at);
+      const auto          x_at  = shifted(corners_of(surface.vertices, triangles[f]), displacement);
+      const auto          x     = argument(x_at);
       const auto          place = place_of(argument);
       std::array<Vec3, 3> x_bar;
       auto                part = region.shadow(place, x);
@@ -346,7 +350,7 @@ namespace retroforge
     {
       const auto     x_at = corners_of(view, cell.cell);
       LocalArguments argument;
-      const auto     x = argument(x_at);
+      const auto     x   = argument(x_at);
       const auto     add = [&](const LocalArguments::Number &part) {
         for (unsigned int k = 0; k < 4; ++k)
           bar.X[view.scene.mesh.cells[cell.cell][k]] += derivative(part, 3 * k, weight);
@@ -365,9 +369,9 @@ namespace retroforge
       }
       for (const unsigned int f : cell.facets) // within a shape, which stands still
       {
-        LocalArguments of_pair;
-        const auto     corners = of_pair(x_at);
-        const auto     facet   = of_pair(corners_of(surface.vertices, triangles[f]));
+        LocalArguments                      of_pair;
+        const auto                          corners = of_pair(x_at);
+        const auto                          facet   = of_pair(corners_of(surface.vertices, triangles[f]));
         RegionPlace<LocalArguments::Number> still;
         const auto part = shadow_in_tetrahedron(corners, eye_of(corners), facet, region.half_spaces(still));
         add(part);
@@ -395,20 +399,20 @@ namespace retroforge
     double                mouth_bar = 0.;
     for (const FacetAtDie &facet : decisions.at_die)
     {
-      const auto           x_at   = corners_of(view.X, facet.nodes);
-      const auto           points = FacetAtDie::points(x_at);
-      std::array<Vec3, 3>  x_bar;
-      std::array<Vec3, 7>  points_bar, n_bar;
-      LocalArguments       of_gaps;
-      const auto           x = of_gaps(x_at);
+      const auto                        x_at   = corners_of(view.X, facet.nodes);
+      const auto                        points = FacetAtDie::points(x_at);
+      std::array<Vec3, 3>               x_bar;
+      std::array<Vec3, 7>               points_bar;
+      LocalArguments                    of_gaps;
+      const auto                        x = of_gaps(x_at);
       FacetGaps<LocalArguments::Number> gaps;
-      std::array<Vec3, 3>               n;
+      std::array<Vec3, 4>               n;
       for (unsigned int q = 0; q < 7; ++q)
       {
         const auto projection = die.project(points[q], displacement, facet.features[q]);
         gaps.delta[q]         = of_gaps(projection.delta);
-        if (q < 3)
-          n[q] = projection.n;
+        if (const unsigned int k = normal_at[q]; k != invalid_index)
+          n[k] = projection.n;
       }
       gaps.n             = of_gaps(n);
       const auto   part  = volume_at_facet(x, gaps, !is_within());
@@ -431,19 +435,17 @@ namespace retroforge
         mouth_bar += volume * of_all.dx(12);
       }
       for (unsigned int k = 0; k < 3; ++k)
-      {
         x_bar[k] += derivative(part, 3 * k, weight * share);
-        n_bar[k] = derivative(part, 16 + 3 * k, weight * share);
-      }
       for (unsigned int q = 0; q < 7; ++q)
-        die.reverse_project(points[q],
-                            displacement,
-                            facet.features[q],
-                            weight * share * part.dx(9 + q),
-                            n_bar[q],
-                            points_bar[q],
-                            displacement_bar,
-                            by_vertices ? &bar.target : nullptr);
+        die.reverse_project(
+          points[q],
+          displacement,
+          facet.features[q],
+          weight * share * part.dx(9 + q),
+          normal_at[q] == invalid_index ? Vec3() : derivative(part, 16 + 3 * normal_at[q], weight * share),
+          points_bar[q],
+          displacement_bar,
+          by_vertices ? &bar.target : nullptr);
       FacetAtDie::add_points(points_bar, x_bar);
       for (unsigned int k = 0; k < 3; ++k)
         bar.X[facet.nodes[k]] += x_bar[k];

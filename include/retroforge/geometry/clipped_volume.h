@@ -99,8 +99,8 @@ namespace retroforge
       if (n_inside == 4)
         continue;
       const internal::SimplexCut<Number, 4> cut(tetrahedron, *begin);
-      const auto                           &x = cut.x;
-      const auto volume = [&](const Vector3<Number> &a,
+      const auto                           &x      = cut.x;
+      const auto                            volume = [&](const Vector3<Number> &a,
                               const Vector3<Number> &b,
                               const Vector3<Number> &c,
                               const Vector3<Number> &d) {
@@ -114,8 +114,9 @@ namespace retroforge
                               bd = cut.point(1, 3);
         return volume(x[0], x[1], ac, ad) + volume(ac, x[1], bc, ad) + volume(ad, x[1], bc, bd);
       }
-      const Vector3<Number> a = cut.point(0, 3), b = cut.point(1, 3), c = cut.point(2, 3);
-      return volume(x[0], x[1], x[2], a) + volume(a, x[1], x[2], b) + volume(a, b, x[2], c);
+      // All but a corner: where an edge lies in the plane, rounding says where they meet, and the place's
+      // derivative is huge, but not that of the corner's volume.
+      return volume(x[0], x[1], x[2], x[3]) - volume(cut.point(0, 3), cut.point(1, 3), cut.point(2, 3), x[3]);
     }
     return signed_volume(tetrahedron);
   }
@@ -138,10 +139,7 @@ namespace retroforge
       if (cut.n_inside == 1)
         return area(x[0], cut.point(0, 1), cut.point(0, 2));
       if (cut.n_inside == 2)
-      {
-        const Vector3<Number> a = cut.point(0, 2), b = cut.point(1, 2);
-        return area(x[0], x[1], b) + area(x[0], b, a);
-      }
+        return area(x[0], x[1], x[2]) - area(cut.point(0, 2), cut.point(1, 2), x[2]);
     }
     return cross<Number>(triangle[1] - triangle[0], triangle[2] - triangle[0]) * Number(0.5);
   }

@@ -23,7 +23,7 @@ namespace retroforge
   template <typename Number>
   struct RegionPlace
   {
-    Vector3<Number> shift; ///< from where it was recorded
+    Vector3<Number> shift;              ///< from where it was recorded
     Number          mouth = Number(0.); ///< of the vertex that its mouth follows, along the axis [mm]
   };
 
@@ -48,8 +48,7 @@ namespace retroforge
     /// Returns the place of the region.
     /// @param vertices  of the die, without the displacement
     template <typename Number>
-    RegionPlace<Number> place(const NodalVectors<Number> &vertices,
-                              const Vector3<Number>      &displacement) const
+    RegionPlace<Number> place(const NodalVectors<Number> &vertices, const Vector3<Number> &displacement) const
     {
       RegionPlace<Number> place;
       if (follows_die)
@@ -73,8 +72,7 @@ namespace retroforge
 
     /// Returns the volume of the region in the shadow of a facet, with the sign s_t [mm^3].
     template <typename Number>
-    Number shadow(const RegionPlace<Number>            &place,
-                  const std::array<Vector3<Number>, 3> &facet) const;
+    Number shadow(const RegionPlace<Number> &place, const std::array<Vector3<Number>, 3> &facet) const;
   };
 
   /// Returns the region of a surface: the box or, without one, what lies behind the mouth of an open surface.
@@ -84,10 +82,8 @@ namespace retroforge
   /// @param die          with its vertices where they are
   /// @param follows_die  whether a region without a box moves with the displacement
   /// @throws Error  where symmetry planes leave nothing of it
-  Region make_region(const Die                &die,
-                     const Vec3               &displacement,
-                     const std::optional<Box> &box,
-                     const TetMesh            &mesh);
+  Region
+  make_region(const Die &die, const Vec3 &displacement, const std::optional<Box> &box, const TetMesh &mesh);
 
   /// Returns the volume of a tetrahedron in the shadow of a facet seen from a point of it, with the sign s_t,
   /// in the half-spaces [mm^3].

@@ -17,9 +17,11 @@
 /// so that neither corners on the die (c = 0: a hollow die) nor edges on it (m = 0: a convex one) leave
 /// anything, while a gap counts from where it begins; and metal in a die fills no other place. x+ is x for
 /// x > r, 0 for x < 0, and x times the step of the friction ramp between, r = l/1000 and l^2 = 2 A. The weight
-/// t is 1 on a die that is smooth there, product over the corners of a step that falls from 1 to 0 while the
-/// die's normal turns from the facet's by 25 to 45 degrees, times one that falls over c = 0 ... l. A facet
-/// that spans an edge or a narrow rounding counts as it is, and so does one that is far away.
+/// t is 1 for a facet on a die that is smooth there. It falls to 0 over b = 0.06 l ... 0.15 l, as it does for
+/// levelled gaps (level_gaps.h), over c = 0 ... l, and while the die's normal turns from the facet's by 25 to
+/// 45 degrees, at its centre or at a corner that is off the die by l/20 (on an edge of the die the normal says
+/// nothing): a facet that spans an edge or a narrow rounding counts as it is, and so does one that is far
+/// away.
 namespace retroforge
 {
   /// A facet of the workpiece near a die, and what its points see: corners, middles of edges, centre.
@@ -50,7 +52,7 @@ namespace retroforge
   struct FacetGaps
   {
     std::array<Number, 7>          delta; ///< [mm]
-    std::array<Vector3<Number>, 3> n;     ///< into the die, at the corners
+    std::array<Vector3<Number>, 4> n;     ///< into the die, at the corners and the centre
   };
 
   /// Returns this rank's facets that come nearer to the die than they are long.

@@ -13,8 +13,8 @@ namespace retroforge
   template <int n>
   using Partials = Sacado::Fad::SFad<double, n>;
 
-  /// A facet's corners, gaps at seven points, and normals at its corners: the most that any part depends on.
-  inline constexpr int n_partials = 25;
+  /// A facet's corners, gaps at seven points, and normals at four: the most that any part depends on.
+  inline constexpr int n_partials = 28;
 
   /// The arguments of a part, each with its place among the derivatives, in the order of their making.
   class LocalArguments

@@ -73,15 +73,15 @@ namespace retroforge
 
     std::map<std::string, double> parts(const std::vector<double> &integrals) const override
     {
-      return {{"cavity", integrals[0]},
-              {"metal in it", -integrals[1]},
-              {"between facets and die", -integrals[2]}};
+      return {
+        {"cavity", integrals[0]}, {"metal in it", -integrals[1]}, {"between facets and die", -integrals[2]}};
     }
 
     std::map<std::string, double> details(const std::vector<double> &integrals,
                                           const FinalDecisions &) const override
     {
-      return {{"of the cavity [%]", 100. * (integrals[0] - integrals[1] - integrals[2]) / integrals[0]}};
+      const double unfilled = integrals[0] - integrals[1] - integrals[2];
+      return {{"of the cavity [%]", integrals[0] > 0. ? 100. * unfilled / integrals[0] : 0.}};
     }
 
   private:
@@ -92,9 +92,18 @@ namespace retroforge
 
     Decisions decide_cells(const FinalView<double> &view, const Die &die, Decisions decisions) const;
 
-    void reverse_cavity(const FinalView<double> &view, const Decisions &decisions, double weight, FinalBar &bar) const;
-    void reverse_cells(const FinalView<double> &view, const Decisions &decisions, double weight, FinalBar &bar) const;
-    void reverse_facets(const FinalView<double> &view, const Decisions &decisions, double weight, FinalBar &bar) const;
+    void reverse_cavity(const FinalView<double> &view,
+                        const Decisions         &decisions,
+                        double                   weight,
+                        FinalBar                &bar) const;
+    void reverse_cells(const FinalView<double> &view,
+                       const Decisions         &decisions,
+                       double                   weight,
+                       FinalBar                &bar) const;
+    void reverse_facets(const FinalView<double> &view,
+                        const Decisions         &decisions,
+                        double                   weight,
+                        FinalBar                &bar) const;
 
     Die                die_; ///< a shape turned inside out
     unsigned int       index_;
