@@ -127,6 +127,23 @@ namespace retroforge
       dealii::LAPACKFullMatrix<double> gram_;
     };
 
+    /// Whether points that touch dies are in the way of a motion, and others in that of its opposite: what
+    /// moves then is pressed, however their dies stand to each other.
+    bool is_blocked_both_ways(const RigidMotion          &motion,
+                              const ContactSet<double>   &contact,
+                              const NodalVectors<double> &X)
+    {
+      double most = 0., least = 0.;
+      for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+        if (const ContactPair &pair = contact.pairs[p]; pair.touching)
+        {
+          const double speed = motion.at(pair.point.position(X)) * contact.projections[p].n;
+          most               = std::max(most, speed);
+          least              = std::min(least, speed);
+        }
+      return std::min(most, -least) > 0.5 * loose;
+    }
+
     std::vector<RigidMotion>
     loose_motions(const Scene &scene, const ContactSet<double> &contact, const NodalVectors<double> &X)
     {
@@ -158,7 +175,13 @@ namespace retroforge
           if (normals[d] * normals[e] < opposed * normals[d].norm() * normals[e].norm())
             holding.add_between(pressed[d], pressed[e]);
       }
-      return holding.loose_motions();
+      std::vector<RigidMotion> motions = holding.loose_motions();
+      motions.erase(
+        std::remove_if(motions.begin(),
+                       motions.end(),
+                       [&](const RigidMotion &motion) { return is_blocked_both_ways(motion, contact, X); }),
+        motions.end());
+      return motions;
     }
 
     /// Whether the workpiece is between dies, or between a die and a plane of symmetry across its way.

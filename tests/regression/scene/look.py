@@ -172,7 +172,7 @@ def estimates():
         same(f"{key}, whichever die has the gap", [below[key], above[key]], [shorter["estimate"][key]] * 2)
     judge("which grows with the way from touch on", straight["estimate"]["final_force"] < below["final_force"], below)
     done, free = look("increments left free", "Press/increments=0")
-    judge("who chose them is told", free["press"]["increments_chosen"] and "increments (chosen by the program) of" in done.stdout, done.stdout)
+    judge("who chose them is told", free["press"]["increments_chosen"] and "increments chosen by the program, of at most" in done.stdout, done.stdout)
 
 
 # name: (settings, what the message says, dies that are drawn, whether the billet is)
