@@ -2,8 +2,10 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/case/scene_checks.h>
 #include <retroforge/case/scene_doubts.h>
+#include <retroforge/core/nearest_name.h>
 #include <retroforge/geometry/facet_curvature.h>
 #include <retroforge/geometry/vector_algebra.h>
+#include <retroforge/solver/rigid_modes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -199,6 +201,29 @@ namespace retroforge
                              how_to_refine(parameters, unseen->width, edge));
       }
     }
+
+    /// A billet that dies touch along lines or at points only, in the first increment.
+    void tell_loose(const Parameters           &parameters,
+                    const Scene                &scene,
+                    const Process<double>      &process,
+                    const NodalVectors<double> &X,
+                    std::vector<std::string>   &warnings)
+    {
+      const StepModel model = parameters.step_model();
+      if (!model.holds_loose)
+        return;
+      const Physics<double> physics = process.at_stroke(0.);
+      auto                  view    = scene.view(physics.dies, X);
+      view.comm                     = MPI_COMM_SELF;
+      const FrictionRamp &ramp      = model.contact.ramp;
+      const auto          contact   = make_contact_set<double>(
+        view, find_contact_pairs(view, ramp, ramp.width, model.edges_touch), {ramp, 1.});
+      if (const RigidHold hold = hold_of_loose(scene, physics, contact, X); !hold.empty())
+        warnings.push_back("dies touch the billet along lines or at points only: what would let it " +
+                           join(held_motions(hold, X)) +
+                           " is held until contacts are wide enough, Contact/loose billet = held; cut by "
+                           "symmetry planes, it needs less of that");
+    }
   } // namespace
 
   void add_doubts(const Parameters               &parameters,
@@ -212,5 +237,6 @@ namespace retroforge
     tell_chamfers(parameters, scene, warnings);
     tell_rims(parameters, scene, process, warnings);
     tell_unseen(parameters, scene, process, X, approaches, warnings);
+    tell_loose(parameters, scene, process, X, warnings);
   }
 } // namespace retroforge

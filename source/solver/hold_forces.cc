@@ -58,7 +58,7 @@ namespace retroforge
     const RigidHold           &hold  = stage.contact.hold;
     if (hold.empty())
       return;
-    // lambda·f = zeta sum_j g_j(V) g_j(lambda), and d g_j(V)/dX_k = V_k x turn_j / n.
+    // lambda·f = c_h sum_j g_j(V) g_j(lambda), and d g_j(V)/dX_k = V_k x turn_j / n.
     const std::vector<double> of_V = mean_speeds(stage, view.W.V), of_lambda = mean_speeds(stage, lambda.V);
     const double              part = hold.drag / stage.X.size();
     for_each_owned_vertex(stage.scene, [&](const unsigned int place, const NodeIndex k) {

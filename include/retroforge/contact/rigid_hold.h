@@ -26,12 +26,12 @@ namespace retroforge
 
   /// What holds a workpiece that dies touch along lines or at points only: a drag on its mean velocities along
   /// the rigid motions m_j that these do not resist. The force on node k of n is
-  ///   f_k = sum_j zeta g_j m_j(X_k)/n,   g_j = 1/n sum_k m_j(X_k)·V_k.
-  /// It has a potential, and vanishes where the workpiece does not move that way. Motions and zeta are
+  ///   f_k = sum_j c_h g_j m_j(X_k)/n,   g_j = 1/n sum_k m_j(X_k)·V_k.
+  /// It has a potential, and vanishes where the workpiece does not move that way. Motions and c_h are
   /// recorded with the increment, and frozen in the reverse sweep; X_k is not.
   struct RigidHold
   {
-    double                   drag = 0.; ///< zeta [N s/mm]
+    double                   drag = 0.; ///< c_h [N s/mm]
     std::vector<RigidMotion> motions;
 
     bool empty() const { return motions.empty(); }

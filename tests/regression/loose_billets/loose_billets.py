@@ -87,6 +87,8 @@ def forged():
     for name in ("bar5", "bar6", "bar8", "rod5", "rod6", "rod8", "slender", "edge", "bell", "slope"):
         done = run("simulate", name, "--overwrite", case=name + ".prm")
         judge(f"{name}: ends", done.returncode == 0, done.stderr)
+        is_loose = name.startswith("bar") or name in ("slender", "edge")
+        judge(f"{name}: what is held is told", ("warning: dies touch the billet along lines" in done.stdout) == is_loose, done.stdout)
         steps = [int(row["newton"]) for row in history_of(name)]
         judge(f"{name}: Newton steps", steps and max(steps) <= MOST, steps)
         change = summary_of(name)["volume_final"] / summary_of(name)["volume_initial"] - 1
