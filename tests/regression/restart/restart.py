@@ -119,10 +119,11 @@ def checked(first, second):
 
 def free():
     """Free runs change their numerics where the record does, and so follow the replays but for the jumps of their decisions."""
-    done = run("check", "run", "--resume", *OTHER, "Check/steps=1e-6", "Check/free differences=true", "Design/parameters=material/m")
+    # A decision may change between neighbours, so that one step alone tells of a jump.
+    done = run("check", "run", "--resume", *OTHER, "Check/steps=3e-5, 1e-5, 3e-6, 1e-6", "Check/free differences=true", "Design/parameters=material/m")
     row = next(r for r in summary_of("run")["check"] if r["parameter"] == "material/m" and r["objective"] == "energy")
-    error = abs(row["steps"][0]["free_central"] / row["adjoint"] - 1)
-    judge("free differences change numerics at the same stroke", done.returncode == 0 and error < 3e-3, f"{error:.1e} {done.stderr}")
+    errors = [abs(s["free_central"] / row["adjoint"] - 1) for s in row["steps"]]
+    judge("free differences change numerics at the same stroke", done.returncode == 0 and sorted(errors)[1] < 3e-3, f"{errors} {done.stderr}")
 
 
 def finished():
