@@ -99,6 +99,10 @@ namespace retroforge
                    {"tangent", json_number(check.tangent)}};
       add_unless_empty(json, "steps", list(check.steps));
       add_unless_empty(json, "taylor_orders", list(check.taylor_orders));
+      if (std::isfinite(check.free_slope))
+        json["free"] = {{"slope", json_number(check.free_slope)},
+                        {"uncertainty", json_number(check.free_uncertainty)},
+                        {"jumps", json_number(check.free_jumps)}};
       json["verdict"] = check.verdict;
       return json;
     }

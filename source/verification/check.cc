@@ -165,6 +165,36 @@ namespace retroforge
 
   namespace
   {
+    DifferenceFit fit_of(const CheckRow &row, double DifferenceRow::*difference)
+    {
+      const double whole = 1e5 * row.least_difference; // the value over the parameter's scale
+      if (row.is_zero || !(whole > 0.))
+        return {};
+      std::vector<double> steps, d;
+      for (const DifferenceRow &of_step : row.steps)
+      {
+        steps.push_back(of_step.step);
+        d.push_back(of_step.*difference / whole);
+      }
+      DifferenceFit fit = DifferenceFit::of(steps, d, 1.);
+      fit.slope *= whole;
+      fit.uncertainty *= whole;
+      return fit;
+    }
+  } // namespace
+
+  DifferenceFit CheckRow::free_fit() const
+  {
+    return fit_of(*this, &DifferenceRow::free_central);
+  }
+
+  DifferenceFit CheckRow::replayed_fit() const
+  {
+    return fit_of(*this, &DifferenceRow::replayed_central);
+  }
+
+  namespace
+  {
     NodalVectors<double> random_vectors(const std::size_t n, std::mt19937 &generator)
     {
       std::uniform_real_distribution<double> uniform(-1., 1.);
@@ -314,6 +344,22 @@ namespace retroforge
     return by_objective(of_directions);
   }
 
+  namespace
+  {
+    /// Says what of the differences that decide anew is a derivative that is left out, and what are jumps.
+    void print_free(const CheckRow &row, std::ostream &out)
+    {
+      const DifferenceFit free = row.free_fit();
+      if (std::isnan(free.slope))
+        return;
+      const double rounding = 3. * row.replayed_fit().jump;
+      out << "    decided anew: slope " << std::showpos << 100. * (free.slope / row.adjoint - 1.)
+          << std::noshowpos << " % beside the adjoint (+- " << 100. * std::abs(free.uncertainty / row.adjoint)
+          << " %), " << (free.jump > rounding ? "jumps of " : "no jumps above rounding, ") << free.jump
+          << " of the value\n";
+    }
+  } // namespace
+
   void print(const std::vector<CheckRow> &rows, std::ostream &out)
   {
     out << std::scientific;
@@ -356,6 +402,7 @@ namespace retroforge
         }
         out << '\n';
       }
+      print_free(row, out);
     }
     out << std::defaultfloat << std::setprecision(6);
   }

@@ -32,6 +32,7 @@ namespace retroforge
       for (const DifferenceRow &d : row.steps)
         steps.push_back(
           numbers({d.step, d.replayed_central, d.replayed_forward, d.replayed_backward, d.free_central}));
+      const DifferenceFit free = row.free_fit();
       return {{"objective", row.objective},
               {"parameter", row.parameter},
               {"unit", row.unit},
@@ -42,7 +43,8 @@ namespace retroforge
               {"passed", row.passed},
               {"magnitude", json_number<Json>(row.magnitude)},
               {"least_difference", json_number<Json>(row.least_difference)},
-              {"is_zero", row.is_zero}};
+              {"is_zero", row.is_zero},
+              {"free", numbers({free.slope, free.uncertainty, free.jump})}};
     }
 
     CheckRow as_row(const Json &json)

@@ -23,6 +23,10 @@ namespace retroforge
       const char    *verdict = row.is_zero ? "zero" : row.passed ? "passed" : "failed";
       Summary::Check check{
         row.objective, row.parameter, row.adjoint, row.tangent, {}, row.taylor_orders, verdict};
+      const DifferenceFit free = row.free_fit();
+      check.free_slope         = free.slope;
+      check.free_uncertainty   = free.uncertainty;
+      check.free_jumps         = free.jump;
       for (const DifferenceRow &d : row.steps)
         check.steps.push_back(
           {d.step, d.replayed_central, d.replayed_forward, d.replayed_backward, d.free_central});

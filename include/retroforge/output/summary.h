@@ -65,6 +65,8 @@ namespace retroforge
       std::vector<CheckStep> steps;
       std::vector<double>    taylor_orders;
       std::string            verdict; ///< "passed", "failed", or "zero" where there is no dependence
+      /// What the free differences have in common: a slope, and jumps over the value of the objective.
+      double free_slope = unknown, free_uncertainty = unknown, free_jumps = unknown;
     };
 
     std::string command, version, commit, blas;

@@ -5,6 +5,7 @@
 #include <retroforge/adjoint/objective_sensitivity.h>
 #include <retroforge/case/check_parameters.h>
 #include <retroforge/design/design.h>
+#include <retroforge/verification/difference_fit.h>
 
 #include <functional>
 
@@ -50,6 +51,10 @@ namespace retroforge
     /// the bar.
     double best_replayed_error() const;
     double best_free_error() const;
+    /// What the differences that decide everything anew, and those that replay, have in common; jumps over the
+    /// value of the objective. Nothing is known of a derivative that is zero.
+    DifferenceFit free_fit() const;
+    DifferenceFit replayed_fit() const;
     /// Of the replayed central differences: no derivative is zero for which all of them are not.
     double smallest_difference() const;
   };
