@@ -154,8 +154,16 @@ namespace retroforge
         epoch->increment.mechanics.forget();
         state   = end.left_behind[remeshed.size()];
         state.X = remesh->X_before;
+        const StrokeStep at{record.stroke, 0., record.operation};
+        const auto       states = run.process.over(at).dies;
         for (Costate &costate : costates)
-          costate.workpiece = reverse_change_mesh(epoch->scene.mesh, *remesh, state, costate.workpiece);
+        {
+          PhysicsBar bar(run.model.dies);
+          costate.workpiece = reverse_change_mesh(
+            epoch->scene.mesh, *remesh, state, run.model.dies, states, costate.workpiece, bar.dies);
+          costate.process.add_once(
+            [&](Process<double> &part) { reverse_over(run.process, at, 0., bar, part); });
+        }
       }
     }
     for (Costate &costate : costates)
@@ -177,8 +185,9 @@ namespace retroforge
       const IncrementRecord &record = run.record(i);
       if (record.remesh)
       {
-        state = change_mesh(epoch->scene.mesh, *record.remesh, state);
-        epoch = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model, run.timings);
+        const auto dies = process.at_stroke(record.stroke, record.operation).dies;
+        state           = change_mesh(epoch->scene.mesh, *record.remesh, state, run.model.dies, dies);
+        epoch           = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model, run.timings);
       }
       end = place(record);
       for (auto &of_objective : rows)

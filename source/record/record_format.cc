@@ -7,6 +7,7 @@
 #include <retroforge/mesh/mesh_checks.h>
 #include <retroforge/record/contact_record.h>
 #include <retroforge/record/record_format.h>
+#include <retroforge/record/tape_record.h>
 
 #include <algorithm>
 #include <cmath>
@@ -183,11 +184,12 @@ namespace retroforge
       hdf5::write_array(group, "begin", {J.begin.size()}, J.begin.data());
       hdf5::write_array(group, "node", {J.node.size()}, J.node.data());
       hdf5::write_array(group, "weight", {J.weight.size()}, J.weight.data());
-      write_vectors(group, "spread", remesh.spread);
+      write_tape(hdf5::create_group(group, "positions"), remesh.positions);
       hdf5::write_attribute(group, "repaired", &remesh.removed_volume);
     }
 
-    std::shared_ptr<const RemeshRecord> read_remesh(const hid_t parent, const std::string &where)
+    std::shared_ptr<const RemeshRecord>
+    read_remesh(const hid_t parent, const std::string &where, const RecordShape &shape)
     {
       const hdf5::Handle group  = hdf5::open_group(parent, "remesh");
       auto               remesh = std::make_shared<RemeshRecord>();
@@ -199,9 +201,11 @@ namespace retroforge
       J.begin                   = hdf5::read_array<unsigned int>(group, "begin", {remesh->mesh.X.size() + 1});
       J.node                    = hdf5::read_array<unsigned int>(group, "node", {hdf5::any});
       J.weight                  = read_numbers(group, "weight", {J.node.size()});
-      remesh->spread            = read_vectors(group, "spread", hdf5::any);
-      if (!remesh->spread.empty() && remesh->spread.size() != remesh->mesh.X.size())
-        throw hdf5::Failure("a correction of the volume is of another mesh");
+      remesh->positions         = read_tape(hdf5::open_group(group, "positions"));
+      if (const std::string defect =
+            remesh->positions.defect(J.n_old, remesh->mesh.n_nodes(), shape.die_facets);
+          !defect.empty())
+        throw hdf5::Failure("the tape of positions is damaged: " + defect);
       bool sound = J.begin.front() == 0 && J.begin.back() == J.node.size();
       for (std::size_t k = 0; k + 1 < J.begin.size(); ++k)
         sound = sound && J.begin[k] <= J.begin[k + 1];
@@ -475,7 +479,7 @@ namespace retroforge
     increment.pairs  = read_pairs(group, shape, n);
     increment.solves = read_solves(group, n, increment.pairs.size());
     if (hdf5::has_link(group, "remesh"))
-      increment.remesh = read_remesh(group, file_name + ", " + increment_name(i));
+      increment.remesh = read_remesh(group, file_name + ", " + increment_name(i), shape);
     if (increment.remesh && increment.remesh->mesh.n_nodes() != n.mesh)
       throw hdf5::Failure("the new mesh has " + std::to_string(increment.remesh->mesh.n_nodes()) +
                           " nodes, the solution on it " + std::to_string(n.mesh));

@@ -177,33 +177,28 @@ namespace retroforge
     }
   }
 
-  namespace
+  std::vector<NodeIndex> order_of_compacted(const EditableMesh &edited)
   {
-    // New number of each node: those not moved first; invalid_index for those not used any more.
-    std::vector<NodeIndex> number_nodes(const EditableMesh &edited, std::vector<NodeIndex> &old_node)
-    {
-      std::vector<NodeIndex> number(edited.n_nodes(), invalid_index);
-      for (const bool moved : {false, true})
-        for (NodeIndex node = 0; node < edited.n_nodes(); ++node)
-          if (edited.is_used(node) && edited.is_moved(node) == moved)
-          {
-            number[node] = old_node.size();
-            old_node.push_back(moved ? invalid_index : node);
-          }
-      return number;
-    }
-  } // namespace
+    std::vector<NodeIndex> order;
+    for (const bool moved : {false, true})
+      for (NodeIndex node = 0; node < edited.n_nodes(); ++node)
+        if (edited.is_used(node) && edited.is_moved(node) == moved)
+          order.push_back(node);
+    return order;
+  }
 
   TetMesh
   compacted(const EditableMesh &edited, const SurfaceFeatures &features, std::vector<NodeIndex> &old_node)
   {
     old_node.clear();
-    const auto number = number_nodes(edited, old_node);
-    TetMesh    mesh;
-    mesh.X.resize(old_node.size());
-    for (NodeIndex node = 0; node < edited.n_nodes(); ++node)
-      if (number[node] != invalid_index)
-        mesh.X[number[node]] = edited.X(node);
+    std::vector<NodeIndex> number(edited.n_nodes(), invalid_index);
+    TetMesh                mesh;
+    for (const NodeIndex node : order_of_compacted(edited))
+    {
+      number[node] = mesh.X.size();
+      mesh.X.push_back(edited.X(node));
+      old_node.push_back(edited.is_moved(node) ? invalid_index : node);
+    }
     for (CellIndex c = 0; c < edited.n_cells(); ++c)
       if (edited.is_alive(c))
       {

@@ -16,11 +16,23 @@ namespace retroforge
     // What cells may be spoiled to: the quality pass repairs them.
     constexpr double lowest_quality_fitted = 0.1;
 
-    std::optional<CavityChange>
-    plan_move(const RemeshingContext &context, const NodeIndex node, const Vec3 &position)
+    std::optional<CavityChange> plan_move(const RemeshingContext &context,
+                                          const NodeIndex         node,
+                                          const Place            &place,
+                                          const Vec3             &target,
+                                          const double            part)
     {
-      const EditableMesh &mesh = context.mesh;
+      const EditableMesh &mesh     = context.mesh;
+      const Vec3          position = part == 1. ? target : place.towards(target, mesh.X(node), part);
       CavityChange        change;
+      change.placement = {part == 1. ? Placement::How::put : Placement::How::towards,
+                          {{node, node}},
+                          place.kind,
+                          place.feature,
+                          part,
+                          {},
+                          0,
+                          {}};
       change.placed_node   = node;
       change.position      = position;
       change.removed_cells = mesh.cells_at(node);
@@ -42,10 +54,9 @@ namespace retroforge
       if ((target - x).norm() <= near * context.size(x))
         return true;
       for (const double part : {1., 0.5, 0.25, 0.125})
-        if (const auto change =
-              plan_move(context, node, part == 1. ? target : place.towards(target, x, part)))
+        if (const auto change = plan_move(context, node, place, target, part))
         {
-          context.mesh.apply(*change);
+          context.apply(*change);
           return part == 1.;
         }
       return false;
@@ -55,7 +66,7 @@ namespace retroforge
     {
       for (const NodeIndex other : context.mesh.neighbours(node))
         if (const auto change = plan_smoothing(context, other, 1e-3))
-          context.mesh.apply(*change);
+          context.apply(*change);
     }
 
     // Takes away the node inside that is next to where this one belongs.
@@ -79,7 +90,7 @@ namespace retroforge
           best = std::move(change);
       }
       if (best)
-        context.mesh.apply(*best);
+        context.apply(*best);
     }
   } // namespace
 

@@ -112,7 +112,7 @@ namespace retroforge
         if (const auto change = better_collapse(context, edge.a, edge.b))
         {
           const CellIndex next = context.mesh.n_cells();
-          context.mesh.apply(*change);
+          context.apply(*change);
           add_edges(context, next, queue, is_short);
           ++n_done;
         }
@@ -149,7 +149,7 @@ namespace retroforge
         if (!change)
           if (const auto peel = plan_peel(context, edge.a, edge.b))
           {
-            context.mesh.apply(*peel);
+            context.apply(*peel);
             continue;
           }
         if (!change && !all_straight && !straight.count(nodes))
@@ -157,7 +157,7 @@ namespace retroforge
         if (change)
         {
           const CellIndex next = context.mesh.n_cells();
-          context.mesh.apply(*change);
+          context.apply(*change);
           add_edges(context, next, queue, is_long);
           done.push_back(nodes);
         }
@@ -169,6 +169,7 @@ namespace retroforge
     unsigned int split_and_fit(RemeshingContext &context, const CellIndex first)
     {
       const EditableMesh     before  = context.mesh;
+      const auto             written = context.tape ? std::make_optional(*context.tape) : std::nullopt;
       constexpr unsigned int n_tries = 4;
       std::set<Edge>         straight;
       for (unsigned int i = 0;; ++i)
@@ -181,6 +182,8 @@ namespace retroforge
         for (const NodeIndex node : stuck)
           straight.insert(done[node - before.n_nodes()]);
         context.mesh = before;
+        if (written)
+          *context.tape = *written;
       }
     }
   } // namespace

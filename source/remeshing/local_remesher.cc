@@ -31,7 +31,8 @@ namespace retroforge
                         const SizeField            &size,
                         const RemeshingParameters  &parameters,
                         const TouchesDie           &touches,
-                        RemeshedMesh               &result)
+                        RemeshedMesh               &result,
+                        TapeWriter                 *tape)
     {
       TetMesh         &mesh     = result.mesh;
       RemeshingReport &report   = result.report;
@@ -42,8 +43,10 @@ namespace retroforge
           if (mesh.is_surface(face))
             for (const NodeIndex node : face.nodes)
               held[node] = held[node] || touches(mesh.X[node]);
-      auto [moved, directions] = correct_volume(mesh, report.volume_before, held, parameters.ridge_angle);
-      result.spread            = std::move(directions);
+      const VolumeCorrection made  = correct_volume(mesh, report.volume_before, held, parameters.ridge_angle);
+      const double           moved = std::abs(made.distance);
+      if (tape && !made.directions.empty())
+        tape->keep_volume(mesh.faces, made);
       result.correction.resize(mesh.n_nodes());
       for (NodeIndex node = 0; node < mesh.n_nodes(); ++node)
       {
@@ -109,7 +112,8 @@ namespace retroforge
                               const RemeshingParameters  &parameters,
                               const PushOut              &push_out,
                               const TouchesDie           &touches,
-                              const std::optional<double> wanted_volume)
+                              const std::optional<double> wanted_volume,
+                              TapeWriter                 *tape)
   {
     AssertDimension(X.size(), mesh.n_nodes());
     Assert(!wanted_volume || *wanted_volume > 0., dealii::ExcMessage("a volume is positive"));
@@ -122,13 +126,17 @@ namespace retroforge
     const SurfaceFeatures features(mesh, X, parameters.ridge_angle, parameters.corner_angle, push_out);
     const OldSurface      old_surface(mesh, X, features, push_out);
     EditableMesh          edited(mesh, X, features);
-    RemeshingContext      context = {edited, old_surface, size, parameters};
+    if (tape)
+      tape->begin_pass();
+    RemeshingContext context = {edited, old_surface, size, parameters, tape};
     length_pass(context, result.report);
     QualityPass(context, result.report).run();
 
     result.mesh         = compacted(edited, features, result.old_node);
     result.mesh.patches = mesh.patches;
-    restore_volume(X, size, parameters, touches, result);
+    if (tape)
+      tape->place(tape->nodes(order_of_compacted(edited)));
+    restore_volume(X, size, parameters, touches, result, tape);
     report_after(result, result.report);
     return result;
   }

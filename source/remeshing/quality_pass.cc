@@ -91,9 +91,9 @@ namespace retroforge
 
   void QualityPass::apply(const CavityChange &change)
   {
-    EditableMesh   &mesh  = context_.mesh;
-    const CellIndex first = mesh.n_cells();
-    mesh.apply(change);
+    const EditableMesh &mesh  = context_.mesh;
+    const CellIndex     first = mesh.n_cells();
+    context_.apply(change);
     cell_failed_at_.resize(mesh.n_cells(), invalid_index);
     for (CellIndex cell = first; cell < mesh.n_cells(); ++cell)
       if (mesh.quality(cell) < swap_quality_)

@@ -7,6 +7,13 @@
 
 namespace retroforge
 {
+  void RemeshingContext::apply(const CavityChange &change) const
+  {
+    if (tape && change.placed_node != invalid_index)
+      tape->place(change.placed_node, write(change.placement, *this, *tape));
+    mesh.apply(change);
+  }
+
   double RemeshingContext::relative_length(const NodeIndex a, const NodeIndex b) const
   {
     return relative_length(mesh.X(a), mesh.X(b));

@@ -73,72 +73,85 @@ namespace retroforge
       std::vector<std::array<Vec3, 3>> faces_;
     };
 
-    std::vector<Vec3> space_directions()
+    struct Directions
     {
-      std::vector<Vec3> directions;
-      for (const double sign : {1., -1.})
-      {
-        for (unsigned int axis = 0; axis < 3; ++axis)
-        {
-          Vec3 d;
-          d[axis] = sign;
-          directions.push_back(d);
-        }
-        const double s = sign / std::sqrt(3.);
-        directions.insert(directions.end(),
-                          {Vec3({s, s, s}), Vec3({s, s, -s}), Vec3({s, -s, s}), Vec3({-s, s, s})});
-      }
-      return directions;
-    }
+      std::vector<Vec3> of;
+      unsigned int      axis = 0; ///< by which they were found
+    };
 
-    std::vector<Vec3> plane_directions(const Vec3 &normal)
+    Directions plane_directions(const Vec3 &normal)
     {
-      const unsigned int axis = std::abs(normal[0]) < std::abs(normal[1])
-                                  ? (std::abs(normal[0]) < std::abs(normal[2]) ? 0 : 2)
-                                  : (std::abs(normal[1]) < std::abs(normal[2]) ? 1 : 2);
-      Vec3               u;
-      u[axis] = 1;
-      u       = cross_product_3d(normal, u);
+      Directions directions;
+      directions.axis = std::abs(normal[0]) < std::abs(normal[1])
+                          ? (std::abs(normal[0]) < std::abs(normal[2]) ? 0 : 2)
+                          : (std::abs(normal[1]) < std::abs(normal[2]) ? 1 : 2);
+      Vec3 u;
+      u[directions.axis] = 1;
+      u                  = cross_product_3d(normal, u);
       u /= u.norm();
       Vec3 v = cross_product_3d(normal, u);
       v /= v.norm();
-      std::vector<Vec3> directions;
       for (unsigned int i = 0; i < 8; ++i)
-        directions.push_back(std::cos(i * M_PI / 4) * u + std::sin(i * M_PI / 4) * v);
+        directions.of.push_back(plane_direction(i)[0] * u + plane_direction(i)[1] * v);
       return directions;
     }
 
     // On a curve: where the place moves to when pushed; found by pushing along the three axes.
-    std::vector<Vec3> curve_directions(const Place &place, const Vec3 &x, const double step)
+    Directions curve_directions(const Place &place, const Vec3 &x, const double step)
     {
-      std::vector<Vec3> directions;
-      Vec3              best;
+      Directions directions;
+      Vec3       best;
       for (unsigned int axis = 0; axis < 3; ++axis)
       {
         Vec3 push;
         push[axis]     = step;
         const Vec3 way = place(x + push) - x;
         if (way.norm() > best.norm())
-          best = way;
+        {
+          best            = way;
+          directions.axis = axis;
+        }
       }
       if (best.norm() > 0)
-        directions = {best / best.norm(), -1. * best / best.norm()};
+        directions.of = {best / best.norm(), -1. * best / best.norm()};
       return directions;
     }
 
-    std::vector<Vec3>
-    directions_of(const Star &star, const Place &place, const Vec3 &start, const double size)
+    Directions directions_of(const Star &star, const Place &place, const Vec3 &start, const double size)
     {
       if (place.kind == NodeKind::interior)
-        return space_directions();
+        return {space_directions()};
       const Vec3 open = star.open_side();
       if (place.kind == NodeKind::surface && open.norm() > 0)
         return plane_directions(open / open.norm());
       if (place.kind == NodeKind::ridge)
-        return curve_directions(place, start, 0.1 * size);
+        return curve_directions(place, start, ridge_push * size);
       return {};
     }
   } // namespace
+
+  std::vector<Vec3> space_directions()
+  {
+    std::vector<Vec3> directions;
+    for (const double sign : {1., -1.})
+    {
+      for (unsigned int axis = 0; axis < 3; ++axis)
+      {
+        Vec3 d;
+        d[axis] = sign;
+        directions.push_back(d);
+      }
+      const double s = sign / std::sqrt(3.);
+      directions.insert(directions.end(),
+                        {Vec3({s, s, s}), Vec3({s, s, -s}), Vec3({s, -s, s}), Vec3({-s, s, s})});
+    }
+    return directions;
+  }
+
+  std::array<double, 2> plane_direction(const unsigned int i)
+  {
+    return {{std::cos(i * M_PI / 4), std::sin(i * M_PI / 4)}};
+  }
 
   Cavity cavity_of_node(const EditableMesh &mesh, const NodeIndex node)
   {
@@ -164,16 +177,17 @@ namespace retroforge
     const double size           = star.size(start);
     const auto   directions     = directions_of(star, place, start, size);
     const bool   is_on_boundary = place.kind != NodeKind::interior;
-    BestPosition best           = {start, star.quality(start, -2)};
-    for (double step = size / 4; step > size / 100; step /= 2)
+    BestPosition best           = {start, star.quality(start, -2), directions.axis, {}};
+    for (double part = 0.25; part > 0.01; part /= 2)
     {
-      bool is_better = !directions.empty();
+      const double step      = part * size;
+      bool         is_better = !directions.of.empty();
       for (unsigned int turn = 0; turn < 8 && is_better; ++turn)
       {
         is_better = false;
-        for (const Vec3 &direction : directions)
+        for (unsigned int i = 0; i < directions.of.size(); ++i)
         {
-          const Vec3 target = best.x + step * direction;
+          const Vec3 target = best.x + step * directions.of[i];
           // Putting a point on the old surface and out of the dies costs far more than looking at the cells
           // that would be spoiled, and moves it by little.
           const double promising = best.quality - 0.05;
@@ -183,13 +197,28 @@ namespace retroforge
           const double quality = star.quality(x, best.quality);
           if (quality > best.quality)
           {
-            best      = {x, quality};
+            best.x       = x;
+            best.quality = quality;
+            best.steps.push_back({part, i});
             is_better = true;
           }
         }
       }
     }
     return best;
+  }
+
+  Placement
+  searched(const std::array<NodeIndex, 2> &between, const Place &place, Cavity cavity, BestPosition best)
+  {
+    return {Placement::How::search,
+            between,
+            place.kind,
+            place.feature,
+            1.,
+            std::move(cavity),
+            best.axis,
+            std::move(best.steps)};
   }
 
   std::optional<CavityChange>
@@ -199,7 +228,8 @@ namespace retroforge
     const Place         place = place_of_node(context, node);
     if (place.kind == NodeKind::corner)
       return {};
-    const auto   best = best_position(mesh, cavity_of_node(mesh, node), place, mesh.X(node));
+    Cavity       cavity = cavity_of_node(mesh, node);
+    auto         best   = best_position(mesh, cavity, place, mesh.X(node));
     CavityChange change;
     change.placed_node   = node;
     change.position      = best.x;
@@ -219,6 +249,7 @@ namespace retroforge
       if (!look_alike(before, after))
         return {};
     }
+    change.placement = searched({{node, node}}, place, std::move(cavity), std::move(best));
     return change;
   }
 } // namespace retroforge

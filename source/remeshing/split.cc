@@ -62,16 +62,22 @@ namespace retroforge
       change.position = position;
       return evaluate(mesh, std::max(0., bound), change) && plan_faces(mesh, a, b, change);
     };
+    const auto fits_towards = [&](const double part) {
+      change.placement = {Placement::How::towards, {{a, b}}, place.kind, place.feature, part, {}, 0, {}};
+      return fits(place.towards(target, middle, part));
+    };
     if (at == SplitAt::best)
     {
-      const auto best = best_position(mesh, cavity_of_edge(mesh, a, b), place, target);
+      Cavity cavity = cavity_of_edge(mesh, a, b);
+      auto   best   = best_position(mesh, cavity, place, target);
       if (!(best.quality > bound) || !fits(best.x))
         return {};
+      change.placement = searched({{a, b}}, place, std::move(cavity), std::move(best));
     }
-    else if (!fits(target) &&
-             !(at == SplitAt::towards && place.kind != NodeKind::interior &&
-               (fits(place.towards(target, middle, 0.5)) || fits(place.towards(target, middle, 0.25)) ||
-                fits(place.towards(target, middle, 0.)))))
+    else if (fits(target))
+      change.placement = {Placement::How::put, {{a, b}}, place.kind, place.feature, 1., {}, 0, {}};
+    else if (!(at == SplitAt::towards && place.kind != NodeKind::interior &&
+               (fits_towards(0.5) || fits_towards(0.25) || fits_towards(0.))))
       return {};
     plan_ridges(mesh, a, b, change);
     return change;

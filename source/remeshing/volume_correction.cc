@@ -34,41 +34,19 @@ namespace retroforge
       return is_flat;
     }
 
-    // Orthonormal directions in which a node must not move.
-    struct Constraint
+    std::vector<NodeConstraint> node_constraints(const TetMesh           &mesh,
+                                                 const std::vector<Vec3> &normals,
+                                                 const std::vector<bool> &kept_flat)
     {
-      std::array<Vec3, 3> directions;
-      unsigned int        n = 0;
-
-      Vec3 project(Vec3 v) const
-      {
-        for (unsigned int i = 0; i < n; ++i)
-          v -= (v * directions[i]) * directions[i];
-        return v;
-      }
-
-      void add(const Vec3 &normal)
-      {
-        const Vec3 rest = project(normal);
-        // Nearly the same plane again is no new one.
-        if (n < 3 && rest.norm() > 0.02)
-          directions[n++] = rest / rest.norm();
-      }
-    };
-
-    std::vector<Constraint> node_constraints(const TetMesh           &mesh,
-                                             const std::vector<Vec3> &normals,
-                                             const std::vector<bool> &kept_flat)
-    {
-      std::vector<Constraint> constraints(mesh.n_nodes());
+      std::vector<NodeConstraint> constraints(mesh.n_nodes());
       for (const auto &face : mesh.faces)
         if (const auto &plane = mesh.patches[face.patch].symmetry)
           for (const NodeIndex node : face.nodes)
-            constraints[node].add(plane->normal);
+            constraints[node].add(plane->normal, invalid_index);
       for (unsigned int f = 0; f < mesh.faces.size(); ++f)
         if (kept_flat[f])
           for (const NodeIndex node : mesh.faces[f].nodes)
-            constraints[node].add(normals[f]);
+            constraints[node].add(normals[f], f);
       return constraints;
     }
 
@@ -78,10 +56,10 @@ namespace retroforge
       double               area = 0; // sum of g·u, the derivative of the volume
     };
 
-    Directions directions(const TetMesh                 &mesh,
-                          const NodalVectors<double>    &g,
-                          const std::vector<Constraint> &constraints,
-                          const std::vector<bool>       &held)
+    Directions directions(const TetMesh                     &mesh,
+                          const NodalVectors<double>        &g,
+                          const std::vector<NodeConstraint> &constraints,
+                          const std::vector<bool>           &held)
     {
       Directions result;
       result.u.resize(mesh.n_nodes());
@@ -127,6 +105,24 @@ namespace retroforge
     }
   } // namespace
 
+  Vec3 NodeConstraint::project(Vec3 v) const
+  {
+    for (unsigned int i = 0; i < n; ++i)
+      v -= (v * directions[i]) * directions[i];
+    return v;
+  }
+
+  void NodeConstraint::add(const Vec3 &normal, const unsigned int face)
+  {
+    const Vec3 rest = project(normal);
+    if (n == 3 || !(rest.norm() > 0.02))
+      return;
+    directions[n] = rest / rest.norm();
+    normals[n]    = normal;
+    faces[n]      = face;
+    ++n;
+  }
+
   NodalVectors<double> volume_gradient(const std::vector<BoundaryFace> &faces, const NodalVectors<double> &X)
   {
     NodalVectors<double> g(X.size());
@@ -145,16 +141,18 @@ namespace retroforge
                                   const std::vector<bool> &held,
                                   const double             ridge_angle)
   {
-    const double tolerance = 1e-14 * wanted_volume;
-    double       missing   = wanted_volume - volume(mesh.cells, mesh.X);
-    const bool   is_right  = std::abs(missing) <= negligible * wanted_volume;
-    const auto   normals   = face_unit_normals(mesh.faces, mesh.X);
-    const auto   g         = volume_gradient(mesh.faces, mesh.X);
-    auto         moves =
-      directions(mesh, g, node_constraints(mesh, normals, flat_faces(mesh, normals, ridge_angle)), held);
+    const double tolerance   = 1e-14 * wanted_volume;
+    double       missing     = wanted_volume - volume(mesh.cells, mesh.X);
+    const bool   is_right    = std::abs(missing) <= negligible * wanted_volume;
+    const auto   normals     = face_unit_normals(mesh.faces, mesh.X);
+    const auto   g           = volume_gradient(mesh.faces, mesh.X);
+    auto         constraints = node_constraints(mesh, normals, flat_faces(mesh, normals, ridge_angle));
+    auto         moves       = directions(mesh, g, constraints, held);
     if (moves.area < 1e-3 * surface_area(mesh) && std::abs(missing) > negligible_if_flat * wanted_volume)
-      moves = directions(
-        mesh, g, node_constraints(mesh, normals, std::vector<bool>(mesh.faces.size(), false)), held);
+    {
+      constraints = node_constraints(mesh, normals, std::vector<bool>(mesh.faces.size(), false));
+      moves       = directions(mesh, g, constraints, held);
+    }
 
     if (moves.area < 1e-3 * surface_area(mesh))
       return {};
@@ -170,6 +168,6 @@ namespace retroforge
       if (step == 0. || !(std::abs(missing) < before))
         break; // rounding, or no room
     }
-    return {std::abs(distance), std::move(moves.u)};
+    return {distance, missing, std::move(moves.u), std::move(constraints)};
   }
 } // namespace retroforge

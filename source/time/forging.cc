@@ -93,7 +93,8 @@ namespace retroforge
     }
   } // namespace
 
-  void Forging::change_mesh(const RemeshRecord &remesh, ForgingState &state) const
+  void
+  Forging::change_mesh(const Process<double> &process, const RemeshRecord &remesh, ForgingState &state) const
   {
     state.removed_volume += remesh.removed_volume;
     const TransferOperator          &J           = remesh.transfer;
@@ -107,7 +108,11 @@ namespace retroforge
       return interpolated(
         state.epoch->scene.discretization, J.apply(V), J.apply(W.P.complete(*old.pressure_nodes())));
     };
-    auto workpiece = retroforge::change_mesh(before->scene.mesh, remesh, state.workpiece);
+    auto workpiece = retroforge::change_mesh(before->scene.mesh,
+                                             remesh,
+                                             state.workpiece,
+                                             model_.dies,
+                                             process.at_stroke(state.stroke, state.operation).dies);
     state.left_behind.push_back(without_positions(std::exchange(state.workpiece, std::move(workpiece))));
     state.epoch  = std::make_shared<MeshEpoch>(remesh.mesh, model_, timings_);
     state.next.W = transferred(state.next.W);
@@ -152,8 +157,7 @@ namespace retroforge
                                      error_sizes(process, state),
                                      repairable,
                                      timings_);
-    change_mesh(*record.remesh, state);
-    state.workpiece.X = record.remesh->mesh.X; // J X + c to the last bit
+    change_mesh(process, *record.remesh, state);
   }
 
   void Forging::finish_increment(const Process<double> &process,
@@ -360,8 +364,7 @@ namespace retroforge
         change_numerics({}, state);
       if (record.remesh)
       {
-        change_mesh(*record.remesh, state);
-        state.workpiece.X = record.remesh->mesh.X;
+        change_mesh(process, *record.remesh, state);
       }
       finish_increment(process,
                        record,
@@ -383,7 +386,7 @@ namespace retroforge
       record.newton = record.krylov = record.linear_solves = 0;
       enter(record.operation, state);
       if (record.remesh)
-        change_mesh(*record.remesh, state);
+        change_mesh(process, *record.remesh, state);
       const InitialGuess    guess = state.epoch->increment.mechanics.recorded_guess(record);
       const SolvedIncrement solved =
         state.epoch->increment.mechanics.forward(process, state.workpiece, true, guess, record);

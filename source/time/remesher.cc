@@ -276,16 +276,19 @@ namespace retroforge
   PushOut Remesher::push_out(const DieStates &states) const
   {
     return [this, &states](const Vec3 &x) {
-      Vec3 moved = x;
+      std::vector<PushStep> steps;
       for (unsigned int d = 0; d < dies_.size(); ++d)
-        if (const DieFeature feature = dies_[d].closest(moved, states[d].displacement, 0.);
+      {
+        const Vec3 &at = steps.empty() ? x : steps.back().x;
+        if (const DieFeature feature = dies_[d].closest(at, states[d].displacement, 0.);
             feature.found() && states[d].in_press != 0)
         {
-          const auto projection = dies_[d].project(moved, states[d].displacement, feature);
+          const auto projection = dies_[d].project(at, states[d].displacement, feature);
           if (projection.delta < 0. && dies_[d].surface())
-            moved += projection.delta * projection.n;
+            steps.push_back({d, feature, at + projection.delta * projection.n});
         }
-      return moved;
+      }
+      return steps;
     };
   }
 
@@ -313,12 +316,41 @@ namespace retroforge
     }
   } // namespace
 
+  namespace
+  {
+    /// Nodes that were made inside are where the mesh around takes them.
+    std::vector<TapeWriter::Slot>
+    nodes_of_rebuilt(const RebuiltMesh &from, const RebuiltMesh &rebuilt, TapeWriter &tape)
+    {
+      const TransferOperator J =
+        make_transfer(from.mesh, from.mesh.X, rebuilt.mesh, rebuilt.old_node, Interpolation::linear);
+      std::vector<TapeWriter::Slot> nodes;
+      for (NodeIndex k = 0; k < rebuilt.mesh.n_nodes(); ++k)
+        if (rebuilt.old_node[k] != invalid_index)
+          nodes.push_back(tape.node(rebuilt.old_node[k]));
+        else
+        {
+          std::vector<unsigned int> arguments;
+          std::vector<double>       numbers;
+          for (unsigned int i = J.begin[k]; i < J.begin[k + 1]; ++i)
+          {
+            arguments.push_back(tape.node(J.node[i]));
+            numbers.push_back(J.weight[i]);
+          }
+          numbers.insert(numbers.end(), J.offset[k].begin_raw(), J.offset[k].end_raw());
+          nodes.push_back(tape.add(PlacingRule::sum, arguments, numbers));
+        }
+      return nodes;
+    }
+  } // namespace
+
   RemeshedMesh Remesher::make(const TetMesh              &mesh,
                               const NodalVectors<double> &X,
                               const SizeField            &size,
                               const DieStates            &states,
                               const double                repairable,
-                              double                     &removed_volume) const
+                              double                     &removed_volume,
+                              TapeWriter                 &tape) const
   {
     const PushOut    push_out = this->push_out(states);
     const TouchesDie touches  = this->touches(states);
@@ -328,6 +360,7 @@ namespace retroforge
     start.old_node.resize(mesh.n_nodes());
     std::iota(start.old_node.begin(), start.old_node.end(), 0);
     const auto use = [&](RepairedMesh &&made) {
+      tape.place(tape.nodes(made.mesh.old_node));
       compose(start.old_node, made.mesh.old_node);
       start = std::move(made.mesh);
       removed_volume += made.removed;
@@ -342,11 +375,12 @@ namespace retroforge
           minimum_quality(start.mesh.cells, start.mesh.X) <= 0.)
       {
         RebuiltMesh rebuilt = rebuild_inside(start.mesh, start.mesh.X, size, "Remeshing");
+        tape.place(nodes_of_rebuilt(start, rebuilt, tape));
         compose(start.old_node, rebuilt.old_node);
         start = std::move(rebuilt);
       }
       RemeshedMesh local =
-        remesh_locally(start.mesh, start.mesh.X, size, parameters_.local, push_out, touches, before);
+        remesh_locally(start.mesh, start.mesh.X, size, parameters_.local, push_out, touches, before, &tape);
       compose(start.old_node, local.old_node);
       if (i == n_tries)
         return local;
@@ -359,6 +393,28 @@ namespace retroforge
     }
   }
 
+  namespace
+  {
+    void broadcast(PositionTape &tape, const MPI_Comm comm)
+    {
+      const auto send = [comm](auto &list) { list = dealii::Utilities::MPI::broadcast(comm, list, 0); };
+      NodalVectors<double> planes;
+      for (const Plane &plane : tape.planes)
+        planes.insert(planes.end(), {plane.point, plane.normal});
+      send(tape.n_inputs);
+      send(tape.rules);
+      send(tape.argument_begin);
+      send(tape.number_begin);
+      send(tape.arguments);
+      send(tape.numbers);
+      send(planes);
+      send(tape.results);
+      tape.planes.clear();
+      for (std::size_t i = 0; i < planes.size(); i += 2)
+        tape.planes.push_back({planes[i], planes[i + 1]});
+    }
+  } // namespace
+
   std::shared_ptr<const RemeshRecord> Remesher::remesh(const TetMesh                     &mesh,
                                                        const NodalVectors<double>        &X,
                                                        const DieStates                   &states,
@@ -368,28 +424,27 @@ namespace retroforge
   {
     auto                   record = std::make_shared<RemeshRecord>();
     std::vector<NodeIndex> old_node;
-    NodalVectors<double>   spread;
     const auto             make_numbered = [&]() {
       const NodalVectors<double> rounded = on_grid(X);
       const SizeField            size =
         size_field(states, errors ? std::make_shared<ErrorSizes>(*errors, error_size_bounds()) : nullptr);
-      RemeshedMesh made = make(mesh, rounded, size, states, repairable, record->removed_volume);
-      for (NodeIndex k = 0; k < made.mesh.n_nodes(); ++k)
-        if (const NodeIndex old = made.old_node[k]; old != invalid_index)
-          made.mesh.X[k] += X[old] - rounded[old];
-      check_mesh(made.mesh, "Remeshing");
+      TapeWriter   tape(rounded);
+      RemeshedMesh made = make(mesh, rounded, size, states, repairable, record->removed_volume, tape);
       const std::vector<NodeIndex> number = renumber(made.mesh);
-      old_node.resize(number.size());
+      std::vector<NodeIndex>       before(number.size());
       for (NodeIndex k = 0; k < number.size(); ++k)
-        old_node[number[k]] = made.old_node[k];
-      spread.resize(made.spread.size());
-      for (NodeIndex k = 0; k < spread.size(); ++k)
-        spread[number[k]] = made.spread[k];
+        before[number[k]] = k;
+      for (const NodeIndex k : before)
+        old_node.push_back(made.old_node[k]);
+      record->positions = tape.tape(before);
+      // The same where nothing is rounded.
+      made.mesh.X = record->positions.positions<double>({mesh, made.mesh, dies_, states}, X);
+      check_mesh(made.mesh, "Remeshing");
       return std::move(made.mesh);
     };
     record->mesh = make_on_root("Remeshing", make_numbered, comm_, &old_node);
     MPI_Bcast(&record->removed_volume, 1, MPI_DOUBLE, 0, comm_);
-    record->spread    = dealii::Utilities::MPI::broadcast(comm_, spread, 0);
+    broadcast(record->positions, comm_);
     record->X_before  = X;
     const auto timing = timings.scope("transfer");
     record->transfer  = make_transfer(mesh, X, record->mesh, old_node);

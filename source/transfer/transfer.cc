@@ -165,17 +165,6 @@ namespace retroforge
     return transferred;
   }
 
-  template <typename Number>
-  NodalVectors<Number> TransferOperator::positions(const NodalVectors<Number> &X) const
-  {
-    AssertDimension(offset.size(), n_new());
-    NodalVectors<Number> moved = apply(X);
-    for (unsigned int k = 0; k < n_new(); ++k)
-      for (unsigned int d = 0; d < 3; ++d)
-        moved[k][d] += offset[k][d];
-    return moved;
-  }
-
   template <typename Value>
   std::vector<Value> TransferOperator::apply_transpose(const std::vector<Value> &q_bar) const
   {
@@ -204,8 +193,6 @@ namespace retroforge
   template std::vector<Dual>    TransferOperator::apply(const std::vector<Dual> &) const;
   template NodalVectors<double> TransferOperator::apply(const NodalVectors<double> &) const;
   template NodalVectors<Dual>   TransferOperator::apply(const NodalVectors<Dual> &) const;
-  template NodalVectors<double> TransferOperator::positions(const NodalVectors<double> &) const;
-  template NodalVectors<Dual>   TransferOperator::positions(const NodalVectors<Dual> &) const;
   template std::vector<double>  TransferOperator::apply_transpose(const std::vector<double> &) const;
   template NodalVectors<double> TransferOperator::apply_transpose(const NodalVectors<double> &) const;
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/contact/contact_kinematics.h>
+#include <retroforge/remeshing/position_tape.h>
 #include <retroforge/transfer/transfer.h>
 
 #include <memory>
@@ -30,9 +31,7 @@ namespace retroforge
     NodalVectors<double> X_before; ///< positions on the old mesh [mm]
     TetMesh              mesh;     ///< the new one; its X are the positions after
     TransferOperator     transfer;
-    /// Directions u in which the new nodes move together where the volume would not be kept otherwise: what
-    /// surface the correction of the volume may move. Empty where it can move none.
-    NodalVectors<double> spread         = {};
+    PositionTape         positions;           ///< how the new ones follow from the old ones and the dies
     double               removed_volume = 0.; ///< metal thinner than an element taken away [mm^3]
   };
 

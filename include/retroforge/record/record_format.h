@@ -45,7 +45,12 @@
 ///         attribute: repaired, volume of metal thinner than an element taken away [mm^3]
 ///         begin               [n_nodes + 1]           uint32        rows of J,
 ///         node weight         [n_entries]             uint32, double
-///         spread              [n_nodes or 0][3]       double        directions in which the volume is corrected
+///         positions           how X follow from X_before and the dies (position_tape.h), attribute: inputs
+///           rules             [n_operations]          uint8
+///           argument_begin number_begin  [n_operations + 1]  uint32
+///           arguments numbers [n]                     uint32, double
+///           results           [n_nodes]               uint32
+///           planes            [n_planes][6]           double        point, normal
 /// A finished file has at its root the attribute n_increments.
 namespace retroforge
 {

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/remeshing/placement.h>
 #include <retroforge/remeshing/surface_features.h>
 
 #include <array>
@@ -37,18 +38,11 @@ namespace retroforge
     std::vector<Ridge>        added_ridges;
     NodeIndex                 placed_node = invalid_index;
     Vec3                      position;
+    Placement                 placement; ///< how the position was found
     double                    quality_before = 1;
     double                    quality_after  = 1;
 
     double gain() const { return quality_after - quality_before; }
-  };
-
-  enum class NodeKind
-  {
-    interior,
-    surface, ///< inside one region
-    ridge,   ///< on one curve
-    corner
   };
 
   /// A tetrahedral mesh whose connectivity can change. Cells and faces get a new index whenever they change,
@@ -113,6 +107,9 @@ namespace retroforge
   /// moved come first, in their old order; `old_node` names them, and is invalid_index for the others.
   TetMesh
   compacted(const EditableMesh &edited, const SurfaceFeatures &features, std::vector<NodeIndex> &old_node);
+
+  /// Returns the nodes of the edited mesh in the order in which compacted() numbers them.
+  std::vector<NodeIndex> order_of_compacted(const EditableMesh &edited);
 
   /// Returns whether a list of nodes contains a node.
   template <std::size_t n>

@@ -5,6 +5,7 @@
 #include <retroforge/mesh/tet_mesh.h>
 #include <retroforge/remeshing/remeshing_parameters.h>
 #include <retroforge/remeshing/remeshing_report.h>
+#include <retroforge/remeshing/tape_writer.h>
 
 #include <optional>
 #include <vector>
@@ -21,8 +22,6 @@ namespace retroforge
     /// Displacement of each kept node by the volume correction; zero for those that kept their position bit
     /// for bit.
     NodalVectors<double> correction;
-    /// Directions in which nodes may move for the sake of the volume (VolumeCorrection::directions).
-    NodalVectors<double> spread;
     RemeshingReport      report;
   };
 
@@ -37,6 +36,7 @@ namespace retroforge
   /// @param push_out  keeps new surface nodes out of the dies; may be empty
   /// @param touches   nodes the volume correction leaves where they are; may be empty
   /// @param wanted_volume  volume that the correction restores [mm^3]; by default that of the mesh
+  /// @param tape      on which to write how the new positions follow from X; its nodes are those of the mesh
   /// Throws Error when a cell has no positive volume: then the mesh must be rebuilt from its surface.
   RemeshedMesh remesh_locally(const TetMesh              &mesh,
                               const NodalVectors<double> &X,
@@ -44,5 +44,6 @@ namespace retroforge
                               const RemeshingParameters  &parameters,
                               const PushOut              &push_out      = {},
                               const TouchesDie           &touches       = {},
-                              std::optional<double>       wanted_volume = {});
+                              std::optional<double>       wanted_volume = {},
+                              TapeWriter                 *tape          = nullptr);
 } // namespace retroforge

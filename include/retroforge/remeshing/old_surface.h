@@ -4,6 +4,7 @@
 
 #include <retroforge/remeshing/remeshing_parameters.h>
 #include <retroforge/remeshing/surface_features.h>
+#include <retroforge/remeshing/tape_writer.h>
 #include <retroforge/remeshing/triangle_tree.h>
 
 #include <array>
@@ -23,6 +24,7 @@ namespace retroforge
   class OldSurface
   {
   public:
+    /// Keeps references to the mesh and its features.
     OldSurface(const TetMesh              &mesh,
                const NodalVectors<double> &X,
                const SurfaceFeatures      &features,
@@ -31,6 +33,14 @@ namespace retroforge
     /// Puts a point on a region, or on a ridge curve.
     Vec3 on_region(unsigned int region, const Vec3 &x) const;
     Vec3 on_curve(unsigned int curve, const Vec3 &x) const;
+
+    /// Write the same for a vector of a tape. What surface there was is where the nodes were when the pass began.
+    TapeWriter::Slot write_on_region(unsigned int region, TapeWriter::Slot x, TapeWriter &tape) const;
+    TapeWriter::Slot write_on_curve(unsigned int curve, TapeWriter::Slot x, TapeWriter &tape) const;
+
+    /// Writes how a point is put on planes.
+    static TapeWriter::Slot
+    write_on_planes(TapeWriter::Slot x, const std::vector<Plane> &planes, TapeWriter &tape);
 
     /// Returns the depth of a point inside a die; 0 outside.
     double depth_in_dies(const Vec3 &x) const { return push_out_ ? (push_out_(x) - x).norm() : 0.; }
@@ -46,21 +56,39 @@ namespace retroforge
       std::vector<std::array<Vec3, 3>> corners;
       std::vector<std::array<Vec3, 3>> normals; ///< at the corners of each triangle
       std::vector<Plane>               planes;
+      std::vector<unsigned int>        faces; ///< the triangles' numbers in the mesh
     };
     struct Line
     {
       NodalVectors<double> points;
       NodalVectors<double> tangents;
       std::vector<Plane>   planes;
+      bool                 is_closed;
+    };
+    /// Where a point is put.
+    struct LinePoint
+    {
+      std::size_t segment;
+      double      t; ///< on it, 0 to 1
+      Vec3        x;
     };
 
     void make_regions(const TetMesh &, const NodalVectors<double> &, const SurfaceFeatures &);
     void make_lines(const TetMesh &, const NodalVectors<double> &, const SurfaceFeatures &);
     Vec3 finish(const Vec3 &x, const std::vector<Plane> &planes) const;
 
-    std::vector<Region> regions_;
-    std::vector<Line>   lines_;
-    PushOut             push_out_;
+    LinePoint closest_on_line(const Line &line, const Vec3 &x) const;
+    TapeWriter::Slot
+    write_finish(TapeWriter::Slot x, const std::vector<Plane> &planes, TapeWriter &tape) const;
+    TapeWriter::Slot write_normal(unsigned int region, NodeIndex node, TapeWriter &tape) const;
+    TapeWriter::Slot write_tangent(unsigned int curve, std::size_t i, TapeWriter &tape) const;
+
+    const TetMesh                         &mesh_;
+    const SurfaceFeatures                 &features_;
+    std::vector<std::vector<unsigned int>> on_planes_; ///< symmetry planes at each node, by their patches
+    std::vector<Region>                    regions_;
+    std::vector<Line>                      lines_;
+    PushOut                                push_out_;
   };
 
   /// The point next to x on up to two planes that are not parallel, to rounding. More planes, or parallel

@@ -4,6 +4,7 @@
 
 #include <retroforge/remeshing/editable_mesh.h>
 #include <retroforge/remeshing/old_surface.h>
+#include <retroforge/remeshing/tape_writer.h>
 
 #include <optional>
 
@@ -17,6 +18,10 @@ namespace retroforge
     const OldSurface          &old_surface;
     const SizeField           &size;
     const RemeshingParameters &parameters;
+    TapeWriter                *tape = nullptr; ///< that tells where positions come from; none: nobody asks
+
+    /// Changes the mesh, and writes how a node got where it is.
+    void apply(const CavityChange &change) const;
 
     /// Returns the length of an edge over the wanted one at its middle.
     double relative_length(NodeIndex a, NodeIndex b) const;
@@ -27,6 +32,9 @@ namespace retroforge
     bool is_longer(NodeIndex a, NodeIndex b, double limit) const;
     bool is_shorter(NodeIndex a, NodeIndex b, double limit) const;
   };
+
+  /// Writes how a position is found on the mesh as it is, before the change.
+  TapeWriter::Slot write(const Placement &placement, const RemeshingContext &context, TapeWriter &tape);
 
   /// Positions of three nodes.
   std::array<Vec3, 3> corners(const std::array<NodeIndex, 3> &face, const EditableMesh &mesh);

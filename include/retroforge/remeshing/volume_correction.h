@@ -5,13 +5,32 @@
 #include <retroforge/mesh/tet_mesh.h>
 #include <retroforge/remeshing/remeshing_parameters.h>
 
+#include <array>
+
 namespace retroforge
 {
+  /// What a node must not leave: symmetry planes and flat pieces of the surface.
+  struct NodeConstraint
+  {
+    std::array<Vec3, 3>         directions; ///< orthonormal
+    std::array<Vec3, 3>         normals;    ///< that span the same
+    std::array<unsigned int, 3> faces;      ///< whose normals these are; invalid_index: a symmetry plane's
+    unsigned int                n = 0;
+
+    /// Returns the part of a vector along which the node may move.
+    Vec3 project(Vec3 v) const;
+
+    /// Unless it is nearly the same as what there is.
+    void add(const Vec3 &normal, unsigned int face);
+  };
+
   /// How a volume was corrected.
   struct VolumeCorrection
   {
-    double               distance = 0.; ///< |d|, the farthest that a node moved [mm]
-    NodalVectors<double> directions;    ///< u; empty where no surface can move
+    double                      distance = 0.; ///< d [mm]; no node moved farther
+    double                      rest     = 0.; ///< of the wanted volume, what is still missing [mm^3]
+    NodalVectors<double>        directions;    ///< u; empty where no surface can move
+    std::vector<NodeConstraint> constraints;   ///< of each node
   };
 
   /// Returns dV/dX_k of each node: a third of the area vectors of the faces at it [mm^2].

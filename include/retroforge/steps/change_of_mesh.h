@@ -7,34 +7,18 @@
 
 /// @file
 /// The step that takes the workpiece from one mesh to the next. What happens to a member of the state follows
-/// from its kind: positions X' = J X + c + d u, one number per node q' = J q, one per cell transfer_cells().
-///
-/// The offset c is a constant. With it alone a change of X would change the volume of the new mesh by another
-/// amount than that of the old one, by some per mille, and most derivatives with it, since the volume is what
-/// energy and filling depend on most. So the distance d by which the free surface moves along u
-/// (RemeshRecord::spread), as remeshing itself corrects the volume, is such that
-///   V'(J X + c + d u) - V(X)
-/// stays what it was when the mesh was made, where d = 0.
+/// from its kind: positions by the tape of what remeshing did to them (PositionTape), one number per node q' = J q, one per cell transfer_cells().
 namespace retroforge
 {
-  /// Returns the positions of the new nodes [mm].
-  template <typename Number>
-  NodalVectors<Number>
-  positions_after(const TetMesh &old_mesh, const RemeshRecord &remesh, const NodalVectors<Number> &X);
-
-  /// Returns the derivatives in X of a scalar from those in the new positions, where d = 0.
-  NodalVectors<double> reverse_positions_after(const TetMesh              &old_mesh,
-                                               const RemeshRecord         &remesh,
-                                               const NodalVectors<double> &X,
-                                               const NodalVectors<double> &positions_bar);
-
   /// Takes a member of the state to the new mesh, each kind by its overload; on dual numbers its tangent.
   template <typename Number>
   struct MemberTransfer
   {
-    const TetMesh              &old_mesh;
-    const RemeshRecord         &remesh;
-    const NodalVectors<Number> &X; ///< on the old mesh
+    const TetMesh                       &old_mesh;
+    const RemeshRecord                  &remesh;
+    const NodalVectors<Number>          &X; ///< on the old mesh
+    const std::vector<Die>              &dies;
+    const std::vector<DieState<Number>> &states;
 
     void operator()(const NodalVectors<Number> &positions, NodalVectors<Number> &to) const;
     void operator()(const NodeField<Number> &q, NodeField<Number> &to) const;
@@ -45,10 +29,13 @@ namespace retroforge
   /// before cells, which add to them by way of the volumes that they were weighed with.
   struct ReverseMemberTransfer
   {
-    const TetMesh              &old_mesh;
-    const RemeshRecord         &remesh;
-    const NodalVectors<double> &X;     ///< on the old mesh
-    NodalVectors<double>       &X_bar; ///< there
+    const TetMesh                       &old_mesh;
+    const RemeshRecord                  &remesh;
+    const NodalVectors<double>          &X; ///< on the old mesh
+    const std::vector<Die>              &dies;
+    const std::vector<DieState<double>> &states;
+    NodalVectors<double>                &X_bar;    ///< on the old mesh
+    std::vector<DieState<double>>       &dies_bar; ///< added to
 
     /// @param q      the member on the old mesh
     /// @param q_bar  its costate on the new mesh
@@ -61,29 +48,40 @@ namespace retroforge
 
   /// Returns the state on the new mesh; on dual numbers its tangent.
   template <typename Number>
-  WorkpieceState<3, Number>
-  change_mesh(const TetMesh &old_mesh, const RemeshRecord &remesh, const WorkpieceState<3, Number> &before)
+  WorkpieceState<3, Number> change_mesh(const TetMesh                       &old_mesh,
+                                        const RemeshRecord                  &remesh,
+                                        const WorkpieceState<3, Number>     &before,
+                                        const std::vector<Die>              &dies,
+                                        const std::vector<DieState<Number>> &states)
   {
     AssertDimension(remesh.transfer.n_old, old_mesh.n_nodes());
     AssertDimension(remesh.transfer.n_new(), remesh.mesh.n_nodes());
     AssertDimension(before.X.size(), old_mesh.n_nodes());
     WorkpieceState<3, Number> after;
-    internal::for_each_member(MemberTransfer<Number>{old_mesh, remesh, before.X}, before, after);
+    internal::for_each_member(
+      MemberTransfer<Number>{old_mesh, remesh, before.X, dies, states}, before, after);
     return after;
   }
 
   /// Returns the costate on the old mesh of one on the new mesh: the reverse of change_mesh().
-  /// @param before  the state on the old mesh
-  inline WorkpieceState<3, double> reverse_change_mesh(const TetMesh                   &old_mesh,
-                                                       const RemeshRecord              &remesh,
-                                                       const WorkpieceState<3, double> &before,
-                                                       const WorkpieceState<3, double> &costate)
+  /// @param before    the state on the old mesh
+  /// @param dies_bar  gets the derivatives in the dies added
+  inline WorkpieceState<3, double> reverse_change_mesh(const TetMesh                       &old_mesh,
+                                                       const RemeshRecord                  &remesh,
+                                                       const WorkpieceState<3, double>     &before,
+                                                       const std::vector<Die>              &dies,
+                                                       const std::vector<DieState<double>> &states,
+                                                       const WorkpieceState<3, double>     &costate,
+                                                       std::vector<DieState<double>>       &dies_bar)
   {
     AssertDimension(before.X.size(), old_mesh.n_nodes());
     AssertDimension(costate.X.size(), remesh.mesh.n_nodes());
     WorkpieceState<3, double> there;
     internal::for_each_member(
-      ReverseMemberTransfer{old_mesh, remesh, before.X, there.X}, before, costate, there);
+      ReverseMemberTransfer{old_mesh, remesh, before.X, dies, states, there.X, dies_bar},
+      before,
+      costate,
+      there);
     return there;
   }
 } // namespace retroforge

@@ -9,7 +9,7 @@
 
 namespace retroforge
 {
-  /// Positions of the nodes, in the geometry space [mm]. At a change of mesh they follow  X' = J X + c.
+  /// Positions of the nodes, in the geometry space [mm]. At a change of mesh they follow a PositionTape.
   template <int dim, typename Number>
   using NodalPositions = std::vector<dealii::Tensor<1, dim, Number>>;
 

@@ -61,7 +61,7 @@ namespace retroforge
                 const Observer        &observer = {}) const;
 
     /// Takes the state to another mesh as recorded: the workpiece by the step steps/change_of_mesh.h.
-    void change_mesh(const RemeshRecord &remesh, ForgingState &state) const;
+    void change_mesh(const Process<double> &process, const RemeshRecord &remesh, ForgingState &state) const;
 
   private:
     /// Takes the state to the start of an operation, unless it is in it: other dies, which have not met the

@@ -134,7 +134,8 @@ namespace retroforge
                       const SizeField            &size,
                       const DieStates            &states,
                       double                      repairable,
-                      double                     &removed_volume) const;
+                      double                     &removed_volume,
+                      TapeWriter                 &tape) const;
     PushOut      push_out(const DieStates &states) const;
     TouchesDie   touches(const DieStates &states) const;
 

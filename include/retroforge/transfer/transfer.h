@@ -10,9 +10,8 @@ namespace retroforge
 {
   /// Linear map J of nodal values from an old to a new mesh,  q' = J q:  sparse, rows that sum to one.
   ///
-  /// The positions follow the same map,  X' = J X + c:  J makes the new mesh a differentiable function of
-  /// the old one, and the offset c, by which projection, smoothing and the correction of volume moved nodes
-  /// off the old mesh, is a recorded constant.  Its reverse is  X_bar = J^T X'_bar.
+  /// Its reverse is  q_bar = J^T q'_bar.  Positions follow what remeshing did to them instead (PositionTape); the
+  /// offset c = X' - J X tells by how much that is off the interpolation.
   /// @cite Laroussi2003, Eq. (57), (89), (96)
   struct TransferOperator
   {
@@ -29,10 +28,6 @@ namespace retroforge
     /// @tparam Value  double, Dual, or a vector of them
     template <typename Value>
     std::vector<Value> apply(const std::vector<Value> &q) const;
-
-    /// J X + c.
-    template <typename Number>
-    NodalVectors<Number> positions(const NodalVectors<Number> &X) const;
 
     /// J^T q'_bar: each new node gives its value to the old nodes of its row. Throws Error when q'_bar has
     /// not one value per new node.

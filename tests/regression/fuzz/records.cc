@@ -94,8 +94,11 @@ void require_sane(const IncrementRecord &record, unsigned int &n)
     require_sound_mesh(remesh.mesh);
     require(remesh.X_before.size() == n && remesh.transfer.n_old == n, "a remeshing is of another mesh");
     require(remesh.transfer.n_new() == remesh.mesh.n_nodes(), "a transfer is to another mesh");
-    require(finite(remesh.X_before) && finite(remesh.transfer.weight) && finite(remesh.transfer.offset),
+    require(finite(remesh.X_before) && finite(remesh.transfer.weight) && finite(remesh.transfer.offset) &&
+              finite(remesh.positions.numbers),
             "a transfer is not finite");
+    require(remesh.positions.defect(remesh.X_before.size(), remesh.mesh.n_nodes(), header.die_facets).empty(),
+            "a tape of positions is damaged");
     n = remesh.mesh.n_nodes();
   }
   require(!record.solves.empty(), "there is no solve");

@@ -151,11 +151,27 @@ namespace retroforge
       J.begin.push_back(J.node.size());
     }
     J.set_offset(remesh->X_before, remesh->mesh.X);
+    PositionTape &tape = remesh->positions;
+    const auto    add  = [&](const PlacingRule                rule,
+                         const std::vector<unsigned int> &arguments,
+                         const std::vector<double>       &numbers) {
+      tape.rules.push_back(static_cast<unsigned char>(rule));
+      tape.arguments.insert(tape.arguments.end(), arguments.begin(), arguments.end());
+      tape.numbers.insert(tape.numbers.end(), numbers.begin(), numbers.end());
+      tape.argument_begin.push_back(tape.arguments.size());
+      tape.number_begin.push_back(tape.numbers.size());
+    };
+    tape.n_inputs = header.X_0.size();
+    tape.planes   = {{Vec3({0.1, 0.2, 0.3}), Vec3({0., 0., 1.})}};
+    for (NodeIndex k = 0; k < other.mesh.n_nodes(); ++k)
+    {
+      add(PlacingRule::sum, {k, k + 1}, {0.3, 0.7, -1. / (k + 3.), 0.1 * k, 0.7});
+      tape.results.push_back(tape.n_inputs + k);
+    }
+    add(PlacingRule::snap, {tape.n_inputs, 0}, {});
+    add(PlacingRule::push_out, {tape.n_inputs, 0, 0, 0}, {});
     IncrementRecord increment = sample_increment(other, i);
-    if (i % 2 == 0)
-      for (NodeIndex k = 0; k < remesh->mesh.n_nodes(); ++k)
-        remesh->spread.push_back(Vec3({0.1 * k, -1. / (k + 3.), 0.7}));
-    increment.remesh = remesh;
+    increment.remesh          = remesh;
     return increment;
   }
 
@@ -172,12 +188,23 @@ namespace retroforge
 
   bool same(const TetMesh &a, const TetMesh &b);
 
+  inline bool same(const PositionTape &a, const PositionTape &b)
+  {
+    bool equal = a.n_inputs == b.n_inputs && same_bits(a.rules, b.rules) &&
+                 same_bits(a.argument_begin, b.argument_begin) && same_bits(a.number_begin, b.number_begin) &&
+                 same_bits(a.arguments, b.arguments) && same_bits(a.numbers, b.numbers) &&
+                 same_bits(a.results, b.results) && a.planes.size() == b.planes.size();
+    for (std::size_t p = 0; equal && p < a.planes.size(); ++p)
+      equal = a.planes[p].point == b.planes[p].point && a.planes[p].normal == b.planes[p].normal;
+    return equal;
+  }
+
   inline bool same(const RemeshRecord &a, const RemeshRecord &b)
   {
     return same_bits(a.X_before, b.X_before) && same(a.mesh, b.mesh) &&
            a.transfer.n_old == b.transfer.n_old && same_bits(a.transfer.begin, b.transfer.begin) &&
            same_bits(a.transfer.node, b.transfer.node) && same_bits(a.transfer.weight, b.transfer.weight) &&
-           same_bits(a.transfer.offset, b.transfer.offset) && same_bits(a.spread, b.spread);
+           same_bits(a.transfer.offset, b.transfer.offset) && same(a.positions, b.positions);
   }
 
   inline bool same(const ContactNumerics &a, const ContactNumerics &b)
