@@ -12,6 +12,7 @@
 #include <retroforge/mesh/renumber.h>
 #include <retroforge/mesh/self_crossing.h>
 #include <retroforge/remeshing/rebuild.h>
+#include <retroforge/remeshing/size_octree.h>
 #include <retroforge/remeshing/slivers.h>
 #include <retroforge/remeshing/trigger.h>
 #include <retroforge/remeshing/uncross.h>
@@ -43,14 +44,16 @@ namespace retroforge
                       element_size,
                       "Wanted length of the edges; 0 for that of the billet. Units: mm.",
                       Double(0.));
-    add_enum<Sizes>(prm,
-                    "sizes",
-                    sizes,
-                    {{"uniform", Sizes::uniform}, {"dies", Sizes::dies}, {"error", Sizes::error}},
-                    "dies: edges are shorter near curved dies, as their curvature and sharp edges ask for; "
-                    "uniform: the same length everywhere; error: as many elements as a uniform mesh has, "
-                    "where by the jumps of the strain rate they lessen the error of the power most, and near "
-                    "curved dies as with dies. Units: none.");
+    add_enum<Sizes>(
+      prm,
+      "sizes",
+      sizes,
+      {{"uniform", Sizes::uniform}, {"dies", Sizes::dies}, {"error", Sizes::error}},
+      "dies: edges are shorter near curved dies, as their curvature and sharp edges ask for, and "
+      "in narrow gaps (gap elements); "
+      "uniform: the same length everywhere; error: as many elements as a uniform mesh has, "
+      "where by the jumps of the strain rate they lessen the error of the power most, and near "
+      "curved dies as with dies. Units: none.");
     prm.add_parameter(
       "chord error",
       chord_error,
@@ -71,6 +74,14 @@ namespace retroforge
       growth,
       "Most by which the wanted length grows per distance from where it is small. Units: none.",
       Double(1e-3));
+    prm.add_parameter("gap elements",
+                      gap_elements,
+                      "Elements wanted over the thickness of a gap between two dies, or between a die and a "
+                      "plane of symmetry "
+                      "that it faces, where that is thinner than so many elements: 2.5, for instance. "
+                      "Not with uniform "
+                      "sizes. 0: gaps do not count. Units: none.",
+                      Double(0., 20.));
     prm.add_parameter(
       "die fit",
       fit,
@@ -134,6 +145,15 @@ namespace retroforge
       return edges;
     }
 
+    std::vector<Plane> planes_of(const std::vector<Patch> &patches)
+    {
+      std::vector<Plane> planes;
+      for (const Patch &patch : patches)
+        if (patch.symmetry)
+          planes.push_back(*patch.symmetry);
+      return planes;
+    }
+
     /// Positions rounded to about 1e-10 of the workpiece's size. Decisions must not hang on rounding, which
     /// is another one on another number of ranks: edges of equal length would be taken in another order.
     NodalVectors<double> on_grid(const NodalVectors<double> &X)
@@ -153,11 +173,19 @@ namespace retroforge
                      const std::vector<Die>   &dies,
                      const std::vector<Patch> &patches,
                      MPI_Comm                  comm)
-      : parameters_(parameters), element_size_(element_size), dies_(dies), comm_(comm), near_die_(dies.size())
+      : parameters_(parameters)
+      , element_size_(element_size)
+      , dies_(dies)
+      , comm_(comm)
+      , near_die_(dies.size())
+      , gaps_(dies,
+              planes_of(patches),
+              parameters.sizes == RemesherParameters::Sizes::uniform ? 0. : parameters.gap_elements,
+              parameters.smallest_size * element_size)
   {
     if (parameters_.sizes == RemesherParameters::Sizes::uniform)
       return;
-    const double largest = follows_errors() ? error_size_bounds().largest : element_size;
+    const double largest = largest_size();
     const double chord_error =
       parameters_.chord_error > 0. ? parameters_.chord_error : relative_chord_error * element_size;
     for (unsigned int d = 0; d < dies.size(); ++d)
@@ -173,7 +201,7 @@ namespace retroforge
                              largest,
                              parameters_.growth,
                              refined_edges(dies[d], patches, element_size),
-                             parameters_.smallest_size * element_size);
+                             smallest_size());
       }
   }
 
@@ -197,18 +225,20 @@ namespace retroforge
   bool Remesher::too_coarse(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const
   {
     const SizeField size     = size_field(states);
-    const double    smallest = parameters_.smallest_size * element_size_;
+    const double    smallest = smallest_size();
     for (const BoundaryFace &face : mesh.faces)
       if (mesh.is_surface(face))
         for (unsigned int e = 0; e < 3; ++e)
         {
           const Vec3  &a = X[face.nodes[e]], &b = X[face.nodes[(e + 1) % 3]], middle = 0.5 * (a + b);
           const double length = (b - a).norm();
-          if (face.nodes[e] > face.nodes[(e + 1) % 3] || length < coarse * smallest ||
-              !size.below(middle, length / coarse))
+          if (face.nodes[e] > face.nodes[(e + 1) % 3] || length < coarse * smallest)
+            continue;
+          const bool in_gap = gaps_.enabled() && gaps_.narrow(middle, states, length / coarse);
+          if (!in_gap && !size.below(middle, length / coarse))
             continue;
           for (unsigned int d = 0; d < dies_.size(); ++d)
-            if (near_die_[d] && states[d].in_press != 0)
+            if ((near_die_[d] || in_gap) && states[d].in_press != 0)
               if (const DieFeature feature = dies_[d].closest(middle, states[d].displacement, 0.5 * length);
                   feature.found())
                 return true;
@@ -251,10 +281,12 @@ namespace retroforge
 
   SizeBounds Remesher::error_size_bounds() const
   {
-    return {element_size_,
-            parameters_.smallest_size * element_size_,
-            parameters_.largest_size * element_size_,
-            parameters_.growth};
+    return {element_size_, smallest_size(), parameters_.largest_size * element_size_, parameters_.growth};
+  }
+
+  double Remesher::largest_size() const
+  {
+    return follows_errors() ? error_size_bounds().largest : element_size_;
   }
 
   bool Remesher::worthwhile(const OptimalSizes &sizes, const unsigned int increments, const bool first)
@@ -270,6 +302,48 @@ namespace retroforge
         if (near_die_[d] && states[d].in_press != 0)
           size = (*near_die_[d])(x - states[d].displacement, {query.lower, std::min(size, query.upper)});
       return size;
+    };
+  }
+
+  bool
+  Remesher::has_narrow_gap(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const
+  {
+    if (!gaps_.enabled())
+      return false;
+    std::vector<bool> is_seen(mesh.n_nodes(), false);
+    for (const BoundaryFace &face : mesh.faces)
+      if (mesh.is_surface(face))
+        for (const NodeIndex k : face.nodes)
+          if (!is_seen[k])
+          {
+            is_seen[k] = true;
+            if (gaps_.narrow(X[k], states, largest_size()))
+              return true;
+          }
+    return false;
+  }
+
+  SizeField Remesher::size_field(const TetMesh                    &mesh,
+                                 const NodalVectors<double>       &X,
+                                 const DieStates                  &states,
+                                 std::shared_ptr<const ErrorSizes> errors) const
+  {
+    SizeField elsewhere = size_field(states, std::move(errors));
+    // Without a gap the field is in closed form, and nothing is made.
+    if (!has_narrow_gap(mesh, X, states))
+      return elsewhere;
+    const double             largest = largest_size();
+    std::vector<BoundingBox> cells;
+    for (const auto &cell : mesh.cells)
+      cells.emplace_back(corners(cell, X));
+    const SizeSource source = {
+      [&](const Vec3 &x) { return gaps_(x, states, largest); },
+      [&](const Vec3 &x, const double distance) { return gaps_.below(x, distance, states, largest); }};
+    const auto in_gaps = std::make_shared<const SizeOctree>(
+      cells, source, SizeOctreeLimits{smallest_size(), largest, parameters_.growth});
+    return [in_gaps, elsewhere = std::move(elsewhere)](const Vec3 &x, const SizeQuery &query) {
+      const double size = (*in_gaps)(x);
+      return size < query.lower ? size : elsewhere.at_most(x, {query.lower, std::min(size, query.upper)});
     };
   }
 
@@ -426,8 +500,8 @@ namespace retroforge
     std::vector<NodeIndex> old_node;
     const auto             make_numbered = [&]() {
       const NodalVectors<double> rounded = on_grid(X);
-      const SizeField            size =
-        size_field(states, errors ? std::make_shared<ErrorSizes>(*errors, error_size_bounds()) : nullptr);
+      const SizeField            size    = size_field(
+        mesh, rounded, states, errors ? std::make_shared<ErrorSizes>(*errors, error_size_bounds()) : nullptr);
       TapeWriter   tape(rounded);
       RemeshedMesh made = make(mesh, rounded, size, states, repairable, record->removed_volume, tape);
       const std::vector<NodeIndex> number = renumber(made.mesh);

@@ -36,6 +36,12 @@ namespace retroforge
 
     double operator()(const Vec3 &x) const { return of_(x, {}); }
 
+    /// The smaller of the wanted length at x and query.upper, as exact as the query asks.
+    double at_most(const Vec3 &x, const SizeQuery &query) const
+    {
+      return std::min(of_(x, query), query.upper);
+    }
+
     /// Returns whether the wanted length at x is smaller than `bound`.
     bool below(const Vec3 &x, const double bound) const { return of_(x, {bound, bound}) < bound; }
 

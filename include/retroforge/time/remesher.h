@@ -5,6 +5,7 @@
 #include <retroforge/core/timer.h>
 #include <retroforge/record/increment_record.h>
 #include <retroforge/remeshing/error_sizes.h>
+#include <retroforge/remeshing/gap_sizes.h>
 #include <retroforge/remeshing/local_remesher.h>
 #include <retroforge/remeshing/size_field.h>
 #include <retroforge/remeshing/uncross.h>
@@ -44,6 +45,7 @@ namespace retroforge
     double              smallest_size  = 0.2;
     double              largest_size   = 4.;
     double              growth         = 0.3;
+    double              gap_elements   = 0.; ///< over the thickness of a narrow gap; 0: gaps do not count
     double              fit            = 0.1;
     double              largest_repair = 5e-4; ///< of the workpiece's volume, over the run
     bool                first_mesh     = false;
@@ -114,7 +116,7 @@ namespace retroforge
     /// than an element.
     bool repairs(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const
     {
-      return uncross(mesh, X, size_field(states)).has_value();
+      return uncross(mesh, X, size_field(mesh, X, states)).has_value();
     }
 
     /// Returns the wanted length of edges: near a curved die by its curvature, elsewhere, and where it is
@@ -122,13 +124,23 @@ namespace retroforge
     /// @param errors  null: the element size
     SizeField size_field(const DieStates &states, std::shared_ptr<const ErrorSizes> errors = {}) const;
 
-    /// Returns whether a surface edge at a curved die is much longer than wanted there.
+    /// Returns that, or what narrow gaps between dies ask for where this is shorter. For the inside of a mesh
+    /// and close to it.
+    SizeField size_field(const TetMesh                    &mesh,
+                         const NodalVectors<double>       &X,
+                         const DieStates                  &states,
+                         std::shared_ptr<const ErrorSizes> errors = {}) const;
+
+    /// Returns whether a surface edge at a curved die, or in a narrow gap, is much longer than wanted there.
     bool too_coarse(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const;
 
     /// Returns the largest depth inside a die of the middles of surface edges whose ends touch it [mm].
     double misfit(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const;
 
   private:
+    double smallest_size() const { return parameters_.smallest_size * element_size_; }
+    double largest_size() const;
+    bool   has_narrow_gap(const TetMesh &mesh, const NodalVectors<double> &X, const DieStates &states) const;
     RemeshedMesh make(const TetMesh              &mesh,
                       const NodalVectors<double> &X,
                       const SizeField            &size,
@@ -144,5 +156,6 @@ namespace retroforge
     const std::vector<Die>                &dies_;
     MPI_Comm                               comm_;
     std::vector<std::optional<GradedSize>> near_die_; ///< of each curved die, in its first position
+    GapSizes                               gaps_;
   };
 } // namespace retroforge
