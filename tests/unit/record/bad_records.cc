@@ -83,6 +83,35 @@ void show_lost_remeshing()
   show_error("remeshing lost", []() { RecordReader(folder).check_increments(); });
 }
 
+/// Positions by operations that cannot be.
+void show_bad_tapes()
+{
+  const RecordHeader larger = sample_header(brick(3, 3, 3));
+  const auto         show   = [&](const std::string &title, const auto &change) {
+    fresh_folder(folder);
+    RecordWriter writer(folder, larger);
+    writer.write(sample_increment(larger, 0));
+    IncrementRecord remeshed = sample_remeshed(larger, 1);
+    RemeshRecord    changed  = *remeshed.remesh;
+    change(changed.positions);
+    remeshed.remesh = std::make_shared<RemeshRecord>(changed);
+    writer.write(remeshed);
+    show_error(title, read_all);
+  };
+  show("positions of another mesh", [](PositionTape &tape) { tape.results.pop_back(); });
+  show("a node that is nowhere", [](PositionTape &tape) { tape.results[0] = 1000000; });
+  show("no rule", [](PositionTape &tape) { tape.rules[3] = 200; });
+  show("a rule without its numbers", [](PositionTape &tape) {
+    tape.numbers.pop_back();
+    tape.numbers.pop_back();
+    for (unsigned int i = 1; i < 4; ++i)
+      tape.number_begin[tape.number_begin.size() - i] -= 2;
+  });
+  show("an operation of a later one", [](PositionTape &tape) { tape.arguments[0] = tape.n_inputs + 1; });
+  show("no such plane", [](PositionTape &tape) { tape.planes.clear(); });
+  show("no such facet", [](PositionTape &tape) { tape.arguments[tape.arguments.size() - 2] = 1000000; });
+}
+
 void show_bad_files()
 {
   show_error("no such folder", []() { RecordReader("no/such/folder"); });
@@ -239,6 +268,7 @@ int main()
 {
   show_bad_files();
   show_lost_remeshing();
+  show_bad_tapes();
   show_bad_headers();
   show_bad_increments();
   show_bad_writing();
