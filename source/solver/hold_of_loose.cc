@@ -17,6 +17,9 @@ namespace retroforge
   {
     /// A motion is loose where what resists it is felt at less than this part of its root mean square speed.
     constexpr double loose = 0.3;
+    /// How much more than contacts planes of symmetry count: they do not give way, however little of a motion they
+    /// see, as that of a bar about the end at which it is cut.
+    constexpr double rigid = 1e4;
     /// Cosine of the least angle between the mean normals of dies that press from both sides.
     constexpr double opposed = -0.5;
     /// What a hold gives way to the force of the press, over the press speed: what it takes of the power is this
@@ -167,7 +170,7 @@ namespace retroforge
             holding.add_two_sided(holding.speeds(x, across), areas.Sf[p] / (areas.S[p] * n_touching));
         }
       for (const Speeds &of : fixed)
-        holding.add_two_sided(of, 1. / fixed.size());
+        holding.add_two_sided(of, rigid / fixed.size());
       for (unsigned int d = 0; d < pressed.size(); ++d)
       {
         holding.add_one_sided(pressed[d]);
