@@ -114,7 +114,8 @@ namespace retroforge
     prm.add_parameter("region from",
                       from,
                       "Lower corner of the box in which folds are looked for, or shapes compared; equal "
-                      "corners: everywhere. Units: mm.");
+                      "corners: everywhere, or what lies behind the mouth of a die for its unfilled volume. "
+                      "Units: mm.");
     prm.add_parameter("region to", to, "Upper corner. Units: mm.");
   }
 

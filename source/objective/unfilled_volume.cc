@@ -90,6 +90,17 @@ namespace retroforge
     }
   } // namespace
 
+  namespace
+  {
+    /// The region as the workpiece sees it, which is in the sector: its nodes lie in the symmetry planes but for
+    /// rounding, and whether they are behind them must not be asked.
+    Region without_sector(Region region)
+    {
+      region.sector.clear();
+      return region;
+    }
+  } // namespace
+
   /// The surface where a view has it, and the region there.
   template <typename Number>
   struct UnfilledVolume::Surface
@@ -211,6 +222,7 @@ namespace retroforge
                                                         const Decisions         &decisions) const
   {
     const Surface<Number> surface(*this, view, decisions.region);
+    const Surface<Number> of_metal(*this, view, without_sector(decisions.region));
     const auto           &triangles    = die_.surface()->triangles();
     const auto           &displacement = surface.state.displacement;
     Number                cavity(0.), metal(0.), at_facets(0.);
@@ -233,10 +245,10 @@ namespace retroforge
     for (const Cell &cell : decisions.cells)
     {
       const auto x = corners_of(view, cell.cell);
-      metal += volume_of_cell(cell, x, surface.half_spaces);
+      metal += volume_of_cell(cell, x, of_metal.half_spaces);
       for (const unsigned int f : cell.facets)
         metal += shadow_in_tetrahedron(
-          x, eye_of(x), corners_of(surface.vertices, triangles[f]), surface.half_spaces);
+          x, eye_of(x), corners_of(surface.vertices, triangles[f]), of_metal.half_spaces);
     }
     for (const FacetAtDie &facet : decisions.at_die)
     {
@@ -250,7 +262,7 @@ namespace retroforge
         if (const unsigned int k = normal_at[q]; k != invalid_index)
           gaps.n[k] = projection.n;
       }
-      at_facets += surface.share(x) * volume_at_facet(x, gaps, !is_within());
+      at_facets += of_metal.share(x) * volume_at_facet(x, gaps, !is_within());
     }
     return {cavity, metal, at_facets};
   }
@@ -340,7 +352,7 @@ namespace retroforge
                                      const double             weight,
                                      FinalBar                &bar) const
   {
-    const Region         &region = decisions.region;
+    const Region          region = without_sector(decisions.region);
     const Surface<double> surface(*this, view, region);
     const auto           &triangles   = die_.surface()->triangles();
     const bool            by_vertices = bar.target.size() == surface.vertices.size();
@@ -390,7 +402,7 @@ namespace retroforge
                                       const double             weight,
                                       FinalBar                &bar) const
   {
-    const Region         &region = decisions.region;
+    const Region          region = without_sector(decisions.region);
     const Surface<double> surface(*this, view, region);
     const Die             die          = view.target ? die_.moved(*view.target) : die_;
     const Vec3           &displacement = surface.state.displacement;

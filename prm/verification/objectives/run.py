@@ -81,8 +81,6 @@ def objectives(names, target, patches, more=None):
             settings[f"Objective {name}/target"] = target
         if name == "filling":
             settings[f"Objective {name}/rounding"] = 0.05
-        if name == "unfilled volume":
-            settings[f"Objective {name}/samples"] = 16
     if "cylinder distance" in names:
         # Beside the billet's axis: of the side that is nearly a cylinder about it nothing is left but rounding.
         settings.update({"Objective cylinder distance/patches": patches, "Objective cylinder distance/axis point": "4, 3, 0"})

@@ -155,14 +155,13 @@ CAVITY = {"Die upper/shape": "stl", "Die upper/point": "0, 0, 0",
 
 
 def run(build, name, angle, die, whole):
-    """The summary. Samples of the unfilled volume lie on one grid, of a quarter or of all of it."""
+    """The summary."""
     settings = {"Billet/file name": os.path.abspath(f"{name}_whole.msh" if whole else f"{name}.msh"),
                 "Billet/symmetry patches": "" if whole else f"plane 0, plane {angle}"}
     if die == "cavity":
         quarter = angle == 90 and not whole
         settings |= {**CAVITY, "Die upper/file": os.path.abspath(f"{name}.stl"),
-                     "Objective unfilled volume/region from": "0, 0, 14" if quarter else "-20, -20, 14",
-                     "Objective unfilled volume/samples": 40 if quarter else 80}
+                     "Objective unfilled volume/region from": "0, 0, 14" if quarter else "-20, -20, 14"}
     output = f"{name}_{die}_whole" if whole else f"{name}_{die}"
     return case_tools.run(build, "gradient", os.path.join(HERE, "case.prm"), settings, output)[0]
 
@@ -191,7 +190,7 @@ def compare(build, angle, die, copies):
     """Values and derivatives by the process; {objective: whole over sector}"""
     part, whole = (run(build, f"sector_{angle}", angle, die, is_whole) for is_whole in (False, True))
     assert part["whole"]["copies"] == copies, part["whole"]
-    # A grid of samples and a box are mirrored by planes along their axes only.
+    # A box is mirrored by planes along their axes only.
     names = [o["name"] for o in part["objectives"] if angle == 90 or o["name"] not in FILLING]
     factors, worst = {}, {"value": 0.0, "gradient": 0.0}
     print(f"| {angle} degrees, {die}: objective | of the sector | whole by the sector | whole body | off |\n" + "| --- " * 5 + "|")

@@ -53,13 +53,15 @@ TriangleSurface pocket(const unsigned int n, const double radius, const double d
   return TriangleSurface("pocket", x, triangles);
 }
 
-TetMesh cylinder(const double radius, const double height, const double element_size)
+TetMesh
+cylinder(const double radius, const double height, const double element_size, const double sector = 0.)
 {
   BilletParameters parameters;
   parameters.shape        = BilletParameters::Shape::cylinder;
   parameters.radius       = radius;
   parameters.height       = height;
   parameters.element_size = element_size;
+  parameters.sector_angle = sector;
   return make_billet(parameters, MPI_COMM_WORLD);
 }
 
@@ -201,6 +203,38 @@ void check_at_rest(const FinalObjective &objective, const FinalProblem &problem,
   differences.print(1e-6);
 }
 
+/// Nodes of symmetry planes stay in them: a motion along the radius.
+void check_in_sector(const FinalObjective &objective, const FinalProblem &problem, Random &random)
+{
+  const auto                decisions = objective.decide(problem.view(problem.at));
+  const FinalInputs<double> bar       = problem.reverse(objective, decisions, problem.at);
+  FinalInputs<Dual>         dual      = problem.dual_shape();
+  convert(problem.at.X, dual.X);
+  convert(problem.at.q, dual.q);
+  convert(problem.at.dies, dual.dies);
+  convert(problem.at.target, dual.target);
+  FinalInputs<double> plus = problem.at, minus = problem.at;
+  const double        h     = 1e-6;
+  double              along = 0.;
+  for (std::size_t k = 0; k < dual.X.size(); ++k)
+  {
+    const double part = random.scalar();
+    const Vec3   x_dot({part * problem.at.X[k][0], part * problem.at.X[k][1], random.scalar()});
+    for (unsigned int i = 0; i < 3; ++i)
+      dual.X[k][i].fastAccessDx(0) = x_dot[i];
+    plus.X[k] += h * x_dot;
+    minus.X[k] -= h * x_dot;
+    along += x_dot * bar.X[k];
+  }
+  const double difference =
+    (problem.value(objective, decisions, plus) - problem.value(objective, decisions, minus)) / (2. * h);
+  Errors tangent, differences;
+  tangent.compare("sector of 60 degrees, tangent", problem.value(objective, decisions, dual).dx(0), along);
+  differences.compare("sector of 60 degrees, difference", difference, along);
+  tangent.print(1e-12);
+  differences.print(1e-6);
+}
+
 double check_all_derivatives()
 {
   Random     random;
@@ -235,6 +269,9 @@ double check_all_derivatives()
   }
   check("apart from a round wall", in_pocket, apart);
   check("the same in a box", boxed, apart);
+  FinalProblem sector(cylinder(0.92, 1., 0.4, 60.), round->vertices());
+  sector.at.dies[0].displacement = Vec3({0., 0., -0.15});
+  check_in_sector(in_pocket, sector, random);
   check("pressed into a round wall", in_pocket, pressed);
   check_at_rest(in_pocket, at_wall, random);
 
