@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/core/shares.h>
+#include <retroforge/objective/corner_positions.h>
 #include <retroforge/objective/local_derivatives.h>
 #include <retroforge/objective/objective_settings.h>
 #include <retroforge/objective/unfilled_volume.h>
@@ -46,47 +47,6 @@ namespace retroforge
       for (unsigned int k = 0; k < 4; ++k)
         x[k] = view.X[view.scene.mesh.cells[c][k]];
       return x;
-    }
-
-    template <typename Number>
-    std::array<Vector3<Number>, 3> corners_of(const NodalVectors<Number> &x, const Triangle &triangle)
-    {
-      return {{x[triangle[0]], x[triangle[1]], x[triangle[2]]}};
-    }
-
-    template <typename Number>
-    std::array<Vector3<Number>, 3> shifted(std::array<Vector3<Number>, 3> x, const Vector3<Number> &shift)
-    {
-      for (auto &corner : x)
-        corner += shift;
-      return x;
-    }
-
-    /// Middles of the edges of a triangle.
-    template <typename Number>
-    std::array<Vector3<Number>, 3> middles(const std::array<Vector3<Number>, 3> &x)
-    {
-      return {{(x[0] + x[1]) * Number(0.5), (x[1] + x[2]) * Number(0.5), (x[2] + x[0]) * Number(0.5)}};
-    }
-
-    template <std::size_t n>
-    bool all_inside(const std::array<Vec3, n> &x, const std::vector<HalfSpace<double>> &half_spaces)
-    {
-      for (const auto &space : half_spaces)
-        for (const Vec3 &point : x)
-          if (space.excess(point) > 0.)
-            return false;
-      return true;
-    }
-
-    template <typename Number, std::size_t n>
-    std::array<Vec3, n> values_of(const std::array<Vector3<Number>, n> &x)
-    {
-      std::array<Vec3, n> values;
-      for (std::size_t k = 0; k < n; ++k)
-        for (unsigned int i = 0; i < 3; ++i)
-          values[k][i] = value_of(x[k][i]);
-      return values;
     }
   } // namespace
 
