@@ -115,6 +115,17 @@ namespace retroforge
       region.mouth_depth = 1e-3 * (high - low);
     }
 
+    /// Moves sides of the box that lie in a symmetry plane away, so that the plane alone cuts there.
+    void leave_to_sector(Region &region)
+    {
+      const double size = (region.box.second - region.box.first).norm();
+      for (const Plane &plane : region.sector)
+        for (unsigned int i = 0; i < 3; ++i)
+          for (double *side : {&region.box.first[i], &region.box.second[i]})
+            if (std::abs(plane.normal[i]) > 1. - 1e-12 && std::abs(*side - plane.point[i]) < 1e-5 * size)
+              *side += (plane.normal[i] > 0. ? 1e-4 : -1e-4) * size;
+    }
+
     /// The point of the region that is farthest from the surface, of a few.
     void choose_eye(const Die &die, const Vec3 &displacement, Region &region)
     {
@@ -219,7 +230,10 @@ namespace retroforge
     Region                 region;
     region.sector = symmetry_planes(mesh);
     if (box)
+    {
       region.box = *box;
+      leave_to_sector(region);
+    }
     else
     {
       region.follows_die = true;

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/core/shares.h>
+#include <retroforge/objective/corner_positions.h>
 #include <retroforge/objective/local_derivatives.h>
 #include <retroforge/objective/objective_settings.h>
 #include <retroforge/objective/unfilled_volume.h>
@@ -47,47 +48,6 @@ namespace retroforge
         x[k] = view.X[view.scene.mesh.cells[c][k]];
       return x;
     }
-
-    template <typename Number>
-    std::array<Vector3<Number>, 3> corners_of(const NodalVectors<Number> &x, const Triangle &triangle)
-    {
-      return {{x[triangle[0]], x[triangle[1]], x[triangle[2]]}};
-    }
-
-    template <typename Number>
-    std::array<Vector3<Number>, 3> shifted(std::array<Vector3<Number>, 3> x, const Vector3<Number> &shift)
-    {
-      for (auto &corner : x)
-        corner += shift;
-      return x;
-    }
-
-    /// Middles of the edges of a triangle.
-    template <typename Number>
-    std::array<Vector3<Number>, 3> middles(const std::array<Vector3<Number>, 3> &x)
-    {
-      return {{(x[0] + x[1]) * Number(0.5), (x[1] + x[2]) * Number(0.5), (x[2] + x[0]) * Number(0.5)}};
-    }
-
-    template <std::size_t n>
-    bool all_inside(const std::array<Vec3, n> &x, const std::vector<HalfSpace<double>> &half_spaces)
-    {
-      for (const auto &space : half_spaces)
-        for (const Vec3 &point : x)
-          if (space.excess(point) > 0.)
-            return false;
-      return true;
-    }
-
-    template <typename Number, std::size_t n>
-    std::array<Vec3, n> values_of(const std::array<Vector3<Number>, n> &x)
-    {
-      std::array<Vec3, n> values;
-      for (std::size_t k = 0; k < n; ++k)
-        for (unsigned int i = 0; i < 3; ++i)
-          values[k][i] = value_of(x[k][i]);
-      return values;
-    }
   } // namespace
 
   namespace
@@ -98,6 +58,21 @@ namespace retroforge
     {
       region.sector.clear();
       return region;
+    }
+
+    /// The region with its symmetry planes a little to the one side and to the other: a mean over both is that
+    /// between them to second order. Edges of a die often lie in a symmetry plane, where rounding would decide
+    /// on which side, and derivatives would divide by it.
+    std::vector<Region> beside_sector(const Region &region)
+    {
+      if (region.sector.empty())
+        return {region};
+      const double        distance = 1e-6 * (region.box.second - region.box.first).norm();
+      std::vector<Region> both(2, region);
+      for (unsigned int side = 0; side < 2; ++side)
+        for (Plane &plane : both[side].sector)
+          plane.point += (side == 0 ? distance : -distance) * plane.normal;
+      return both;
     }
   } // namespace
 
@@ -221,34 +196,38 @@ namespace retroforge
   std::vector<Number> UnfilledVolume::compute_integrals(const FinalView<Number> &view,
                                                         const Decisions         &decisions) const
   {
-    const Surface<Number> surface(*this, view, decisions.region);
-    const Surface<Number> of_metal(*this, view, without_sector(decisions.region));
-    const auto           &triangles    = die_.surface()->triangles();
-    const auto           &displacement = surface.state.displacement;
-    Number                cavity(0.), metal(0.), at_facets(0.);
-    // On one rank, as the others sum up their facets.
-    if (decisions.region.eye_in_front &&
-        dealii::Utilities::MPI::this_mpi_process(view.scene.discretization.comm()) == 0)
-      cavity += decisions.region.volume(surface.place);
-    for (const unsigned int f : decisions.facets)
+    const Surface<Number>     surface(*this, view, without_sector(decisions.region));
+    const auto               &triangles = die_.surface()->triangles();
+    Number                    cavity(0.), metal(0.), at_facets(0.);
+    const std::vector<Region> regions = beside_sector(decisions.region);
+    for (const Region &region : regions)
     {
-      const auto x = shifted(corners_of(surface.vertices, triangles[f]), displacement);
-      cavity += decisions.region.shadow(surface.place, x);
-      if (is_within())
-        continue;
-      std::array<Number, 3> delta;
-      const auto            points = middles(x);
-      for (unsigned int q = 0; q < 3; ++q)
-        delta[q] = die_.project(points[q], surface.state, DieFeature{f, 0}).delta;
-      cavity += surface.share(x) * volume_of_bulge(x, delta);
+      const Surface<Number> at(*this, view, region);
+      const double          part = 1. / regions.size();
+      // On one rank, as the others sum up their facets.
+      if (region.eye_in_front &&
+          dealii::Utilities::MPI::this_mpi_process(view.scene.discretization.comm()) == 0)
+        cavity += part * region.volume(at.place);
+      for (const unsigned int f : decisions.facets)
+      {
+        const auto x = shifted(corners_of(at.vertices, triangles[f]), at.state.displacement);
+        cavity += part * region.shadow(at.place, x);
+        if (is_within())
+          continue;
+        std::array<Number, 3> delta;
+        const auto            points = middles(x);
+        for (unsigned int q = 0; q < 3; ++q)
+          delta[q] = die_.project(points[q], at.state, DieFeature{f, 0}).delta;
+        cavity += part * at.share(x) * volume_of_bulge(x, delta);
+      }
     }
     for (const Cell &cell : decisions.cells)
     {
       const auto x = corners_of(view, cell.cell);
-      metal += volume_of_cell(cell, x, of_metal.half_spaces);
+      metal += volume_of_cell(cell, x, surface.half_spaces);
       for (const unsigned int f : cell.facets)
         metal += shadow_in_tetrahedron(
-          x, eye_of(x), corners_of(surface.vertices, triangles[f]), of_metal.half_spaces);
+          x, eye_of(x), corners_of(surface.vertices, triangles[f]), surface.half_spaces);
     }
     for (const FacetAtDie &facet : decisions.at_die)
     {
@@ -262,17 +241,17 @@ namespace retroforge
         if (const unsigned int k = normal_at[q]; k != invalid_index)
           gaps.n[k] = projection.n;
       }
-      at_facets += of_metal.share(x) * volume_at_facet(x, gaps, !is_within());
+      at_facets += surface.share(x) * volume_at_facet(x, gaps, !is_within());
     }
     return {cavity, metal, at_facets};
   }
 
-  void UnfilledVolume::reverse_cavity(const FinalView<double> &view,
-                                      const Decisions         &decisions,
-                                      const double             weight,
-                                      FinalBar                &bar) const
+  void UnfilledVolume::reverse_cavity(const FinalView<double>         &view,
+                                      const Region                    &region,
+                                      const std::vector<unsigned int> &facets,
+                                      const double                     weight,
+                                      FinalBar                        &bar) const
   {
-    const Region         &region = decisions.region;
     const Surface<double> surface(*this, view, region);
     const Die             die          = view.target ? die_.moved(*view.target) : die_;
     const auto           &triangles    = die_.surface()->triangles();
@@ -301,7 +280,7 @@ namespace retroforge
       LocalArguments argument;
       add_place(region.volume(place_of(argument)), 0);
     }
-    for (const unsigned int f : decisions.facets)
+    for (const unsigned int f : facets)
     {
       LocalArguments      argument;
       const auto          x_at  = shifted(corners_of(surface.vertices, triangles[f]), displacement);
@@ -473,7 +452,9 @@ namespace retroforge
                                          const std::vector<double> &weights,
                                          FinalBar                  &bar) const
   {
-    reverse_cavity(view, decisions, weights[0], bar);
+    const std::vector<Region> regions = beside_sector(decisions.region);
+    for (const Region &region : regions)
+      reverse_cavity(view, region, decisions.facets, weights[0] / regions.size(), bar);
     reverse_cells(view, decisions, weights[1], bar);
     reverse_facets(view, decisions, weights[2], bar);
   }

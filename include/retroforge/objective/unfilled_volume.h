@@ -92,10 +92,11 @@ namespace retroforge
 
     Decisions decide_cells(const FinalView<double> &view, const Die &die, Decisions decisions) const;
 
-    void reverse_cavity(const FinalView<double> &view,
-                        const Decisions         &decisions,
-                        double                   weight,
-                        FinalBar                &bar) const;
+    void reverse_cavity(const FinalView<double>         &view,
+                        const Region                    &region,
+                        const std::vector<unsigned int> &facets,
+                        double                           weight,
+                        FinalBar                        &bar) const;
     void reverse_cells(const FinalView<double> &view,
                        const Decisions         &decisions,
                        double                   weight,
