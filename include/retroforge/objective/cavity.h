@@ -80,7 +80,6 @@ namespace retroforge
   /// reaches, at its foremost vertex but for a thousandth of its depth: what rests on the face around a cavity
   /// is outside.
   /// @param die          with its vertices where they are
-  /// @param follows_die  whether a region without a box moves with the displacement
   /// @throws Error  where symmetry planes leave nothing of it
   Region
   make_region(const Die &die, const Vec3 &displacement, const std::optional<Box> &box, const TetMesh &mesh);
