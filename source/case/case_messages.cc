@@ -31,16 +31,7 @@ namespace retroforge
     bool is_nearly_closed(const TriangleSurface &surface)
     {
       constexpr double small = 0.05;
-      Vec3             sum;
-      double           area = 0.;
-      for (const Triangle &t : surface.triangles())
-      {
-        const auto &x = surface.vertices();
-        const Vec3  v = facet_vector(x[t[0]], x[t[1]], x[t[2]]);
-        sum += v;
-        area += v.norm();
-      }
-      return sum.norm() < small * area;
+      return mean_normal(surface).norm() < small;
     }
 
     /// An outer rim is what open dies have; another one, or that of a body, may be that of a facet that an

@@ -56,21 +56,6 @@ namespace retroforge
       const DieParameters &given(const unsigned int d) const { return parameters.dies[d]; }
     };
 
-    /// Mean normal of an open surface, short where its facets look to all sides.
-    Vec3 mean_normal(const TriangleSurface &surface)
-    {
-      Vec3   sum;
-      double areas = 0.;
-      for (const Triangle &facet : surface.triangles())
-      {
-        const auto &x      = surface.vertices();
-        const Vec3  vector = facet_vector(x[facet[0]], x[facet[1]], x[facet[2]]);
-        sum += vector;
-        areas += vector.norm();
-      }
-      return sum / areas;
-    }
-
     /// What a die faces: as it is told or, of a file, by its facets, and then roughly.
     Vec3 facing(const View &view, const unsigned int d)
     {

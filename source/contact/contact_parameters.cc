@@ -43,7 +43,7 @@ namespace retroforge
       {{"held", true}, {"free", false}},
       "Of a billet between dies that touch it along lines or at points only, the rigid motions that these do "
       "not resist, as a round bar's rolling. held: a drag keeps its mean velocity along them near zero until "
-      "the contacts are wide enough to hold it; a run in which that bears more than a fifth of the force "
+      "the contacts are wide enough to hold it; a run in which that bears more than a tenth of the force "
       "stops "
       "and names the motion. free: nothing holds it. Units: none.");
     prm.add_parameter(

@@ -239,4 +239,18 @@ namespace retroforge
       six_fold += surface.vertices()[surface.triangles()[f][0]] * facet_vector_of(surface, f);
     return six_fold / 6.;
   }
+
+  Vec3 mean_normal(const TriangleSurface &surface)
+  {
+    Vec3        sum;
+    double      area = 0.;
+    const auto &x    = surface.vertices();
+    for (const Triangle &facet : surface.triangles())
+    {
+      const Vec3 vector = facet_vector(x[facet[0]], x[facet[1]], x[facet[2]]);
+      sum += vector;
+      area += vector.norm();
+    }
+    return sum / area;
+  }
 } // namespace retroforge

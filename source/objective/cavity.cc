@@ -72,15 +72,7 @@ namespace retroforge
     /// it was cut; nothing of a closed one.
     Vec3 facing_of(const TriangleSurface &surface, const Vec3 &displacement, const std::vector<Plane> &sector)
     {
-      Vec3   sum;
-      double area = 0.;
-      for (const Triangle &t : surface.triangles())
-      {
-        const auto &x = surface.vertices();
-        const Vec3  v = facet_vector(x[t[0]], x[t[1]], x[t[2]]);
-        sum += v;
-        area += v.norm();
-      }
+      Vec3 mean = mean_normal(surface);
       for (const Plane &plane : sector)
       {
         double nearest = std::numeric_limits<double>::max(), farthest = -nearest;
@@ -92,9 +84,9 @@ namespace retroforge
         }
         const double rounding = 1e-6 * surface.diagonal();
         if (nearest <= rounding && farthest >= -rounding)
-          sum -= (sum * plane.normal) * plane.normal;
+          mean -= (mean * plane.normal) * plane.normal;
       }
-      return sum.norm() > 1e-3 * area ? Vec3(sum / sum.norm()) : Vec3();
+      return mean.norm() > 1e-3 ? Vec3(mean / mean.norm()) : Vec3();
     }
 
     void add_mouth(const TriangleSurface &surface, const Vec3 &facing, Region &region)

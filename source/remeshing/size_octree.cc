@@ -176,7 +176,7 @@ namespace retroforge
   {
     Assert(limits.smallest > 0. && limits.largest >= limits.smallest && limits.growth > 0.,
            dealii::ExcMessage("lengths and their growth are positive"));
-    const double finest       = finest_leaf * limits.smallest;
+    const double finest       = limits.smallest;
     const auto [origin, edge] = root_around(around(domain), finest);
     origin_                   = origin;
     unit_                     = edge / (1u << n_levels);

@@ -167,8 +167,8 @@ namespace retroforge
                                       const std::vector<ContactPair> &pairs,
                                       const ContactApproach<Number>  &approach);
 
-  /// Pull-back of make_contact_set: adds to X_bar, to the dies' displacements and velocities, and to vertices where there is
-  /// an entry for each.
+  /// Pull-back of make_contact_set: adds to X_bar, to the dies' displacements and velocities, and to vertices
+  /// where there is an entry for each.
   void reverse_contact_set(const ContactView<double>     &view,
                            const ContactSet<double>      &contact,
                            const FrictionRamp            &ramp,

@@ -98,4 +98,8 @@ namespace retroforge
 
   /// Volume enclosed, positive when the normals point outwards: for a surface that is closed.
   double enclosed_volume(const TriangleSurface &surface);
+
+  /// Returns the mean normal of a surface over its area: short where its facets look to all sides, zero where it
+  /// is closed.
+  Vec3 mean_normal(const TriangleSurface &surface);
 } // namespace retroforge

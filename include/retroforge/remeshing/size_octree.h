@@ -42,9 +42,6 @@ namespace retroforge
   class SizeOctree
   {
   public:
-    /// Cubes, the smallest of them with edges of this part of the smallest length.
-    static constexpr double finest_leaf = 1.;
-
     /// @param domain    boxes that cover the points which will be asked for; elsewhere leaves stay large
     /// @param source    asked at corners of leaves that meet the domain only
     SizeOctree(const std::vector<BoundingBox> &domain,

@@ -7,7 +7,8 @@
 
 /// @file
 /// The step that takes the workpiece from one mesh to the next. What happens to a member of the state follows
-/// from its kind: positions by the tape of what remeshing did to them (PositionTape), one number per node q' = J q, one per cell transfer_cells().
+/// from its kind: positions by the tape of what remeshing did to them (PositionTape), one number per node
+/// q' = J q, one per cell transfer_cells().
 namespace retroforge
 {
   /// Takes a member of the state to the new mesh, each kind by its overload; on dual numbers its tangent.

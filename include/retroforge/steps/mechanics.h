@@ -99,8 +99,8 @@ namespace retroforge
               Timings                &timings);
 
     /// Solves the stages from a state.
-    /// @param record  in: stroke, step, contact, that of the model where it has no step; with `replay`, the recorded decisions are obeyed. Out: scheme,
-    /// pairs, solves, energies, forces; iterations are added.
+    /// @param record  in: stroke, step, contact, that of the model where it has no step; with `replay`, the
+    /// recorded decisions are obeyed. Out: scheme, pairs, solves, energies, forces; iterations are added.
     /// @param guess  where the first stage begins
     SolvedIncrement forward(const Process<double>           &process,
                             const WorkpieceState<3, double> &state,
