@@ -215,10 +215,9 @@ namespace retroforge
       const Physics<double> physics = process.at_stroke(0.);
       auto                  view    = scene.view(physics.dies, X);
       view.comm                     = MPI_COMM_SELF;
-      const FrictionRamp &ramp      = model.contact.ramp;
-      const auto          contact   = make_contact_set<double>(
-        view, find_contact_pairs(view, ramp, ramp.width, model.edges_touch), {ramp, 1.});
-      if (const RigidHold hold = hold_of_loose(scene, physics, contact, X); !hold.empty())
+      const double near             = model.contact.near_in(model.contact.step);
+      const auto   pairs            = find_contact_pairs(view, {near}, near, model.edges_touch);
+      if (const RigidHold hold = hold_of_loose(scene, physics, view, pairs, near); !hold.empty())
         warnings.push_back("dies touch the billet along lines or at points only: what would let it " +
                            join(held_motions(hold, X)) +
                            " is held until contacts are wide enough, Contact/loose billet = held; cut by "

@@ -218,11 +218,17 @@ namespace retroforge
     }
   } // namespace
 
-  RigidHold hold_of_loose(const Scene                &scene,
-                          const Physics<double>      &physics,
-                          const ContactSet<double>   &contact,
-                          const NodalVectors<double> &X)
+  RigidHold hold_of_loose(const Scene               &scene,
+                          const Physics<double>     &physics,
+                          const ContactView<double> &view,
+                          std::vector<ContactPair>   pairs,
+                          const double               near)
   {
+    const NodalVectors<double> &X = view.X;
+    // What will touch within the increment does not hold at its start, and walls do as other faces.
+    ContactSet<double> contact = make_contact_set<double>(view, pairs, {FrictionRamp{near}, 1.});
+    for (unsigned int p = 0; p < pairs.size(); ++p)
+      contact.pairs[p].touching = contact.projections[p].delta <= near;
     RigidHold hold;
     if (!is_between(scene, physics, contact))
       return hold;

@@ -215,8 +215,12 @@ namespace retroforge
       auto start = start_of(process, state, record);
       if (!replay)
       {
-        record.hold =
-          model_.holds_loose ? hold_of_loose(scene_, start->physics, start->contact, X) : RigidHold();
+        record.hold = model_.holds_loose ? hold_of_loose(scene_,
+                                                         physics,
+                                                         scene_.view(physics.dies, X),
+                                                         record.pairs,
+                                                         record.contact.near_in(record.step))
+                                         : RigidHold();
         if (!record.hold.empty() || !start->contact.hold.empty())
           start = start_of(process, state, record);
       }

@@ -20,7 +20,7 @@ namespace retroforge
 {
   /// A cavity is full where this part of the workpiece's surface touches dies, and this part of its volume is
   /// in them: metal that has no room goes into the corners of dies, where a node feels one of their faces.
-  constexpr double touching_when_full = 0.95, inside_when_full = 2e-3;
+  constexpr double touching_when_full = 0.95, inside_when_full = 2e-3, part_that_is_near = 0.125;
 
   /// What may hold what dies leave loose: a force of this part of the largest of the dies', and its moment at an
   /// arm of this part of an edge. That much, a mesh that feels a narrow contact as a line may miss.
@@ -113,13 +113,17 @@ namespace retroforge
   bool IncrementLimits::is_full(const Process<double>      &process,
                                 const Scene                &scene,
                                 const IncrementRecord      &record,
-                                const NodalVectors<double> &X)
+                                const NodalVectors<double> &X) const
   {
-    std::vector<bool> touches(X.size(), false);
+    // The longest step that the program may choose is more than what touches is off its die.
+    const ContactNumerics &whole = model_.step.contact;
+    const double           near  = whole.near_in(whole.step) * (choose_steps() ? part_that_is_near : 1.);
+    const auto             dies  = process.at_stroke(record.stroke + record.step, record.operation).dies;
+    std::vector<bool>      touches(X.size(), false);
     for (const ContactPair &pair : record.pairs)
-      if (pair.touching && pair.point.is_node())
+      if (pair.point.is_node() &&
+          scene.dies[pair.die].project(pair.point.position(X), dies[pair.die], pair.feature).delta <= near)
         touches[pair.point.nodes[0]] = true;
-    const auto dies    = process.at_stroke(record.stroke + record.step, record.operation).dies;
     double     surface = 0., touching = 0., inside = 0.;
     const auto is_touched = [&](const BoundaryFace &face) {
       return touches[face.nodes[0]] && touches[face.nodes[1]] && touches[face.nodes[2]];
@@ -246,20 +250,23 @@ namespace retroforge
     for (unsigned int d = 0; d < scene.dies.size(); ++d)
       if (touches(scene, state.workpiece.X, scene.dies[d], physics.dies[d].displacement))
         touching.push_back(scene.dies[d].name);
-    const Vec3 &way    = process.leading_velocity(state.operation);
-    const auto  planes = symmetry_planes(scene.mesh);
+    const Vec3 &way     = process.leading_velocity(state.operation);
+    const auto  planes  = symmetry_planes(scene.mesh);
+    const auto &contact = model_.step.contact;
     const bool  is_held =
       touching.size() > 1 || std::any_of(planes.begin(), planes.end(), [&](const Plane &plane) {
         return std::abs(plane.normal * way) > 1e-6 * way.norm();
       });
-    const auto motions =
-      free_rigid_motions(scene, physics, state.workpiece.X, model_.step.contact.ramp.width);
+    const auto motions = free_rigid_motions(scene, physics, state.workpiece.X, contact.near_in(contact.step));
     if (is_held && motions.empty())
     {
       if (model_.step.holds_loose)
         return;
-      const IncrementStart<double> start(scene, process, state.workpiece, record);
-      const RigidHold loose = hold_of_loose(scene, start.physics, start.contact, state.workpiece.X);
+      const RigidHold loose = hold_of_loose(scene,
+                                            physics,
+                                            scene.view(physics.dies, state.workpiece.X),
+                                            record.pairs,
+                                            record.contact.near_in(record.step));
       if (loose.empty())
         return;
       throw Error("Billet",

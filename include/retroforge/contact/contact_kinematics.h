@@ -57,6 +57,10 @@ namespace retroforge
       return cut;
     }
 
+    /// Returns how near a point is to a die that it touches, not in part only, in an increment with the given
+    /// stroke: half the ramp, which is the path by which the dies close [mm].
+    double near_in(const double stroke) const { return 0.5 * ramp_in(stroke).width; }
+
     /// Returns those of whole increments with another stroke [mm].
     ContactNumerics in_steps_of(const double stroke) const
     {

@@ -23,11 +23,14 @@ namespace retroforge
   /// rigid motions that its contacts, their friction where it acts on faces, and symmetry planes do not resist
   /// both ways: those that are felt there at less than a third of the root mean square speed. Points that a die
   /// touches along a line, wherever it runs, do not resist a turn about it. Nothing else is held.
-  /// @param contact  at the start of an increment, positions X
-  RigidHold hold_of_loose(const Scene                &scene,
-                          const Physics<double>      &physics,
-                          const ContactSet<double>   &contact,
-                          const NodalVectors<double> &X);
+  /// @param view   the workpiece and the dies at the start of an increment
+  /// @param pairs  those within `near` of a die, and others
+  /// @param near   of a die, points touch it [mm]
+  RigidHold hold_of_loose(const Scene               &scene,
+                          const Physics<double>     &physics,
+                          const ContactView<double> &view,
+                          std::vector<ContactPair>   pairs,
+                          double                     near);
 
   /// The motions in words, as those of free_rigid_motions().
   std::vector<std::string> held_motions(const RigidHold &hold, const NodalVectors<double> &X);

@@ -84,10 +84,10 @@ namespace retroforge
 
     /// Whether an increment presses metal into dies that has no room between them.
     /// @param X  positions after it
-    static bool is_full(const Process<double>      &process,
-                        const Scene                &scene,
-                        const IncrementRecord      &record,
-                        const NodalVectors<double> &X);
+    bool is_full(const Process<double>      &process,
+                 const Scene                &scene,
+                 const IncrementRecord      &record,
+                 const NodalVectors<double> &X) const;
 
     /// Whether an increment may not be halved any more.
     bool too_short(double step) const;

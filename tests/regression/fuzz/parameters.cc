@@ -70,8 +70,8 @@ std::pair<std::string, std::string> some_override(fuzz::Random &random)
 
 void require_sane(Parameters &parameters)
 {
-  parameters.resolve_defaults({50., 50.});
-  const Process<double> process = parameters.process({50., 50.});
+  parameters.resolve_defaults({50., 50., 50.});
+  const Process<double> process = parameters.process({50., 50., 50.});
   const StepModel       model   = parameters.step_model();
   using fuzz::require;
   require(parameters.press.increments > 0, "there are no increments");
