@@ -144,7 +144,7 @@ namespace retroforge
           most               = std::max(most, speed);
           least              = std::min(least, speed);
         }
-      return std::min(most, -least) > 0.5 * loose;
+      return std::min(most, -least) > loose;
     }
 
     std::vector<RigidMotion>
