@@ -108,9 +108,14 @@ def differences(case, step, move, *settings):
 
 
 def nearest(prediction, case, move):
-    """Over one step, or over two where rounding, which is some 1e-6 of a difference over one, may hide what is to be seen."""
-    found = differences(case, STEP, move)
-    return found if off_by(prediction, found) < 1e-6 else differences(case, 2 * STEP, move)
+    """The nearest of differences over steps twice apart, until one is near enough: rounding is some 1e-6 of a difference over the
+    shortest, and a contact may be decided otherwise within the longest."""
+    found = []
+    for step in (STEP, 0.5 * STEP, 2 * STEP):
+        found.append(differences(case, step, move))
+        if off_by(prediction, found[-1]) < 1e-6:
+            break
+    return min(found, key=lambda difference: off_by(prediction, difference))
 
 
 def off_by(prediction, difference):
