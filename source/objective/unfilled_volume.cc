@@ -60,19 +60,26 @@ namespace retroforge
       return region;
     }
 
-    /// The region with its symmetry planes a little to the one side and to the other: a mean over both is that
-    /// between them to second order. Edges of a die often lie in a symmetry plane, where rounding would decide
-    /// on which side, and derivatives would divide by it.
-    std::vector<Region> beside_sector(const Region &region)
+    /// A region and how much it counts.
+    struct RegionPart
+    {
+      Region region;
+      double weight;
+    };
+
+    /// The region with its symmetry planes a little inside, and twice as far: the linear continuation of both is
+    /// that at the planes to second order, whether the die ends there or goes on. Edges of a die often lie in a
+    /// symmetry plane, where rounding would decide on which side, and derivatives would divide by it.
+    std::vector<RegionPart> inside_sector(const Region &region)
     {
       if (region.sector.empty())
-        return {region};
-      const double        distance = 1e-6 * (region.box.second - region.box.first).norm();
-      std::vector<Region> both(2, region);
-      for (unsigned int side = 0; side < 2; ++side)
-        for (Plane &plane : both[side].sector)
-          plane.point += (side == 0 ? distance : -distance) * plane.normal;
-      return both;
+        return {{region, 1.}};
+      const double            distance = 1e-6 * (region.box.second - region.box.first).norm();
+      std::vector<RegionPart> parts    = {{region, 2.}, {region, -1.}};
+      for (unsigned int i = 0; i < 2; ++i)
+        for (Plane &plane : parts[i].region.sector)
+          plane.point -= (i + 1.) * distance * plane.normal; // they face outwards
+      return parts;
     }
   } // namespace
 
@@ -196,14 +203,12 @@ namespace retroforge
   std::vector<Number> UnfilledVolume::compute_integrals(const FinalView<Number> &view,
                                                         const Decisions         &decisions) const
   {
-    const Surface<Number>     surface(*this, view, without_sector(decisions.region));
-    const auto               &triangles = die_.surface()->triangles();
-    Number                    cavity(0.), metal(0.), at_facets(0.);
-    const std::vector<Region> regions = beside_sector(decisions.region);
-    for (const Region &region : regions)
+    const Surface<Number> surface(*this, view, without_sector(decisions.region));
+    const auto           &triangles = die_.surface()->triangles();
+    Number                cavity(0.), metal(0.), at_facets(0.);
+    for (const auto &[region, part] : inside_sector(decisions.region))
     {
       const Surface<Number> at(*this, view, region);
-      const double          part = 1. / regions.size();
       // On one rank, as the others sum up their facets.
       if (region.eye_in_front &&
           dealii::Utilities::MPI::this_mpi_process(view.scene.discretization.comm()) == 0)
@@ -452,9 +457,8 @@ namespace retroforge
                                          const std::vector<double> &weights,
                                          FinalBar                  &bar) const
   {
-    const std::vector<Region> regions = beside_sector(decisions.region);
-    for (const Region &region : regions)
-      reverse_cavity(view, region, decisions.facets, weights[0] / regions.size(), bar);
+    for (const auto &[region, part] : inside_sector(decisions.region))
+      reverse_cavity(view, region, decisions.facets, part * weights[0], bar);
     reverse_cells(view, decisions, weights[1], bar);
     reverse_facets(view, decisions, weights[2], bar);
   }
