@@ -28,8 +28,8 @@ namespace retroforge
     const bool   halved = std::any_of(mesh.patches.begin(), mesh.patches.end(), [&](const Patch &patch) {
       return patch.symmetry && std::abs(patch.symmetry->normal * way) > 1. - 1e-6;
     });
-    const double extent = (halved ? 2. : 1.) * (highest - lowest);
-    return {side, billet.is_from_file() ? extent : billet.whole_height(), extent};
+    const double extent = highest - lowest, whole = (halved ? 2. : 1.) * extent;
+    return {side, billet.is_from_file() ? whole : billet.whole_height(), extent};
   }
 
   void Parameters::check_derived(const BilletSize &size) const
