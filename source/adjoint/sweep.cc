@@ -132,12 +132,26 @@ namespace retroforge
     epoch->increment.mechanics.forget();
     for (unsigned int i = end.increments; i-- > 0;)
     {
-      const IncrementRecord     &record = run.record(i);
+      // Of the increment before, on its mesh, and as its operation's: the next one begins at rest.
+      NodeVectorField<3, double> velocity;
+      unsigned int               operation = 0;
+      if (i > 0)
+      {
+        const IncrementRecord &earlier = run.record(i - 1);
+        velocity                       = mean_velocity(earlier);
+        operation                      = earlier.operation;
+      }
+      const IncrementRecord &record = run.record(i);
+      if (record.operation != operation)
+        velocity.clear();
       const unsigned int         before = epoch->system.n_solves;
       const NodalVectors<double> X      = epoch->increment.mechanics.retreat(run.process, state.X, record);
       if (!end.starts.empty())
         state = end.starts[i];
-      state.X = X;
+      state.X        = X;
+      state.velocity = velocity;
+      if (record.remesh && !velocity.empty())
+        state.velocity = record.remesh->transfer.apply<Vec3>(velocity);
       epoch->increment.reverse(
         run.process, state, record, source_of(run, rows_bar, combinations, i), costates);
       for (std::size_t j = 0; j < costates.size(); ++j)
@@ -152,8 +166,9 @@ namespace retroforge
             ? run.first
             : std::make_shared<MeshEpoch>(run.record(remeshed.back()).remesh->mesh, run.model, run.timings);
         epoch->increment.mechanics.forget();
-        state   = end.left_behind[remeshed.size()];
-        state.X = remesh->X_before;
+        state          = end.left_behind[remeshed.size()];
+        state.X        = remesh->X_before;
+        state.velocity = velocity;
         const StrokeStep at{record.stroke, 0., record.operation};
         const auto       states = run.process.over(at).dies;
         for (Costate &costate : costates)
@@ -183,6 +198,8 @@ namespace retroforge
     for (unsigned int i = 0; i < run.n; ++i)
     {
       const IncrementRecord &record = run.record(i);
+      if (record.operation != end.operation)
+        state.velocity.clear();
       if (record.remesh)
       {
         const auto dies = process.at_stroke(record.stroke, record.operation).dies;

@@ -179,7 +179,7 @@ namespace retroforge
            dealii::ExcMessage("a pair is of a die that is not there"));
     Assert(value_of(approach.tau) > 0., dealii::ExcMessage("gaps close within a positive time"));
     ContactSet<Number> contact;
-    const auto &[mesh, topology, dies, states, X, edges, comm] = view;
+    const auto &[mesh, topology, dies, states, X, edges, comm, velocity] = view;
     contact.edge_stiffness                                     = approach.edge_stiffness;
     contact.counts_closing                                     = approach.counts_closing;
     contact.pairs                                              = pairs;
@@ -193,7 +193,8 @@ namespace retroforge
     {
       if (pairs[p].point.has_own_velocity())
         index[{pairs[p].die, pairs[p].point.velocity_node}] = p;
-      contact.scales.push_back(scales(pairs[p].die, contact.projections[p].n));
+      const auto metal = view.velocity_of(pairs[p].point);
+      contact.scales.push_back(scales(pairs[p].die, contact.projections[p].n, metal ? &*metal : nullptr));
       contact.ramps.push_back(own_ramp(contact, approach.ramp, p, contact.projections[p].delta));
     }
     if (edges)
@@ -234,12 +235,14 @@ namespace retroforge
                            const FrictionRamp            &ramp,
                            const ContactSetBar           &bar,
                            NodalVectors<double>          &X_bar,
+                           NodalVectors<double>          &velocity_bar,
                            std::vector<DieState<double>> &dies_bar)
   {
     AssertDimension(bar.delta.size(), contact.pairs.size());
     AssertDimension(bar.ramp.size(), contact.pairs.size());
     AssertDimension(bar.n.size(), contact.pairs.size());
     AssertDimension(X_bar.size(), view.X.size());
+    AssertDimension(velocity_bar.size(), view.X.size());
     AssertDimension(dies_bar.size(), view.dies.size());
     std::vector<double> gaps_bar = bar.delta, scales_bar(contact.pairs.size(), 0.);
     if (contact.quadratic)
@@ -259,8 +262,17 @@ namespace retroforge
         continue;
       const ContactPair &pair    = contact.pairs[p];
       DieState<double>  &die_bar = dies_bar[pair.die];
-      Vec3               at_point, n_bar = bar.n[p];
-      scales.reverse(pair.die, contact.projections[p].n, scales_bar[p], n_bar, dies_bar);
+      Vec3               at_point, metal_bar, n_bar = bar.n[p];
+      const auto         metal = view.velocity_of(pair.point);
+      scales.reverse(pair.die,
+                     contact.projections[p].n,
+                     metal ? &*metal : nullptr,
+                     scales_bar[p],
+                     n_bar,
+                     metal_bar,
+                     dies_bar);
+      if (metal)
+        pair.point.add_to_position(metal_bar, velocity_bar);
       view.dies[pair.die].reverse_project(pair.point.position(view.X),
                                           view.states[pair.die].displacement,
                                           pair.feature,

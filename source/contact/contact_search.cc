@@ -33,7 +33,7 @@ namespace retroforge
 
   template <typename Number>
   RampScales<Number>::RampScales(const FrictionRamp &ramp, const std::vector<DieState<Number>> &states)
-      : wall_(ramp.wall)
+      : states_(states), wall_(ramp.wall)
   {
     Assert(wall_ > 0. && wall_ <= 1., dealii::ExcMessage("walls have a part of the ramp's width"));
     if (wall_ == 1.)
@@ -53,38 +53,56 @@ namespace retroforge
   }
 
   template <typename Number>
-  Number RampScales<Number>::operator()(const unsigned int die, const Vector3<Number> &n) const
+  Number RampScales<Number>::operator()(const unsigned int     die,
+                                        const Vector3<Number> &n,
+                                        const Vector3<Number> *metal) const
   {
     using std::sqrt;
     if (closing_.empty())
       return Number(1.);
-    const Vector3<Number> &v  = closing_[die].velocity;
-    const Number           v2 = v * v, n_v = n * v;
-    if (value_of(v2) == 0.)
+    const Vector3<Number> &c  = closing_[die].velocity;
+    const Number           c2 = c * c;
+    if (value_of(c2) == 0.)
       return Number(1.);
-    return sqrt(Number(wall_ * wall_ + (1. - wall_ * wall_) * (n_v * n_v / v2)));
+    const Number nearer = metal ? (*metal - states_[die].velocity) * n : n * c;
+    if (metal && value_of(nearer) <= 0.)
+      return Number(wall_);
+    return sqrt(Number(wall_ * wall_ + (1. - wall_ * wall_) * (nearer * nearer / c2)));
   }
 
   template <typename Number>
   void RampScales<Number>::reverse(const unsigned int             die,
                                    const Vector3<Number>         &n,
+                                   const Vector3<Number>         *metal,
                                    const double                   s_bar,
                                    Vector3<Number>               &n_bar,
+                                   Vector3<Number>               &metal_bar,
                                    std::vector<DieState<Number>> &states_bar) const
   {
     if (closing_.empty() || s_bar == 0.)
       return;
-    const Vector3<Number> &v  = closing_[die].velocity;
-    const Number           v2 = v * v, n_v = n * v;
-    if (value_of(v2) == 0.)
+    const Vector3<Number> &c  = closing_[die].velocity;
+    const Number           c2 = c * c;
+    if (value_of(c2) == 0.)
       return;
-    // First in n, then in v, of (n·v)^2/|v|^2.
-    const Number along_bar = s_bar * (1. - wall_ * wall_) * n_v / (v2 * (*this)(die, n));
-    n_bar += along_bar * v;
-    const Vector3<Number> v_bar = along_bar * (n - n_v / v2 * v);
-    states_bar[die].velocity += v_bar;
+    const Vector3<Number> u      = metal ? *metal - states_[die].velocity : c;
+    const Number          nearer = u * n;
+    if (metal && value_of(nearer) <= 0.)
+      return;
+    // First in (u·n), then in c, of (u·n)^2/c^2.
+    const Number nearer_bar = s_bar * (1. - wall_ * wall_) * nearer / (c2 * (*this)(die, n, metal));
+    n_bar += nearer_bar * u;
+    Vector3<Number> c_bar = -(nearer_bar * nearer / c2) * c;
+    if (metal)
+    {
+      metal_bar += nearer_bar * n;
+      states_bar[die].velocity -= nearer_bar * n;
+    }
+    else
+      c_bar += nearer_bar * n;
+    states_bar[die].velocity += c_bar;
     if (closing_[die].other != invalid_index)
-      states_bar[closing_[die].other].velocity -= v_bar;
+      states_bar[closing_[die].other].velocity -= c_bar;
   }
 
   namespace
@@ -103,27 +121,29 @@ namespace retroforge
 
     /// Returns the features of die d that points 0 … n - 1 see within reach, ascending. Each rank looks at
     /// its share of them.
-    /// @param position  of a point
-    template <typename Position>
+    /// @param point  returns one of them
+    template <typename Point>
     std::vector<Seen> seen_by(const ContactView<double> &view,
                               const FrictionRamp        &ramp,
                               const unsigned int         d,
                               const std::size_t          n,
                               const double               reach,
-                              const Position            &position)
+                              const Point               &point)
     {
       const RampScales<double> scales(ramp, view.states);
       std::vector<Seen>        seen;
       const auto [begin, end] = share_of_rank(n, view.comm);
       for (std::size_t i = begin; i < end; ++i)
       {
-        const Vec3 x = position(i);
+        const ContactPoint at = point(i);
+        const Vec3         x  = at.position(view.X);
         if (const DieFeature feature = view.dies[d].closest(x, view.states[d].displacement, reach);
             feature.found())
         {
           const auto [delta, normal] = view.dies[d].project(x, view.states[d], feature);
-          seen.push_back(
-            {static_cast<unsigned int>(i), feature, delta, delta <= ramp.width * scales(d, normal)});
+          const auto metal           = view.velocity_of(at);
+          const bool touching = delta <= ramp.width * scales(d, normal, metal ? &*metal : nullptr);
+          seen.push_back({static_cast<unsigned int>(i), feature, delta, touching});
         }
       }
       return joined(std::move(seen), view.comm);
@@ -142,7 +162,7 @@ namespace retroforge
       const auto            &edges = view.topology.surface_edges;
       std::vector<NodeIndex> ends;
       const auto             middle = [&](const std::size_t e) {
-        return ContactPoint::middle(edges[e][0], edges[e][1]).position(X);
+        return ContactPoint::middle(edges[e][0], edges[e][1]);
       };
       for (const auto &[e, feature, at_middle, touching] :
            seen_by(view, ramp, d, edges.size(), reach, middle))
@@ -159,7 +179,7 @@ namespace retroforge
       }
       std::sort(ends.begin(), ends.end());
       ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-      const auto     node      = [&](const std::size_t i) { return X[ends[i]]; };
+      const auto     node      = [&](const std::size_t i) { return ContactPoint::node(ends[i]); };
       constexpr auto any_reach = std::numeric_limits<double>::max();
       for (const Seen &seen : seen_by(view, ramp, d, ends.size(), any_reach, node))
         pairs.push_back({ContactPoint::node(ends[seen.point]), d, false, seen.feature});
@@ -181,7 +201,7 @@ namespace retroforge
     for (NodeIndex k = 0; k < X.size(); ++k)
       if (view.topology.is_on_surface(k))
         nodes.push_back(k);
-    const auto node   = [&](const std::size_t i) { return X[nodes[i]]; };
+    const auto node   = [&](const std::size_t i) { return ContactPoint::node(nodes[i]); };
     const auto middle = [&](const std::size_t e) {
       const auto &[a, b] = edges[e];
       return ContactPoint::middle(a, b, view.edges->between(a, b));
@@ -201,9 +221,7 @@ namespace retroforge
         add(ContactPoint::node(nodes[seen.point]), seen);
       }
       if (view.edges)
-        for (const Seen &seen : seen_by(view, ramp, d, edges.size(), reach, [&](const std::size_t e) {
-               return middle(e).position(X);
-             }))
+        for (const Seen &seen : seen_by(view, ramp, d, edges.size(), reach, middle))
           add(middle(seen.point), seen);
       else if (with_edges && view.dies[d].surface())
         add_edges(view, d, delta, ramp, reach, pairs);
@@ -215,6 +233,8 @@ namespace retroforge
   template Dual FrictionRamp::operator()(const Dual &, bool) const;
   template RampScales<double>::RampScales(const FrictionRamp &, const std::vector<DieState<double>> &);
   template RampScales<Dual>::RampScales(const FrictionRamp &, const std::vector<DieState<Dual>> &);
-  template double RampScales<double>::operator()(unsigned int, const Vec3 &) const;
-  template Dual RampScales<Dual>::operator()(unsigned int, const Vector3<Dual> &) const;
+  template double RampScales<double>::operator()(unsigned int, const Vec3 &, const Vec3 *) const;
+  template Dual   RampScales<Dual>::operator()(unsigned int,
+                                             const Vector3<Dual> &,
+                                             const Vector3<Dual> *) const;
 } // namespace retroforge

@@ -63,7 +63,8 @@ namespace retroforge
           others *= other == p ? 1. : 1. - contact.ramps[other];
         contact_bar.ramp[p] = -parts_bar[k] * others;
       }
-    reverse_contact_set(contact_view(view), contact, ramp_, contact_bar, bar.X, bar.dies);
+    NodalVectors<double> no_velocity_bar(view.X.size());
+    reverse_contact_set(contact_view(view), contact, ramp_, contact_bar, bar.X, no_velocity_bar, bar.dies);
   }
 
   template std::vector<double> FreeNodes::parts(const FinalView<double> &, const Decisions &) const;

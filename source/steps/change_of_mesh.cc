@@ -19,6 +19,15 @@ namespace retroforge
   }
 
   template <typename Number>
+  void MemberTransfer<Number>::operator()(const NodeVectorField<3, Number> &v,
+                                          NodeVectorField<3, Number>       &to) const
+  {
+    to = v;
+    if (!v.empty())
+      to = remesh.transfer.apply<Vector3<Number>>(v);
+  }
+
+  template <typename Number>
   void MemberTransfer<Number>::operator()(const CellField<Number> &q, CellField<Number> &to) const
   {
     to = transfer_cells<Number>(old_mesh, X, remesh.transfer, remesh.mesh, q);
@@ -40,6 +49,13 @@ namespace retroforge
                                          NodeField<double>       &to) const
   {
     to = remesh.transfer.apply_transpose<double>(q_bar);
+  }
+
+  void ReverseMemberTransfer::operator()(const NodeVectorField<3, double> &,
+                                         const NodeVectorField<3, double> &v_bar,
+                                         NodeVectorField<3, double>       &to) const
+  {
+    to = remesh.transfer.apply_transpose<Vec3>(v_bar);
   }
 
   void ReverseMemberTransfer::operator()(const CellField<double> &q,

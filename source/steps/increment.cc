@@ -15,7 +15,8 @@ namespace retroforge
     for (const auto &stage : solved.stages)
       add_history(stage->view(), solved.start->dt, state);
     complete_history(scene_.discretization, state);
-    state.X = solved.X;
+    state.X        = solved.X;
+    state.velocity = solved.velocity;
   }
 
   void Increment::tangent(const Process<Dual>     &process,
@@ -30,6 +31,10 @@ namespace retroforge
         add_history(view, dt, next);
       });
     complete_history(scene_.discretization, next);
+    const Dual dt = process.duration(place(record));
+    next.velocity.resize(next.X.size());
+    for (std::size_t k = 0; k < next.X.size(); ++k)
+      next.velocity[k] = (next.X[k] - state.X[k]) / dt;
     state = std::move(next);
   }
 

@@ -16,7 +16,7 @@ namespace retroforge
                                          const IncrementRecord           &record)
       : physics(process.over(place(record)))
       , dt(process.duration(place(record)))
-      , contact(make_contact_set<Number>(scene.view(physics.dies, state.X),
+      , contact(make_contact_set<Number>(scene.view(physics.dies, state.X, &state.velocity),
                                          record.pairs,
                                          {record.contact.ramp_in(record.step),
                                           Number(record.contact.approach * dt),
@@ -49,6 +49,12 @@ namespace retroforge
     W.V.take(solve.V);
     W.P.take(solve.P);
     solve_bubbles(stage, W);
+  }
+
+  NodalVectors<double> mean_velocity(const IncrementRecord &record)
+  {
+    const NodalVectors<double> still(record.solves.front().motion().size());
+    return advanced(still, 1., Scheme::by_name(record.scheme).b, record.solves);
   }
 
   Mechanics::Mechanics(const Scene            &scene,
@@ -208,7 +214,7 @@ namespace retroforge
       {
         const auto timing = timings_.scope("contact");
         record.pairs      = find_contact_pairs(
-          scene_.view(physics.dies, X), record.contact.ramp_in(record.step), reach, model_.edges_touch);
+          scene_.view(physics.dies, X, &state.velocity), record.contact.ramp_in(record.step), reach, model_.edges_touch);
         all_found = reach > least_reach && record.pairs.size() == n_watched;
         n_watched = record.pairs.size();
       }
@@ -253,7 +259,7 @@ namespace retroforge
                                       const IncrementRecord                        &record) const
   {
     const Scheme   &scheme = scheme_of(record);
-    SolvedIncrement solved{start, {}, advanced(X, start->dt, scheme.b, record.solves)};
+    SolvedIncrement solved{start, {}, advanced(X, start->dt, scheme.b, record.solves), mean_velocity(record)};
     for (unsigned int s = 0; s < scheme.n_stages(); ++s)
       if (scheme.b[s] != 0.)
         solved.stages.push_back(recorded_stage(*start, X, record, s));

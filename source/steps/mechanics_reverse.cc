@@ -22,8 +22,9 @@ namespace retroforge
     /// Derivatives of one scalar that an increment collects from its stages.
     struct IncrementBar
     {
-      RankSum<ContactSetBar> contact;
-      RankSum<PhysicsBar>    physics;
+      RankSum<ContactSetBar>        contact;
+      RankSum<PhysicsBar>           physics;
+      RankSum<NodalVectors<double>> velocity; ///< of the increment before
       /// In the positions of each stage: of those that follow the one that is reversed.
       std::vector<NodalVectors<double>> Y;
     };
@@ -68,6 +69,7 @@ namespace retroforge
                        costates.end(),
                        [&](const Costate &costate) {
                          return costate.workpiece.X.size() == X.size() &&
+                                costate.workpiece.velocity.size() == X.size() &&
                                 costate.workpiece.strain.size() == scene_.mesh.n_cells();
                        }),
            dealii::ExcMessage("a costate has an entry for each node and each cell"));
@@ -79,6 +81,7 @@ namespace retroforge
     std::vector<IncrementBar>     bars(costates.size(),
                                    {{ContactSetBar(record.pairs.size()), comm},
                                         {PhysicsBar(scene_.dies), comm},
+                                        {NodalVectors<double>(X.size()), comm},
                                         std::vector<NodalVectors<double>>(n)});
     earlier_lambdas_.resize(n);
     earlier_bubbles_.resize(n);
@@ -114,6 +117,8 @@ namespace retroforge
         for (const auto &[weight, there] : led_to)
           for (std::size_t k = 0; k < X.size(); ++k)
             motion_bar[k] += weight * start.dt * (*there)[k];
+        for (std::size_t k = 0; k < X.size(); ++k)
+          motion_bar[k] += scheme.b[s] * costates[j].workpiece.velocity[k];
         reverse_motion(at->stage, at->W, motion_bar, rhs, position_bar, bar.contact);
         Field<double> minus_rhs(scene_.discretization), lambda;
         minus_rhs.add(-1., rhs);
@@ -126,11 +131,12 @@ namespace retroforge
         guesses.insert(guesses.begin(), std::move(lambda));
         guesses.resize(std::min(guesses.size(), n_starts));
         if (s == 0)
-          reverse_contact_set(scene_.view(start.physics.dies, X),
+          reverse_contact_set(scene_.view(start.physics.dies, X, &state.velocity),
                               start.contact,
                               record.contact.ramp_in(record.step),
                               bar.contact.part(),
                               position_bar.part(),
+                              bar.velocity.part(),
                               physics.dies);
         bar.Y[s] = position_bar.complete();
       }
@@ -142,6 +148,7 @@ namespace retroforge
       for (unsigned int s = n; s-- > 0;)
         for (std::size_t k = 0; k < X.size(); ++k)
           workpiece.X[k] += bars[j].Y[s][k];
+      workpiece.velocity = bars[j].velocity.complete();
       if (process.material.depends_on_state())
       {
         physics.points.resize(scene_.mesh.n_cells());

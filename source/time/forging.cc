@@ -113,7 +113,7 @@ namespace retroforge
                                              state.workpiece,
                                              model_.dies,
                                              process.at_stroke(state.stroke, state.operation).dies);
-    state.left_behind.push_back(without_positions(std::exchange(state.workpiece, std::move(workpiece))));
+    state.left_behind.push_back(without_motion(std::exchange(state.workpiece, std::move(workpiece))));
     state.epoch  = std::make_shared<MeshEpoch>(remesh.mesh, model_, timings_);
     state.next.W = transferred(state.next.W);
     if (state.next.rate)
@@ -169,7 +169,7 @@ namespace retroforge
     const NodalVectors<double> X_before      = state.workpiece.X;
     const CellField<double>    strain_before = state.workpiece.strain;
     if (Increment::reads_history(process))
-      state.starts.push_back(without_positions(state.workpiece));
+      state.starts.push_back(without_motion(state.workpiece));
     {
       const auto timing = timings_.scope("checks");
       state.epoch->increment.advance(solved, state.workpiece);
@@ -245,6 +245,7 @@ namespace retroforge
     state.operation = operation;
     state.stroke    = 0.;
     change_numerics(state.parameters, state);
+    state.workpiece.velocity.clear();
     state.next   = {};
     state.next.W = Field<double>(state.epoch->scene.discretization);
   }

@@ -171,13 +171,15 @@ namespace retroforge
                                       const std::vector<ContactPair> &pairs,
                                       const ContactApproach<Number>  &approach);
 
-  /// Pull-back of make_contact_set: adds to X_bar, to the dies' displacements and velocities, and to vertices
-  /// where there is an entry for each.
+  /// Pull-back of make_contact_set: adds to X_bar, to the derivatives in the velocity of the increment before
+  /// where it is known, to the dies' displacements and velocities, and to vertices where there is an entry for
+  /// each.
   void reverse_contact_set(const ContactView<double>     &view,
                            const ContactSet<double>      &contact,
                            const FrictionRamp            &ramp,
                            const ContactSetBar           &bar,
                            NodalVectors<double>          &X_bar,
+                           NodalVectors<double>          &velocity_bar,
                            std::vector<DieState<double>> &dies_bar);
 
   /// A contact point with everything that its force depends on.

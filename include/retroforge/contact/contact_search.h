@@ -8,6 +8,8 @@
 
 #include <mpi.h>
 
+#include <optional>
+
 /// @file
 /// The points of the surface that contact looks at: nodes, and middles of edges (ContactPoint).
 ///
@@ -40,23 +42,29 @@ namespace retroforge
   };
 
   /// Parts of a ramp's width that points of the dies have,
-  ///   s = sqrt(wall^2 + (1 - wall^2) (n·e)^2),
-  /// n the normal of the die at the point, e the direction in which the die and the others close: that of the
-  /// largest of v_d and v_d - v_b, b the other dies. It is 1 where a die closes head-on, and where e is not
-  /// defined; ramps are w(delta/s).
+  ///   s = sqrt(wall^2 + (1 - wall^2) r^2),  r = max(0, (v - v_d)·n)/c,
+  /// v the velocity of the metal there in the increment before, n the normal of the die d at the point, and c
+  /// the speed at which dies close: the largest of |v_d| and |v_d - v_b|, b the other dies. So friction sets in
+  /// over the path by which a point comes nearer, whatever its die: a wall along which dies close, or a roller
+  /// on which a bar lies, has no part of what does not touch it. Where the metal's velocity is not known, it is
+  /// taken to rest relative to what the die closes with:  r = n·e, e the direction of c. It is 1 where no die
+  /// moves; ramps are w(delta/s).
   template <typename Number>
   class RampScales
   {
   public:
     RampScales(const FrictionRamp &ramp, const std::vector<DieState<Number>> &states);
 
-    Number operator()(unsigned int die, const Vector3<Number> &n) const;
+    /// @param metal  its velocity; null where it is not known [mm/s]
+    Number operator()(unsigned int die, const Vector3<Number> &n, const Vector3<Number> *metal) const;
 
-    /// Adds the derivatives of  s_bar * (*this)(die, n).
+    /// Adds the derivatives of  s_bar * (*this)(die, n, metal); those in the metal's velocity where it is known.
     void reverse(unsigned int                   die,
                  const Vector3<Number>         &n,
+                 const Vector3<Number>         *metal,
                  double                         s_bar,
                  Vector3<Number>               &n_bar,
+                 Vector3<Number>               &metal_bar,
                  std::vector<DieState<Number>> &states_bar) const;
 
   private:
@@ -66,8 +74,9 @@ namespace retroforge
       unsigned int    other = invalid_index;
     };
 
-    double               wall_;
-    std::vector<Closing> closing_; ///< for each die, where walls differ; else empty
+    const std::vector<DieState<Number>> &states_;
+    double                               wall_;
+    std::vector<Closing>                 closing_; ///< for each die, where walls differ; else empty
   };
 
   /// A point in reach of a die: a recorded decision.
@@ -91,6 +100,16 @@ namespace retroforge
     const NodalVectors<Number>          &X;
     const MiddleNodes                   *edges = nullptr;       ///< null where velocities are linear
     MPI_Comm                             comm  = MPI_COMM_SELF; ///< ranks that look for contacts together
+    /// Of the nodes in the increment before [mm/s]; null or empty where it is not known.
+    const std::vector<Vector3<Number>> *velocity = nullptr;
+
+    /// Returns the velocity of a point that moves with the nodes; nothing where it is not known.
+    std::optional<Vector3<Number>> velocity_of(const ContactPoint &point) const
+    {
+      if (!velocity || velocity->empty())
+        return {};
+      return point.position(*velocity);
+    }
   };
 
   /// The nodes within `reach` of a die, at positions X. Where velocities are quadratic, the middles of the

@@ -39,10 +39,13 @@ namespace retroforge
     }
 
     /// With dies and nodes there. What is passed must live as long.
+    /// @param velocity  of the nodes in the increment before; null or empty where it is not known
     template <typename Number>
-    ContactView<Number> view(const std::vector<DieState<Number>> &states, const NodalVectors<Number> &X) const
+    ContactView<Number> view(const std::vector<DieState<Number>> &states,
+                             const NodalVectors<Number>          &X,
+                             const NodalVectors<Number>          *velocity = nullptr) const
     {
-      return {mesh, topology, dies, states, X, discretization.middles(), discretization.comm()};
+      return {mesh, topology, dies, states, X, discretization.middles(), discretization.comm(), velocity};
     }
   };
 

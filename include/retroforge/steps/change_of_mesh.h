@@ -7,8 +7,8 @@
 
 /// @file
 /// The step that takes the workpiece from one mesh to the next. What happens to a member of the state follows
-/// from its kind: positions by the tape of what remeshing did to them (PositionTape), one number per node
-/// q' = J q, one per cell transfer_cells().
+/// from its kind: positions by the tape of what remeshing did to them (PositionTape), one number or vector per
+/// node q' = J q, one number per cell transfer_cells().
 namespace retroforge
 {
   /// Takes a member of the state to the new mesh, each kind by its overload; on dual numbers its tangent.
@@ -23,6 +23,7 @@ namespace retroforge
 
     void operator()(const NodalVectors<Number> &positions, NodalVectors<Number> &to) const;
     void operator()(const NodeField<Number> &q, NodeField<Number> &to) const;
+    void operator()(const NodeVectorField<3, Number> &v, NodeVectorField<3, Number> &to) const;
     void operator()(const CellField<Number> &q, CellField<Number> &to) const;
   };
 
@@ -44,6 +45,9 @@ namespace retroforge
                     const NodalVectors<double> &q_bar,
                     NodalVectors<double>       &to) const;
     void operator()(const NodeField<double> &q, const NodeField<double> &q_bar, NodeField<double> &to) const;
+    void operator()(const NodeVectorField<3, double> &v,
+                    const NodeVectorField<3, double> &v_bar,
+                    NodeVectorField<3, double>       &to) const;
     void operator()(const CellField<double> &q, const CellField<double> &q_bar, CellField<double> &to) const;
   };
 

@@ -21,7 +21,7 @@ namespace retroforge
     {
     }
 
-    /// Tells whether reverse() reads more of the state at the start than its positions.
+    /// Tells whether reverse() reads more of the state at the start than its positions and velocity.
     static bool reads_history(const Process<double> &process);
 
     /// Takes the state to the end of an increment whose mechanics is solved.
@@ -35,7 +35,7 @@ namespace retroforge
                  WorkpieceState<3, Dual> &state);
 
     /// Takes costates from the end of a recorded increment to its start.
-    /// @param state   at the start; all but its positions may be missing unless reads_history()
+    /// @param state   at the start; all but these may be missing unless reads_history()
     /// @param source  what objectives take from each stage
     void reverse(const Process<double>           &process,
                  const WorkpieceState<3, double> &state,

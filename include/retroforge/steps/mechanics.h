@@ -77,12 +77,16 @@ namespace retroforge
     EquilibriumView<double> view() const { return {stage, W, active, weight}; }
   };
 
+  /// Returns the mean velocity of the nodes in a recorded increment, sum_s b_s v_s [mm/s].
+  NodalVectors<double> mean_velocity(const IncrementRecord &record);
+
   /// An increment when it is done: the stages that integrals weigh, and where it leads to.
   struct SolvedIncrement
   {
     std::shared_ptr<const IncrementStart<double>>   start;
     std::vector<std::shared_ptr<const SolvedStage>> stages;
     NodalVectors<double>                            X;
+    NodalVectors<double>                            velocity; ///< of the nodes, its mean [mm/s]
 
     const SolvedStage &last() const { return *stages.back(); }
   };
@@ -120,9 +124,9 @@ namespace retroforge
                                const TangentObserver         &observer);
 
     /// Reverse of forward, for several scalars at once: they share the matrix and its preconditioner, and
-    /// each has a solve per stage of its own. The costates' positions are those of X_{i+1} on entry, of X_i
-    /// on exit; to the costate at the start they add what laws that depend on it take.
-    /// @param state  at the start of the increment; all but its positions is read where laws depend on it
+    /// each has a solve per stage of its own. The costates' positions and velocity are those at the end on
+    /// entry, at the start on exit; to the rest they add what laws that depend on it take.
+    /// @param state  at the start of the increment; all but its motion is read where laws depend on it
     /// @param source  of each stage: objectives, and the steps that follow mechanics
     void reverse(const Process<double>           &process,
                  const WorkpieceState<3, double> &state,

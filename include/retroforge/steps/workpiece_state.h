@@ -21,6 +21,17 @@ namespace retroforge
     NodeField(std::vector<Number> values) : std::vector<Number>(std::move(values)) {}
   };
 
+  /// One vector per node, or none at all where it is not known. At a change of mesh it follows  v' = J v.
+  template <int dim, typename Number>
+  struct NodeVectorField : std::vector<dealii::Tensor<1, dim, Number>>
+  {
+    using std::vector<dealii::Tensor<1, dim, Number>>::vector;
+    NodeVectorField(std::vector<dealii::Tensor<1, dim, Number>> values)
+        : std::vector<dealii::Tensor<1, dim, Number>>(std::move(values))
+    {
+    }
+  };
+
   /// One number per cell. At a change of mesh it follows transfer_cells().
   template <typename Number>
   struct CellField : std::vector<Number>
@@ -37,12 +48,15 @@ namespace retroforge
   {
     NodalPositions<dim, Number> X;      ///< [mm]
     CellField<Number>           strain; ///< accumulated equivalent strain q, dimensionless
+    /// Of the nodes in the increment before, by which contact knows how fast metal comes to a die [mm/s]. None
+    /// before the first increment of an operation.
+    NodeVectorField<dim, Number> velocity;
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[X, strain] = self;
-      return std::tie(X, strain);
+      auto &[X, strain, velocity] = self;
+      return std::tie(X, strain, velocity);
     }
   };
 
@@ -50,21 +64,25 @@ namespace retroforge
   template <int dim, typename Number>
   WorkpieceState<dim, Number> initial_state(NodalPositions<dim, Number> X, const std::size_t n_cells)
   {
-    return {std::move(X), CellField<Number>(n_cells, Number(0.))};
+    return {std::move(X), CellField<Number>(n_cells, Number(0.)), {}};
   }
 
   /// Returns zero derivatives in the state of a mesh.
   template <int dim>
   WorkpieceState<dim, double> zero_costate(const std::size_t n_nodes, const std::size_t n_cells)
   {
-    return {NodalPositions<dim, double>(n_nodes), CellField<double>(n_cells, 0.)};
+    return {NodalPositions<dim, double>(n_nodes),
+            CellField<double>(n_cells, 0.),
+            NodeVectorField<dim, double>(n_nodes)};
   }
 
-  /// Returns what of a state does not follow from the velocities that are recorded: all but the positions.
+  /// Returns what of a state does not follow from the velocities that are recorded: all but positions and
+  /// velocity.
   template <int dim>
-  WorkpieceState<dim, double> without_positions(WorkpieceState<dim, double> state)
+  WorkpieceState<dim, double> without_motion(WorkpieceState<dim, double> state)
   {
     state.X.clear();
+    state.velocity.clear();
     return state;
   }
 

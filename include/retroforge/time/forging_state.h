@@ -39,7 +39,7 @@ namespace retroforge
     unsigned int              increments = 0, cuts = 0, newton = 0, krylov = 0, linear_solves = 0;
     std::vector<unsigned int> remeshed; ///< the increments, from 0, that began on a new mesh
 
-    /// What the way back needs of the workpiece and does not find in the record, without positions: at each
+    /// What the way back needs of the workpiece and does not find in the record, without its motion: at each
     /// change of mesh, on the mesh it left; and at the start of each increment where laws depend on it.
     std::vector<WorkpieceState<3, double>> left_behind, starts;
   };

@@ -64,13 +64,24 @@ def first_contact():
         energies.append(summary_of(f"bar_{accuracy}")["objectives"][0]["value"])
     judge("bar: as the finer run finds", abs(energies[0] / energies[1] - 1) < 1e-2, energies)
 
-
     # The face of a die with a cavity strains what is beside the cavity only, and that more than the billet's height tells.
     done = run("simulate", "hub", "Press/stroke=2", "Objectives/names=energy", "Design/parameters=", case=os.path.join(ROOT, "prm", "tutorial", "hub", "hub.prm"))
     judge("hub: ends", done.returncode == 0, done.stderr)
     steps, longest = steps_of("hub")[1], 40 * math.sqrt(1e-3)
     judge("hub: the first increment was too long", steps[0] < 0.3 * longest and summary_of("hub")["cuts"] > 0, steps)
     judge("hub: longer ones follow", max(steps) > 1.5 * steps[0], steps)
+
+
+def rollers():
+    """Beside the lines on which a bar lies, gaps do not close: what does not touch does not rub, however long the increments are."""
+    bending = os.path.join(ROOT, "prm", "tutorial", "bar_bending", "bar_bending.prm")
+    energies = []
+    for increments in (0, 90):
+        done = run("simulate", f"bent_{increments}", "Press/stroke=12", f"Press/increments={increments}", "Billet/element size=6",
+                   "Objectives/names=energy", "Output/fields every=0", case=bending)
+        judge(f"bent bar, {increments}: ends", done.returncode == 0, done.stderr)
+        energies.append(summary_of(f"bent_{increments}")["objectives"][0]["value"])
+    judge("bent bar: as the finer run finds", abs(energies[0] / energies[1] - 1) < 1e-2, energies)
 
 
 def resumed():
@@ -92,4 +103,4 @@ def differentiated():
     judge("derivatives pass", done.returncode == 0 and " failed" not in done.stdout, done.stdout[-2000:] + done.stderr)
 
 
-main({"cylinder.prm": prm(CYLINDER), "bar.prm": prm(BAR)}, (uniform, first_contact, resumed, differentiated))
+main({"cylinder.prm": prm(CYLINDER), "bar.prm": prm(BAR)}, (uniform, first_contact, rollers, resumed, differentiated))

@@ -25,6 +25,7 @@ namespace
   const std::vector<std::pair<Term, std::string>> terms = {
     {Term::curvature, "dn/dX of the smooth die"},
     {Term::wall, "the ramp's width by the normal"},
+    {Term::coming, "the ramp's width by the metal's velocity before"},
     {Term::coordinates, "d delta/dX by way of the coordinates of the foot"},
     {Term::normals, "corner normals in the vertices"},
     {Term::edge_ramp, "the edges' share in the ramps of nodes"},

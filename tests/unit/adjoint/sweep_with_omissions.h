@@ -32,7 +32,8 @@ namespace retroforge
     edge_ramp,     // what edges let nodes touch
     edge_area,     // d S / dX of edges
     closing,       // the work on gaps that close
-    wall           // width of the ramp by the die's normal
+    wall,          // width of the ramp by the die's normal
+    coming         // width of the ramp by the metal's velocity in the increment before
   };
 
   /// A facet of a smooth die and a point, as project_smoothly() has them: 21 numbers.
@@ -204,9 +205,11 @@ namespace retroforge
                           const ContactSet<double>            &contact,
                           const FrictionRamp                  &ramp,
                           const NodalVectors<double>          &X,
+                          const NodalVectors<double>          &V,
                           const ContactSetBar                 &bar,
                           const Term                           omitted,
                           NodalVectors<double>                &X_bar,
+                          NodalVectors<double>                &V_bar,
                           std::vector<DieState<double>>       &dies_bar)
   {
     const std::vector<double>             ramps_bar = reverse_ramps(contact, ramp, bar, omitted);
@@ -222,17 +225,28 @@ namespace retroforge
       const double       slope     = ramps_bar[p] * ramp.derivative(gap / s);
       const double       delta_bar = bar.delta[p] + slope / s;
       Vec3               n_bar     = bar.n[p];
-      if (omitted != Term::wall && slope != 0.)
+      if (slope != 0.)
       {
         // One die moves: it and the others close along its velocity.
-        const Vec3 *way = nullptr;
-        for (const DieState<double> &state : states)
-          if (state.velocity.norm() > 0.)
-            way = &state.velocity;
-        const Vec3   e       = *way / way->norm();
-        const double along   = contact.projections[p].n * e;
-        const double s_slope = (1. - ramp.wall * ramp.wall) * along / s;
-        n_bar -= slope * gap / (s * s) * s_slope * e;
+        unsigned int moving = 0;
+        while (states[moving].velocity.norm() == 0.)
+          ++moving;
+        const Vec3   c = states[moving].velocity, n = contact.projections[p].n;
+        const Vec3   u = V.empty() ? c : pair.point.position(V) - states[pair.die].velocity;
+        const double r = u * n / c.norm();
+        if (V.empty() || r > 0.)
+        {
+          const double r_bar = -slope * gap / (s * s) * (1. - ramp.wall * ramp.wall) * r / s;
+          if (omitted != Term::wall)
+            n_bar += r_bar / c.norm() * u;
+          if (!V.empty() && omitted != Term::coming)
+            pair.point.add_to_position(Vec3(r_bar / c.norm() * n), V_bar);
+          if (!V.empty())
+          {
+            dies_bar[pair.die].velocity -= r_bar / c.norm() * n;
+            dies_bar[moving].velocity -= r_bar * r / c.norm_square() * c;
+          }
+        }
       }
       Vec3 &displacement = dies_bar[pair.die].displacement;
       Vec3  at_point;
@@ -393,15 +407,17 @@ namespace retroforge
   /// term.
   inline void reverse_increment(RecordedRun                &problem,
                                 const NodalVectors<double> &X,
+                                const NodalVectors<double> &V,
                                 const IncrementRecord      &record,
                                 const Term                  omitted,
                                 NodalVectors<double>       &G,
+                                NodalVectors<double>       &V_bar,
                                 Process<double>            &process_bar)
   {
     const Scene                      &scene   = problem.scene;
     const Physics<double>             physics = problem.process().over(place(record));
     const double                      dt      = problem.process().duration(place(record));
-    const ContactSet<double>          contact = make_contact_set<double>(scene.view(physics.dies, X),
+    const ContactSet<double>          contact = make_contact_set<double>(scene.view(physics.dies, X, &V),
                                                                 record.pairs,
                                                                 {record.contact.ramp_in(record.step),
                                                                           record.contact.approach * dt,
@@ -411,6 +427,7 @@ namespace retroforge
     PhysicsBar                        bar(scene.dies);
     const Scheme                     &scheme = problem.model().step.scheme;
     const NodalVectors<double>        next   = G; // dPhi/dX_{i+1}
+    const NodalVectors<double>        next_V_bar = std::exchange(V_bar, NodalVectors<double>(X.size()));
     std::vector<NodalVectors<double>> Y_bar(scheme.n_stages());
     for (unsigned int s = scheme.n_stages(); s-- > 0;)
     {
@@ -433,6 +450,8 @@ namespace retroforge
         }
       };
       lead_to(scheme.b[s], next);
+      for (std::size_t k = 0; k < X.size(); ++k)
+        rhs.V[k] += scheme.b[s] * next_V_bar[k];
       for (unsigned int r = s + 1; r < scheme.n_stages(); ++r)
         lead_to(scheme.a[r][s], Y_bar[r]);
       minus_rhs.add(-1., rhs);
@@ -458,9 +477,11 @@ namespace retroforge
                 contact,
                 record.contact.ramp_in(record.step),
                 X,
+                V,
                 contact_bar,
                 omitted,
                 G,
+                V_bar,
                 bar.dies);
     reverse_over(problem.process(), place(record), record.contact.approach, bar, process_bar);
   }
@@ -469,12 +490,13 @@ namespace retroforge
   {
     AdjointResult        result{NodalVectors<double>(problem.state().workpiece.X.size()),
                          no_process_derivatives(problem.process(), problem.scene.dies)};
-    NodalVectors<double> X = problem.state().workpiece.X;
+    NodalVectors<double> X = problem.state().workpiece.X, V_bar(X.size());
     for (unsigned int i = problem.records.size(); i-- > 0;)
     {
       const IncrementRecord &record = problem.records[i];
       X = problem.first_epoch().increment.mechanics.retreat(problem.process(), X, record);
-      reverse_increment(problem, X, record, omitted, result.X_0, result.process);
+      const auto V = i > 0 ? mean_velocity(problem.records[i - 1]) : NodalVectors<double>();
+      reverse_increment(problem, X, V, record, omitted, result.X_0, V_bar, result.process);
     }
     return result;
   }

@@ -231,6 +231,7 @@ struct CornerScene
   MiddleNodes                   mesh_edges;
   bool                          quadratic;
   NodalVectors<double>          X;
+  NodalVectors<double>          V; ///< of the increment before; empty where it is not known
   std::vector<Die>              dies;
   std::vector<DieState<double>> states;
   std::vector<ContactPair>      pairs;
@@ -254,19 +255,30 @@ struct CornerScene
       dies[0] = Die("lower", wavy_sheet(quadratic ? 0.7 : 0.3), 2., {lower == Lower::smooth, 60., 1.});
     states = {{Vec3({0.3, -0.2, 0.9}), 0.1 * random.vector(), 0.3, {}},
               {Vec3({-0.7, 0.4, 0.1}), 0.1 * random.vector(), 0.2, {}}};
-    pairs  = find_contact_pairs(view(states, X), ramp, 1.5 * ramp.width, true);
+    pairs  = find_contact_pairs(view(states, X, V), ramp, 1.5 * ramp.width, true);
+  }
+
+  /// The metal comes to the dies here, and leaves them there.
+  void move(Random &random)
+  {
+    for (std::size_t k = 0; k < X.size(); ++k)
+      V.push_back(0.7 * random.vector());
   }
 
   template <typename Number>
-  ContactView<Number> view(const std::vector<DieState<Number>> &states, const NodalVectors<Number> &X) const
+  ContactView<Number> view(const std::vector<DieState<Number>> &states,
+                           const NodalVectors<Number>          &X,
+                           const NodalVectors<Number>          &V) const
   {
-    return {mesh, topology, dies, states, X, quadratic ? &mesh_edges : nullptr};
+    return {mesh, topology, dies, states, X, quadratic ? &mesh_edges : nullptr, MPI_COMM_SELF, &V};
   }
 
   template <typename Number>
-  ContactSet<Number> contact(const std::vector<DieState<Number>> &states, const NodalVectors<Number> &X) const
+  ContactSet<Number> contact(const std::vector<DieState<Number>> &states,
+                             const NodalVectors<Number>          &X,
+                             const NodalVectors<Number>          &V) const
   {
-    return make_contact_set<Number>(view(states, X), pairs, {ramp, Number(0.3), 0., edge_stiffness});
+    return make_contact_set<Number>(view(states, X, V), pairs, {ramp, Number(0.3), 0., edge_stiffness});
   }
 };
 
@@ -319,8 +331,13 @@ Vector3<Dual> with_direction(const Vec3 &x, const Vec3 &x_dot)
 /// One random direction of nodes and dies, and the set and areas along it.
 void check_mesh(const CornerScene &scene, Random &random, const Moved &moved, Errors &errors)
 {
-  NodalVectors<double> X_dot(scene.X.size());
-  NodalVectors<Dual>   X;
+  NodalVectors<double> X_dot(scene.X.size()), V_dot;
+  NodalVectors<Dual>   X, V;
+  for (const Vec3 &v : scene.V)
+  {
+    V_dot.push_back(moved.nodes ? random.vector() : Vec3());
+    V.push_back(with_direction(v, V_dot.back()));
+  }
   for (std::size_t k = 0; k < scene.X.size(); ++k)
   {
     X_dot[k] = moved.nodes ? random.vector() : Vec3();
@@ -347,8 +364,8 @@ void check_mesh(const CornerScene &scene, Random &random, const Moved &moved, Er
       states[d].vertices.push_back(with_direction(x, vertices_dot[d].back()));
     }
   }
-  const auto contact = scene.contact(scene.states, scene.X);
-  const auto moving  = scene.contact(states, X);
+  const auto contact = scene.contact(scene.states, scene.X, scene.V);
+  const auto moving  = scene.contact(states, X, V);
   const auto areas   = contact_areas(scene.mesh, scene.topology, moving, X);
 
   const std::size_t    n = scene.pairs.size();
@@ -367,13 +384,14 @@ void check_mesh(const CornerScene &scene, Random &random, const Moved &moved, Er
     for (unsigned int i = 0; i < 3; ++i)
       forward += bar.n[p][i] * moving.projections[p].n[i].dx(0);
   }
-  NodalVectors<double>          X_bar(scene.X.size());
+  NodalVectors<double>          X_bar(scene.X.size()), V_bar(scene.X.size());
   std::vector<DieState<double>> dies_bar(scene.dies.size());
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
     dies_bar[d].vertices.resize(scene.dies[d].surface() ? scene.dies[d].surface()->vertices().size() : 0);
   reverse_contact_areas(scene.mesh, scene.topology, contact, scene.X, areas_bar, X_bar, bar);
-  reverse_contact_set(scene.view(scene.states, scene.X), contact, scene.ramp, bar, X_bar, dies_bar);
-  double backward = dot(X_dot, X_bar);
+  reverse_contact_set(
+    scene.view(scene.states, scene.X, scene.V), contact, scene.ramp, bar, X_bar, V_bar, dies_bar);
+  double backward = dot(X_dot, X_bar) + dot(V_dot, V_bar);
   for (unsigned int d = 0; d < scene.dies.size(); ++d)
     backward += dot(displacement_dot[d], dies_bar[d].displacement) +
                 dot(velocity_dot[d], dies_bar[d].velocity) + dot(vertices_dot[d], dies_bar[d].vertices);
@@ -539,13 +557,15 @@ void check_middles(const CornerScene &scene, const ContactSet<double> &contact, 
   std::cout << std::endl;
 }
 
-double check_meshes(const FrictionRamp &ramp, const Lower lower, const bool quadratic)
+double check_meshes(const FrictionRamp &ramp, const Lower lower, const bool quadratic, const bool moving = false)
 {
-  const bool        curved = lower != Lower::plane;
-  Random            random;
-  Errors            errors;
-  const CornerScene scene(ramp, random, lower, quadratic);
-  const auto        contact   = scene.contact(scene.states, scene.X);
+  const bool  curved = lower != Lower::plane;
+  Random      random;
+  Errors      errors;
+  CornerScene scene(ramp, random, lower, quadratic);
+  if (moving)
+    scene.move(random);
+  const auto        contact   = scene.contact(scene.states, scene.X, scene.V);
   unsigned int      n_partial = 0, n_faces[2] = {0, 0};
   for (const double w : contact.ramps)
     n_partial += w > 0. && w < 1.;
@@ -701,6 +721,11 @@ int main(int argc, char **argv)
     for (const Lower lower : {Lower::plane, Lower::smooth, Lower::facets})
       largest =
         std::max(largest, check_meshes({lower == Lower::plane ? 0.9 : 0.6, false, 0.4}, lower, quadratic));
+  std::cout << "metal that comes and goes" << std::endl;
+  for (const bool quadratic : {false, true})
+    for (const Lower lower : {Lower::plane, Lower::smooth, Lower::facets})
+      largest = std::max(
+        largest, check_meshes({lower == Lower::plane ? 0.9 : 0.6, false, 0.4}, lower, quadratic, true));
   check_ramp();
   check_layer();
   std::cout << "FIGURE contact_derivative_error " << largest << std::endl;

@@ -231,11 +231,13 @@ struct PathProblem
         const NodeIndex k = W_bar.V.numbering()->node_at(place), n = bar.states[i].V.size();
         (k < n ? bar.states[i].V[k] : bar.states[i].bubbles[k - n]) += W_bar.V.at_place(place);
       }
+      NodalVectors<double> no_velocity_bar(inputs.states[i].X.size());
       reverse_contact_set(scene.view(inputs.physics.dies, inputs.states[i].X),
                           set,
                           ramp,
                           set_bar,
                           bar.states[i].X,
+                          no_velocity_bar,
                           physics_bar.dies);
       add_numbers(physics_bar.material.law, bar.physics.material.law);
       add_numbers(physics_bar.contact, bar.physics.contact);

@@ -4,7 +4,7 @@
 // The step that takes the workpiece to another mesh, on an upset cylinder that is remeshed.
 // - The state: positions are those of the new mesh, strain is transfer_cells(), constants stay.
 // - <A x_dot, y> = <x_dot, A^T y> of the state, A from dual numbers; and of an aggregate of all kinds of
-//   members, positions, one number per node, one per cell, for each kind alone and all together.
+//   members, positions, one number or vector per node, one number per cell, for each kind alone and all together.
 // - Volumes change as they did.
 // - No derivatives in a field: none arrive, and none are computed.
 
@@ -36,12 +36,13 @@ namespace
     NodalVectors<Number> X;
     NodeField<Number>    at_nodes;
     CellField<Number>    in_cells;
+    NodeVectorField<3, Number> vectors;
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[X, at_nodes, in_cells] = self;
-      return std::tie(X, at_nodes, in_cells);
+      auto &[X, at_nodes, in_cells, vectors] = self;
+      return std::tie(X, at_nodes, in_cells, vectors);
     }
   };
 
@@ -134,7 +135,8 @@ namespace
   {
     return randomised(Everything<double>{NodalVectors<double>(mesh.n_nodes()),
                                          NodeField<double>(mesh.n_nodes()),
-                                         CellField<double>(mesh.n_cells())});
+                                         CellField<double>(mesh.n_cells()),
+                                         NodeVectorField<3, double>(mesh.n_nodes())});
   }
 
   /// The same with some of the derivatives that come in put to zero.
@@ -206,11 +208,20 @@ int main(int argc, char **argv)
                                      [&](auto &y) {
                                        none(y.at_nodes);
                                        none(y.in_cells);
+                                       none(y.vectors);
                                      }))
             << "\nnodes alone: "
             << small(defect_of_kinds(meshes,
                                      [&](auto &y) {
                                        none(y.X);
+                                       none(y.in_cells);
+                                       none(y.vectors);
+                                     }))
+            << "\nvectors alone: "
+            << small(defect_of_kinds(meshes,
+                                     [&](auto &y) {
+                                       none(y.X);
+                                       none(y.at_nodes);
                                        none(y.in_cells);
                                      }))
             << "\ncells alone: "
@@ -218,6 +229,7 @@ int main(int argc, char **argv)
                                      [&](auto &y) {
                                        none(y.X);
                                        none(y.at_nodes);
+                                       none(y.vectors);
                                      }))
             << "\n";
   std::vector<DieState<double>> no_bar;
