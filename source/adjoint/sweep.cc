@@ -138,7 +138,7 @@ namespace retroforge
       if (i > 0)
       {
         const IncrementRecord &earlier = run.record(i - 1);
-        velocity                       = mean_velocity(earlier);
+        velocity                       = epoch->increment.mechanics.mean_velocity(earlier);
         operation                      = earlier.operation;
       }
       const IncrementRecord &record = run.record(i);

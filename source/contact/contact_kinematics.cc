@@ -180,13 +180,13 @@ namespace retroforge
     Assert(value_of(approach.tau) > 0., dealii::ExcMessage("gaps close within a positive time"));
     ContactSet<Number> contact;
     const auto &[mesh, topology, dies, states, X, edges, comm, velocity] = view;
-    contact.edge_stiffness                                     = approach.edge_stiffness;
-    contact.counts_closing                                     = approach.counts_closing;
-    contact.pairs                                              = pairs;
-    contact.projections                                        = projected(view, pairs);
-    contact.tau                                                = approach.tau;
-    contact.approach                                           = approach.law;
-    contact.quadratic                                          = edges != nullptr;
+    contact.edge_stiffness                                               = approach.edge_stiffness;
+    contact.counts_closing                                               = approach.counts_closing;
+    contact.pairs                                                        = pairs;
+    contact.projections                                                  = projected(view, pairs);
+    contact.tau                                                          = approach.tau;
+    contact.approach                                                     = approach.law;
+    contact.quadratic                                                    = edges != nullptr;
     const RampScales<Number> scales(approach.ramp, states);
     PairOfVelocityNode       index;
     for (unsigned int p = 0; p < pairs.size(); ++p)

@@ -72,17 +72,18 @@ namespace retroforge
       "0, or the sharp law, for none. In units of approach times the path by which the dies close in an "
       "increment: its stroke, where one die moves. Units: none.",
       dealii::Patterns::Double(0.));
-    prm.add_parameter("ramp width",
-                      ramp_width,
-                      "Gap over which friction sets in, in units of approach times the path by which the metal "
-                      "came nearer to the die in an increment, as fast as in the one before. Units: none.",
-                      dealii::Patterns::Double(1e-6, 100.));
     prm.add_parameter(
-      "ramp at walls",
-      ramp_at_walls,
-      "Least gap over which friction sets in, where metal comes no nearer, as along walls: a part of that where "
-      "it comes as fast as the dies close. 1: the same gap everywhere. Units: none.",
-      dealii::Patterns::Double(1e-3, 1.));
+      "ramp width",
+      ramp_width,
+      "Gap over which friction sets in, in units of approach times the path by which the metal "
+      "came nearer to the die in an increment, as fast as in the one before. Units: none.",
+      dealii::Patterns::Double(1e-6, 100.));
+    prm.add_parameter("ramp at walls",
+                      ramp_at_walls,
+                      "Least gap over which friction sets in, where metal comes no nearer, as along walls: a "
+                      "part of that where "
+                      "it comes as fast as the dies close. 1: the same gap everywhere. Units: none.",
+                      dealii::Patterns::Double(1e-3, 1.));
     prm.add_parameter(
       "penetration",
       penetration,

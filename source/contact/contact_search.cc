@@ -142,7 +142,7 @@ namespace retroforge
         {
           const auto [delta, normal] = view.dies[d].project(x, view.states[d], feature);
           const auto metal           = view.velocity_of(at);
-          const bool touching = delta <= ramp.width * scales(d, normal, metal ? &*metal : nullptr);
+          const bool touching        = delta <= ramp.width * scales(d, normal, metal ? &*metal : nullptr);
           seen.push_back({static_cast<unsigned int>(i), feature, delta, touching});
         }
       }
@@ -161,9 +161,7 @@ namespace retroforge
       const auto            &X     = view.X;
       const auto            &edges = view.topology.surface_edges;
       std::vector<NodeIndex> ends;
-      const auto             middle = [&](const std::size_t e) {
-        return ContactPoint::middle(edges[e][0], edges[e][1]);
-      };
+      const auto middle = [&](const std::size_t e) { return ContactPoint::middle(edges[e][0], edges[e][1]); };
       for (const auto &[e, feature, at_middle, touching] :
            seen_by(view, ramp, d, edges.size(), reach, middle))
       {
@@ -234,7 +232,6 @@ namespace retroforge
   template RampScales<double>::RampScales(const FrictionRamp &, const std::vector<DieState<double>> &);
   template RampScales<Dual>::RampScales(const FrictionRamp &, const std::vector<DieState<Dual>> &);
   template double RampScales<double>::operator()(unsigned int, const Vec3 &, const Vec3 *) const;
-  template Dual   RampScales<Dual>::operator()(unsigned int,
-                                             const Vector3<Dual> &,
-                                             const Vector3<Dual> *) const;
+  template Dual
+  RampScales<Dual>::operator()(unsigned int, const Vector3<Dual> &, const Vector3<Dual> *) const;
 } // namespace retroforge

@@ -51,12 +51,6 @@ namespace retroforge
     solve_bubbles(stage, W);
   }
 
-  NodalVectors<double> mean_velocity(const IncrementRecord &record)
-  {
-    const NodalVectors<double> still(record.solves.front().motion().size());
-    return advanced(still, 1., Scheme::by_name(record.scheme).b, record.solves);
-  }
-
   Mechanics::Mechanics(const Scene            &scene,
                        const StepModel        &model,
                        const NewtonParameters &newton,
@@ -213,10 +207,12 @@ namespace retroforge
       if (!replay)
       {
         const auto timing = timings_.scope("contact");
-        record.pairs      = find_contact_pairs(
-          scene_.view(physics.dies, X, &state.velocity), record.contact.ramp_in(record.step), reach, model_.edges_touch);
-        all_found = reach > least_reach && record.pairs.size() == n_watched;
-        n_watched = record.pairs.size();
+        record.pairs      = find_contact_pairs(scene_.view(physics.dies, X, &state.velocity),
+                                          record.contact.ramp_in(record.step),
+                                          reach,
+                                          model_.edges_touch);
+        all_found         = reach > least_reach && record.pairs.size() == n_watched;
+        n_watched         = record.pairs.size();
       }
       auto start = start_of(process, state, record);
       if (!replay)
@@ -271,6 +267,12 @@ namespace retroforge
                                       const IncrementRecord           &record) const
   {
     return recorded(start_of(process, state, record), state.X, record);
+  }
+
+  NodalVectors<double> Mechanics::mean_velocity(const IncrementRecord &record) const
+  {
+    const NodalVectors<double> still(record.solves.front().motion().size());
+    return advanced(still, 1., scheme_of(record).b, record.solves);
   }
 
   std::optional<Field<double>> Mechanics::rate(const IncrementRecord &record) const

@@ -20,7 +20,7 @@ namespace retroforge
     double  approach       = 1.;
     double  layer          = 0.45;
     double  ramp_width     = 2.;
-    double  ramp_at_walls  = 0.1;
+    double  ramp_at_walls  = 0.05;
     double  penetration    = 3e-7;
     double  penalty        = 0.;
     double  slip_fraction  = 1e-2;

@@ -77,9 +77,6 @@ namespace retroforge
     EquilibriumView<double> view() const { return {stage, W, active, weight}; }
   };
 
-  /// Returns the mean velocity of the nodes in a recorded increment, sum_s b_s v_s [mm/s].
-  NodalVectors<double> mean_velocity(const IncrementRecord &record);
-
   /// An increment when it is done: the stages that integrals weigh, and where it leads to.
   struct SolvedIncrement
   {
@@ -133,6 +130,9 @@ namespace retroforge
                  const IncrementRecord           &record,
                  const AdjointSource             &source,
                  std::vector<Costate>            &costates);
+
+    /// Returns the mean velocity of the nodes in a recorded increment, sum_s b_s v_s [mm/s].
+    NodalVectors<double> mean_velocity(const IncrementRecord &record) const;
 
     /// Where the increment after a solved one begins: its last solution, and how it changed from stage to
     /// stage. Only what is recorded enters, so that a run that is resumed begins there, too.

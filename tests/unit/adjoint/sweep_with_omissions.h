@@ -425,8 +425,8 @@ namespace retroforge
                                                                           record.contact.edge_stiffness});
     ContactSetBar                     contact_bar(record.pairs.size());
     PhysicsBar                        bar(scene.dies);
-    const Scheme                     &scheme = problem.model().step.scheme;
-    const NodalVectors<double>        next   = G; // dPhi/dX_{i+1}
+    const Scheme                     &scheme     = problem.model().step.scheme;
+    const NodalVectors<double>        next       = G; // dPhi/dX_{i+1}
     const NodalVectors<double>        next_V_bar = std::exchange(V_bar, NodalVectors<double>(X.size()));
     std::vector<NodalVectors<double>> Y_bar(scheme.n_stages());
     for (unsigned int s = scheme.n_stages(); s-- > 0;)
@@ -494,8 +494,9 @@ namespace retroforge
     for (unsigned int i = problem.records.size(); i-- > 0;)
     {
       const IncrementRecord &record = problem.records[i];
-      X = problem.first_epoch().increment.mechanics.retreat(problem.process(), X, record);
-      const auto V = i > 0 ? mean_velocity(problem.records[i - 1]) : NodalVectors<double>();
+      X            = problem.first_epoch().increment.mechanics.retreat(problem.process(), X, record);
+      const auto V = i > 0 ? problem.first_epoch().increment.mechanics.mean_velocity(problem.records[i - 1])
+                           : NodalVectors<double>();
       reverse_increment(problem, X, V, record, omitted, result.X_0, V_bar, result.process);
     }
     return result;

@@ -48,12 +48,13 @@ namespace
 
   void check_halves()
   {
-    const Parameters p = tilted_block();
-    ForwardRun       halves(
-      problem_of(
-        three_dies(p.dies[1].point - Vec3({0., 0., 1.5}), p.dies[1].facing, p.dies[1].velocity), 1.5, 1.5),
-      ForwardRun::Keep::increments,
-      timings_of_runs());
+    // Metal begins an operation at rest, which the width of ramps sees: here it is one everywhere.
+    Parameters p            = tilted_block();
+    p.contact.ramp_at_walls = 1.;
+    Parameters three =
+      three_dies(p.dies[1].point - Vec3({0., 0., 1.5}), p.dies[1].facing, p.dies[1].velocity);
+    three.contact.ramp_at_walls = 1.;
+    ForwardRun halves(problem_of(three, 1.5, 1.5), ForwardRun::Keep::increments, timings_of_runs());
     halves.forge();
     const RecordedRun whole(p);
     const double      error = relative_error(halves.state().energy.total(), whole.state().energy.total());

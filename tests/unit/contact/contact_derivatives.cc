@@ -557,7 +557,8 @@ void check_middles(const CornerScene &scene, const ContactSet<double> &contact, 
   std::cout << std::endl;
 }
 
-double check_meshes(const FrictionRamp &ramp, const Lower lower, const bool quadratic, const bool moving = false)
+double
+check_meshes(const FrictionRamp &ramp, const Lower lower, const bool quadratic, const bool moving = false)
 {
   const bool  curved = lower != Lower::plane;
   Random      random;
@@ -565,8 +566,8 @@ double check_meshes(const FrictionRamp &ramp, const Lower lower, const bool quad
   CornerScene scene(ramp, random, lower, quadratic);
   if (moving)
     scene.move(random);
-  const auto        contact   = scene.contact(scene.states, scene.X, scene.V);
-  unsigned int      n_partial = 0, n_faces[2] = {0, 0};
+  const auto   contact   = scene.contact(scene.states, scene.X, scene.V);
+  unsigned int n_partial = 0, n_faces[2] = {0, 0};
   for (const double w : contact.ramps)
     n_partial += w > 0. && w < 1.;
   for (const auto &face : contact.friction_faces)

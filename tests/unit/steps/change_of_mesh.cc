@@ -33,9 +33,9 @@ namespace
   template <typename Number>
   struct Everything
   {
-    NodalVectors<Number> X;
-    NodeField<Number>    at_nodes;
-    CellField<Number>    in_cells;
+    NodalVectors<Number>       X;
+    NodeField<Number>          at_nodes;
+    CellField<Number>          in_cells;
     NodeVectorField<3, Number> vectors;
 
     template <typename Self>
