@@ -12,7 +12,7 @@ namespace retroforge
     constexpr std::size_t of_friction = 1, of_m = 2, of_dies = 3;
 
     /// Speed of closing, as a part of the die's, below which points rest: there kappa would follow the last digits.
-    constexpr double at_rest = 0.005;
+    constexpr double at_rest = 0.01;
 
     /// Part of an increment that a die presses after it arrived, below which it does not count.
     constexpr double just_touching = 1e-12;
@@ -96,7 +96,10 @@ namespace retroforge
       const Number *moments = &terms[d];
       const Number  rest = (at_rest * D) * (at_rest * D), square = moments[0] * moments[2] + rest;
       if (value_of(square) > 0.)
-        at_once += moments[1] * ((moments[1] * moments[1] + rest) / square);
+      {
+        const Number part = (moments[1] * moments[1] + rest) / square;
+        at_once += moments[1] * part * part;
+      }
     }
     parts.closing = 0.5 * (1. + m) * (closing_power(terms) - at_once);
     // A die that hardly reaches the metal by the end of the increment spends nothing; one that gives way to it

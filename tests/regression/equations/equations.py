@@ -192,8 +192,13 @@ class Contact:
                 delta.update({(k,): everywhere[(k,)] for k in edge})
         self.delta = delta
 
-    def w(self, delta):
-        return ramp_01(delta / self.case["b"])
+    def w(self, point, delta):
+        """(27)"""
+        n, v_d, before = self.n[point], np.array(self.case["die"]["velocity"]), self.case["V before"]
+        coming = np.mean([before[k] for k in point], axis=0) - v_d if before else v_d
+        r = coming @ n / np.linalg.norm(v_d)
+        r = max(r, 0) if before else r
+        return ramp_01(delta / (self.case["width"] * np.sqrt(self.case["c_s"]**2 + (1 - self.case["c_s"]**2) * r**2)))
 
     def level(self):
         """(22)"""
@@ -204,21 +209,22 @@ class Contact:
         for v in range(4):
             around = [m for m in chords if v in m]
             if around:
-                self.delta[v,] -= sum(self.w(own[m]) * c[m] * b[m] for m in around) / (0.25 + sum(self.w(own[m]) for m in around))
+                self.delta[v,] -= sum(self.w(m, own[m]) * c[m] * b[m] for m in around) / (
+                    0.25 + sum(self.w(m, own[m]) for m in around))
         for m in chords:
             ends = self.delta[m[:1]], self.delta[m[1:]]
-            self.delta[m] += self.w(ends[0]) * self.w(ends[1]) * c[m] * (sum(ends) / 2 - own[m])
+            self.delta[m] += self.w(m[:1], ends[0]) * self.w(m[1:], ends[1]) * c[m] * (sum(ends) / 2 - own[m])
             self.smooth[m] = c[m] == 1.
 
     def touch(self):
         """(28)"""
         self.touching = {}
         for point, delta in self.delta.items():
-            free = 1 - self.w(delta)
+            free = 1 - self.w(point, delta)
             if not self.quadratic and len(point) == 1:
                 for edge in EDGES:
                     if edge in self.delta and point[0] in edge:
-                        free *= 1 - self.w(self.delta[edge])
+                        free *= 1 - self.w(edge, self.delta[edge])
             self.touching[point] = 1 - free
 
     def areas(self):

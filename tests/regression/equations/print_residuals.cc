@@ -116,10 +116,13 @@ void print_case(RandomNumbers    &random,
   const auto     &X       = scene.mesh.X;
   Physics<double> physics = {MaterialLaw<double>{1.7, m, 0.1}, {20., 0.05}, {{}}};
   physics.dies            = {{0.2 * random.vector(), 0.05 * random.vector(), 0.4, {}}};
-  const FrictionRamp ramp{0.5, false};
-  const double       tau = 0.4, part = 0.5, edge_stiffness = 0.3, reach = 1.;
-  const auto         view = scene.view(physics.dies, X);
-  const auto         contact =
+  const FrictionRamp   ramp{0.8, false, 0.5};
+  NodalVectors<double> before; // in half of the cases the metal's velocity is known
+  for (NodeIndex k = 0; sinking && k < X.size(); ++k)
+    before.push_back(0.3 * random.vector());
+  const double tau = 0.4, part = 0.5, edge_stiffness = 0.3, reach = 1.;
+  const auto   view = scene.view(physics.dies, X, &before);
+  const auto   contact =
     make_contact_set<double>(view,
                              find_contact_pairs(view, ramp, reach, true),
                              ContactApproach<double>{ramp, tau, ApproachLaw(layer, part), edge_stiffness});
@@ -148,7 +151,9 @@ void print_case(RandomNumbers    &random,
     {"tau", tau},
     {"l", layer},
     {"theta", part},
-    {"b", ramp.width},
+    {"width", ramp.width},
+    {"c_s", ramp.wall},
+    {"V before", as_json(std::vector<Vec3>(before.begin(), before.end()))},
     {"kappa", edge_stiffness},
     {"reach", reach},
     {"R", as_json(stage.residual(W, {}), scene.discretization)}};
