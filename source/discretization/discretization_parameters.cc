@@ -16,8 +16,8 @@ namespace retroforge
       {{"mini", ElementPair::mini}, {"P2-P1", ElementPair::taylor_hood}},
       "Velocity and pressure in each tetrahedron: mini, linear with a bubble, and linear; or "
       "P2-P1, quadratic and linear (Taylor-Hood), which needs far larger elements for the same "
-      "accuracy where dies and billet are flat; where they are curved, flat faces limit both alike, "
-      "and P2-P1 has the smoother gradients. Units: none.");
+      "accuracy where dies and billet are flat; where dies are curved it may come to a small error of the "
+      "energy sooner, and takes longer to a gradient (manual: which pair when). Units: none.");
     add_enum<TriangulationKind>(
       prm,
       "triangulation",
