@@ -158,10 +158,11 @@ namespace retroforge
     double       a     = 1.;
     if (start < 0.)
     {
-      // Bracketed secant for the root of a monotone function; a rough root is enough.
+      // Bracketed secant for the root of a monotone function. A rough root is not enough: where a step has to be
+      // cut, what it leaves of the slope costs further steps, and each is a linear solve.
       double                 low = 0., low_slope = start, high = -1., high_slope = 0.;
       constexpr unsigned int trials     = 12;
-      constexpr double       rough_root = 0.8, uphill = 0.1; // of the slope at the start
+      constexpr double       rough_root = 0.1, uphill = 0.1; // of the slope at the start
       for (unsigned int trial = 0; trial < trials; ++trial)
       {
         double s = slope(trial == 0 ? whole : residual_at(a), step);

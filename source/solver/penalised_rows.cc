@@ -11,6 +11,13 @@ namespace retroforge
 {
   namespace
   {
+    /// @param i  local row; a column that is owned has the local number of its row
+    double diagonal_entry(const NodeMatrix &matrix, const unsigned int i)
+    {
+      const NodeMatrix::Row row = matrix.row(i);
+      return row.values[std::find(row.columns, row.columns + row.n, static_cast<int>(i)) - row.columns];
+    }
+
     /// Some rows and columns of a matrix.
     struct Submatrix
     {
@@ -119,17 +126,17 @@ namespace retroforge
     const std::vector<unsigned int> &rows = system.penalised;
     if (rows.empty())
       return;
+    if (!system.penalties_couple)
+    {
+      for (const unsigned int i : rows)
+        x[i] += r[i] / diagonal_entry(*system.A, i);
+      return;
+    }
     const Submatrix     A(*system.A, rows);
     std::vector<double> change(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
       change[i] = r[rows[i]];
-    if (system.penalties_couple && !system.symmetric)
-      change = solve_unsymmetric(A, transposition, change);
-    else if (system.penalties_couple)
-      change = solve(A, std::move(change));
-    else
-      for (std::size_t i = 0; i < rows.size(); ++i)
-        change[i] /= A.diagonal[i];
+    change = system.symmetric ? solve(A, std::move(change)) : solve_unsymmetric(A, transposition, change);
     for (std::size_t i = 0; i < rows.size(); ++i)
       x[rows[i]] += change[i];
   }

@@ -28,6 +28,49 @@ namespace retroforge
                                             {"multigrid", Method::multigrid},
                                             {"direct", Method::direct}};
 
+    /// r -= M x  in some rows, by local number.
+    /// @param of  the entries of M
+    void subtract_product(const NodeMatrix                &of,
+                          const la::SparseMatrix          &M,
+                          const std::vector<unsigned int> &rows,
+                          const la::Vector                &x,
+                          std::vector<double>             &r)
+    {
+      const Epetra_Import                *importer = M.trilinos_matrix().Importer();
+      std::unique_ptr<Epetra_MultiVector> met; // x in the columns of M, with those of other ranks
+      if (importer != nullptr)
+      {
+        met = std::make_unique<Epetra_MultiVector>(M.trilinos_matrix().ColMap(), 1, false);
+        met->Import(x.trilinos_vector(), *importer, Insert);
+      }
+      const double *values = met ? (*met)[0] : x.begin();
+      for (const unsigned int i : rows)
+      {
+        const NodeMatrix::Row row = of.row(i);
+        double                sum = 0.;
+        for (unsigned int e = 0; e < row.n; ++e)
+          sum += row.values[e] * values[row.columns[e]];
+        r[i] -= sum;
+      }
+    }
+
+    /// b - M x  in penalised rows of A, by local rows; b in others.
+    std::vector<double>
+    penalised_residual(const SaddleSystem &system, const la::BlockVector &b, const la::BlockVector &x)
+    {
+      const la::BlockSparseMatrix &M = system.matrix;
+      std::vector<double>          r(b.block(0).begin(), b.block(0).end());
+      subtract_product(*system.A, M.block(0, 0), system.penalised, x.block(0), r);
+      subtract_product(*system.B, M.block(0, 1), system.penalised, x.block(1), r);
+      for (const auto &[row, column] : system.held)
+      {
+        const double weight = column * x.block(0);
+        for (const unsigned int i : system.penalised)
+          r[i] -= weight * row.begin()[i];
+      }
+      return r;
+    }
+
     /// A function of two vectors, as deal.II's solvers call it.
     template <typename F>
     struct Operator
@@ -221,8 +264,12 @@ namespace retroforge
                                       const Transposition    transposition,
                                       la::BlockVector       &x) const
   {
-    const la::BlockVector r = residual(b, transposition, x);
-    solve_penalised_rows(system_, transposition, r.block(0).begin(), x.block(0).begin());
+    if (transposition == Transposition::plain)
+      solve_penalised_rows(
+        system_, transposition, penalised_residual(system_, b, x).data(), x.block(0).begin());
+    else
+      solve_penalised_rows(
+        system_, transposition, residual(b, transposition, x).block(0).begin(), x.block(0).begin());
   }
 
   unsigned int SaddleSolver::solve_iteratively(const la::BlockVector              &b,
