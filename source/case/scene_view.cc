@@ -105,8 +105,13 @@ namespace retroforge
     if (!parts_)
       return;
     const PressParameters &press = parts_->parameters.press;
-    summary_.press               = {
-                    parts_->leading_die, press.stroke, parts_->seconds, press.increments, chooses_increments()};
+    summary_.press               = {parts_->leading_die,
+                                    press.stroke,
+                                    parts_->seconds,
+                                    press.increments,
+                                    press.steps.empty() && chooses_increments()};
+    if (!press.steps.empty())
+      summary_.press.increments = press.steps.ends.size();
     summary_.metal = {parts_->parameters.material.law.K, parts_->parameters.material.law.m};
     describe_dies();
     if (!parts_->mesh)
