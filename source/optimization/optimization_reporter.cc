@@ -225,6 +225,8 @@ namespace retroforge
     }
     if (row.decision == Decision::accepted || row.decision == Decision::refused)
       std::printf("  step %.3g", row.radius);
+    if (!evaluation.steps.empty())
+      std::printf("  %u increments, which others repeat", evaluation.increments);
     std::printf("  %.1f s", evaluation.seconds);
     if (problem_.evaluator.seconds_each() > 0.)
       std::printf(", at most %.0f s left",

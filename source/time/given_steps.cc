@@ -91,7 +91,7 @@ namespace retroforge
           step < shortest * steps.ends.back())
         throw_no_steps(where(lines[i]),
                        "has a step of " + as_text(step) + " mm, less than a millionth of the stroke");
-    constexpr double rounding = 1e-9;
+    constexpr double rounding = 1e-12;
     if (std::abs(steps.ends.back() / stroke - 1.) > rounding)
     {
       steps.stretch = stroke / steps.ends.back();
