@@ -17,8 +17,8 @@ namespace retroforge
   };
 
   /// The time loop through the operations of a process: increments of equal stroke, as long as an accuracy
-  /// bears, or those of another run, halved while an element would invert or a node would cross too much of an edge, on meshes that are
-  /// remade when they must. In a replay what was recorded is obeyed instead.
+  /// bears, or those of another run, halved while an element would invert or a node would cross too much of an
+  /// edge, on meshes that are remade when they must. In a replay what was recorded is obeyed instead.
   class Forging
   {
   public:

@@ -21,7 +21,7 @@ BARREL = changed(CYLINDER, {
     "Dies": {"names": "upper"}, "Press": {"stroke": 6}, "Objectives": {"names": "barrel"},
     "Objective barrel": {"type": "cylinder distance", "patches": "side outer"},
     "Design": {"parameters": "billet/control point 1 r, billet/control point 2 r"},
-    "Optimisation": {"objective": "barrel", "noise runs": 0, "confirmation": 0, "iterations": 5}})
+    "Scan": {"parameter": ""}, "Optimisation": {"objective": "barrel", "noise runs": 0, "confirmation": 0, "iterations": 5}})
 
 
 def strokes_of(output):
