@@ -218,9 +218,10 @@ namespace retroforge
     constexpr unsigned int deepest = 30;
     const double           whole = nominal_step(), done = (state.stroke - state.numerics_stroke) / whole;
     const auto             step = [&](const unsigned int depth) { return std::ldexp(whole, -int(depth)); };
-    if (!steps_.empty())
-      state.depth = 0; // it counts within one that is not kept whole
-    while (step(state.depth) > last_step * (1. + 1e-9) && state.depth < deepest)
+    if (!steps_.empty()) // it counts within a step that is not kept whole: as long as the last one, or longer
+      for (state.depth = 0; step(state.depth + 1) > last_step * (1. - 1e-9) && state.depth < deepest;)
+        ++state.depth;
+    while (steps_.empty() && step(state.depth) > last_step * (1. + 1e-9) && state.depth < deepest)
       ++state.depth;
     while (!limits_.allow_strain(state.strain_rate * step(state.depth)) && state.depth < most_halvings)
       ++state.depth;

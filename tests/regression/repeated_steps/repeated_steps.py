@@ -18,7 +18,7 @@ CYLINDER = changed(upsetting("cylinder", {"radius": 10, "height": 15}, 5, 15, 7.
 BARREL = changed(CYLINDER, {
     "Billet": {"shape": "profile", "control points": "10, 0; 10, 5; 10, 10; 10, 15", "symmetry planes": "-1, 0, 0; 0, -1, 0; 0, 0, -1",
                "volume held by": "control point 4 r"},
-    "Dies": {"names": "upper"}, "Press": {"stroke": 6}, "Objectives": {"names": "barrel"},
+    "Dies": {"names": "upper"}, "Press": {"stroke": 7, "accuracy": 2e-4}, "Objectives": {"names": "barrel"},
     "Objective barrel": {"type": "cylinder distance", "patches": "side outer"},
     "Design": {"parameters": "billet/control point 1 r, billet/control point 2 r"},
     "Scan": {"parameter": ""}, "Optimisation": {"objective": "barrel", "noise runs": 0, "confirmation": 0, "iterations": 5}})
