@@ -100,6 +100,11 @@ namespace retroforge
         size > 0. && forging_case.parameters.remeshing.enabled())
       add(note_on_fineness(
         "Remeshing/element size", size, expected_cells(std::pow(forging_case.size().side, 3), size)));
+    if (const PressParameters &press = forging_case.parameters.press;
+        std::abs(press.steps.stretch - 1.) > 1e-6)
+      notes.push_back("the increments of " + press.steps_file + " end at " +
+                      as_text(press.stroke / press.steps.stretch) + " mm and are stretched to " +
+                      as_text(press.stroke) + " mm");
     if (forging_case.process.operations.front().path_scale != 1.)
       notes.push_back(
         "die " + forging_case.parameters.dies[forging_case.process.operations.front().leading_die].name +

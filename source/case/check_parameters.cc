@@ -17,7 +17,8 @@ namespace retroforge
     prm.add_parameter(
       "free differences",
       free,
-      "Also run with everything decided anew: shows the jumps that decisions make. Units: none.");
+      "Also run with everything decided anew, contact and meshes and all, but for the increments "
+      "(Design/repeat steps): shows the jumps that decisions make. Units: none.");
     prm.add_parameter("taylor start",
                       taylor_start,
                       "Largest relative step of the Taylor test. Units: none.",

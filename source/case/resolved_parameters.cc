@@ -88,6 +88,11 @@ namespace retroforge
     }
     else
       press.most_increments = 10 * std::min(press.increments, 100000000u);
+    if (!press.steps_file.empty())
+    {
+      press.steps           = read_steps(press.steps_file, press.stroke);
+      press.most_increments = std::max<unsigned int>(press.most_increments, 10 * press.steps.ends.size());
+    }
     touching_gap_ =
       contact.approach * (press.largest_strain ? fine_step * size.extent : closing_path() / press.increments);
     check_derived(size);

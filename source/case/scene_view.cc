@@ -105,8 +105,9 @@ namespace retroforge
     if (!parts_)
       return;
     const PressParameters &press = parts_->parameters.press;
-    summary_.press               = {
-                    parts_->leading_die, press.stroke, parts_->seconds, press.increments, chooses_increments()};
+    // Given ones are of many lengths.
+    const unsigned int increments = press.steps.empty() ? press.increments : 0;
+    summary_.press = {parts_->leading_die, press.stroke, parts_->seconds, increments, chooses_increments()};
     summary_.metal = {parts_->parameters.material.law.K, parts_->parameters.material.law.m};
     describe_dies();
     if (!parts_->mesh)

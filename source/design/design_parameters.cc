@@ -63,6 +63,13 @@ namespace retroforge
       "long as they were, and by designs in between where several stand one after the other, separated by "
       "semicolons. Values of design parameters mean what they meant. Units: those of the parameters.");
     prm.add_action("meshed at", [this](const std::string &text) { meshed_at = designs_in(text); });
+    prm.add_parameter(
+      "repeat steps",
+      repeat_steps,
+      "Other designs than the nominal one, in scan, in optimize and in the differences of check that decide "
+      "anew, repeat its increments as `Press/steps' does, so that the objective does not jump where one more "
+      "is "
+      "made. Units: none.");
     prm.leave_subsection();
     tag(prm, "Design", SettingRole::results);
     for (const char *setting : {"Design/at", "Design/meshed at"})

@@ -29,7 +29,7 @@ namespace retroforge
   {
   }
 
-  Evaluation CachedRun::forge(const std::vector<double> &mu)
+  Evaluation CachedRun::forge(const std::vector<double> &mu, const Evaluation *steps)
   {
     const auto begin = std::chrono::steady_clock::now();
     Evaluation evaluation;
@@ -39,11 +39,16 @@ namespace retroforge
     try
     {
       case_.design.check_values(mu);
-      run_ = std::make_unique<ForwardRun>(
-        case_, case_.design.process(mu), case_.design.positions(mu), ForwardRun::Keep::increments, timings_);
+      ForgingProblem problem(case_, case_.design.process(mu), case_.design.positions(mu));
+      const bool     repeats = steps != nullptr && steps->mu != mu;
+      if (repeats)
+        problem.repeat_steps(steps->steps);
+      run_ = std::make_unique<ForwardRun>(std::move(problem), ForwardRun::Keep::increments, timings_);
       run_->check();
       run_->forge([&](const IncrementEvent &event) { evaluation.increments = event.state.increments; });
       evaluation.values = of_first_rank(run_->values(), case_.comm);
+      if (!repeats && case_.parameters.repeats_steps())
+        evaluation.steps = run_->strokes();
     }
     catch (const Error &error)
     {
@@ -62,11 +67,11 @@ namespace retroforge
     return text + ")";
   }
 
-  ForwardRun &CachedRun::in_memory(const Evaluation &known)
+  ForwardRun &CachedRun::in_memory(const Evaluation &known, const Evaluation *steps)
   {
     if (run_ && mu_ == known.mu)
       return *run_;
-    const Evaluation again = forge(known.mu);
+    const Evaluation again = forge(known.mu, steps);
     if (again.failed())
       throw Error("optimize",
                   "forged a design again" + described(known.mu) + ", which now fails: " + again.failure,
@@ -81,9 +86,9 @@ namespace retroforge
     return *run_;
   }
 
-  std::vector<std::vector<double>> CachedRun::gradients(const Evaluation &known)
+  std::vector<std::vector<double>> CachedRun::gradients(const Evaluation &known, const Evaluation *steps)
   {
-    const AdjointSweep               sweep = in_memory(known).sweep(each_);
+    const AdjointSweep               sweep = in_memory(known, steps).sweep(each_);
     std::vector<std::vector<double>> gradients;
     for (const AdjointResult &of : sweep.gradients)
     {

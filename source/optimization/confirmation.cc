@@ -24,6 +24,7 @@ namespace retroforge
       set("Billet/element size", part * forging_case.parameters.billet.element_size);
       if (forging_case.parameters.remeshing.element_size > 0.)
         set("Remeshing/element size", part * forging_case.parameters.remeshing.element_size);
+      command.overrides.emplace_back("Press/steps", ""); // they belong to the coarser mesh
       const PressParameters &press = forging_case.parameters.press;
       if (press.largest_strain)
         set("Press/accuracy", std::max(press.accuracy * part * part, 1e-6));

@@ -126,21 +126,41 @@ namespace retroforge
     return scatter_.combined(mu, samples);
   }
 
+  std::vector<bool> Evaluator::which_choose_steps(const Jobs &wave) const
+  {
+    std::vector<bool> which;
+    for (auto job = wave.begin(); job != wave.end(); ++job)
+      which.push_back(
+        scenarios_.at(job->scenario).parameters.repeats_steps() && steps(job->scenario) == nullptr &&
+        std::none_of(wave.begin(), job, [&](const Job &other) { return other.scenario == job->scenario; }));
+    return which;
+  }
+
   bool Evaluator::forge(const Jobs &wave)
+  {
+    const std::vector<bool> first = which_choose_steps(wave);
+    const bool              succeed =
+      std::find(first.begin(), first.end(), true) == first.end() || forge_some(wave, first);
+    return forge_some(wave, std::vector<bool>(wave.size(), true)) && succeed;
+  }
+
+  bool Evaluator::forge_some(const Jobs &wave, const std::vector<bool> &which)
   {
     std::vector<bool> is_open;
     bool              fails = false; // one is known to: those behind it are not asked for
-    for (const Job &job : wave)
+    for (std::size_t k = 0; k < wave.size(); ++k)
     {
-      const Evaluation *there = known(job);
-      is_open.push_back(there == nullptr && !fails);
+      const Evaluation *there = known(wave[k]);
+      is_open.push_back(which[k] && there == nullptr && !fails);
       fails = fails || (there != nullptr && there->failed());
     }
-    std::vector<Evaluation> found =
-      shared_out(wave, is_open, [&](const Job &job) { return kept_[job.scenario]->forge(job.mu); });
+    std::vector<Evaluation> found = shared_out(
+      wave, is_open, [&](const Job &job) { return kept_[job.scenario]->forge(job.mu, steps(job.scenario)); });
     // As one group would have it: what others have forged behind a failure is forgotten.
     for (std::size_t k = 0; k < wave.size(); ++k)
     {
+      if (!is_open[k] && known(wave[k]) == nullptr)
+        continue; // its turn comes
       count(wave[k], asked_);
       if (is_open[k])
       {
@@ -164,7 +184,7 @@ namespace retroforge
     }
     std::vector<Evaluation> found = shared_out(wave, is_open, [&](const Job &job) {
       Evaluation evaluation;
-      evaluation.gradients = kept_[job.scenario]->gradients(*known(job));
+      evaluation.gradients = kept_[job.scenario]->gradients(*known(job), steps(job.scenario));
       return evaluation;
     });
     for (std::size_t k = wave.size(); k-- > 0;)
@@ -213,6 +233,6 @@ namespace retroforge
     const std::size_t place = std::find(all.begin(), all.end(), job) - all.begin();
     if (place % groups_.n() != groups_.number())
       return nullptr;
-    return &kept_[scenario]->forged(*known(job));
+    return &kept_[scenario]->forged(*known(job), steps(scenario));
   }
 } // namespace retroforge

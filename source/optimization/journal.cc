@@ -70,6 +70,8 @@ namespace retroforge
         json["failure"] = legible(evaluation.failure);
       else
         json["values"] = exact(evaluation.values);
+      if (!evaluation.steps.empty())
+        json["steps"] = exact(evaluation.steps);
       if (mesh > 0)
         json["mesh"] = mesh;
       return json.dump();
@@ -94,6 +96,8 @@ namespace retroforge
         evaluation.failure = json.at("failure");
       else
         evaluation.values = numbers(json.at("values"));
+      if (json.contains("steps"))
+        evaluation.steps = numbers(json.at("steps"));
       return evaluation;
     }
 
@@ -164,6 +168,15 @@ namespace retroforge
   {
     const std::size_t i = place_of(mu, operation);
     return i < size() ? &evaluations_[i] : nullptr;
+  }
+
+  const Evaluation *Journal::find_steps(const std::string &operation) const
+  {
+    for (std::size_t i = 0; i < size(); ++i)
+      if (!evaluations_[i].steps.empty() && evaluations_[i].operation == operation &&
+          mesh_of_[i] == mesh_in(operation))
+        return &evaluations_[i];
+    return nullptr;
   }
 
   unsigned int Journal::use_mesh(const std::string &made_at)

@@ -164,7 +164,8 @@ namespace retroforge
   {
     if (!problem_.is_root())
       return;
-    std::printf("  gradient along a direction, against differences of forgings that decide everything anew:\n"
+    std::printf("  gradient along a direction, against differences of forgings that decide all but their "
+                "increments anew:\n"
                 "  step [scales]    derivative    difference    relative error\n");
     for (const DifferenceCheck &row : rows)
       std::printf("  %-12.3g %14.7g %13.7g %12.2g\n",
@@ -224,6 +225,8 @@ namespace retroforge
     }
     if (row.decision == Decision::accepted || row.decision == Decision::refused)
       std::printf("  step %.3g", row.radius);
+    if (!evaluation.steps.empty())
+      std::printf("  %u increments, which others repeat", evaluation.increments);
     std::printf("  %.1f s", evaluation.seconds);
     if (problem_.evaluator.seconds_each() > 0.)
       std::printf(", at most %.0f s left",
@@ -290,10 +293,20 @@ namespace retroforge
     results_.write_csv(problem_.path_of("optimisation.csv"));
     results_.write_json(problem_.path_of("optimisation.json"));
     for (std::size_t o = 0; o < problem_.scenarios.size(); ++o)
+    {
+      const Case               &forging_case = problem_.scenarios.at(o);
+      const std::vector<double> mu           = problem_.scenarios.values(o, results_.best.mu);
+      auto more = Parameters::files_seen_from(problem_.main.command.output_directory, forging_case.echo);
+      // With them it is forged to the same bits.
+      if (const Evaluation *steps = problem_.journal.find_steps(problem_.scenarios.name(o));
+          steps && steps->mu != mu)
+      {
+        const std::string file = problem_.scenarios.titled("steps", o) + ".csv";
+        write_file(problem_.path_of(file), table_of_steps(steps->steps));
+        more.emplace_back("Press/steps", file);
+      }
       write_file(problem_.path_of(problem_.scenarios.titled("best", o) + ".prm"),
-                 parameters_at(problem_.scenarios.at(o),
-                               problem_.scenarios.values(o, results_.best.mu),
-                               Parameters::files_seen_from(problem_.main.command.output_directory,
-                                                           problem_.scenarios.at(o).echo)));
+                 parameters_at(forging_case, mu, more));
+    }
   }
 } // namespace retroforge

@@ -19,7 +19,7 @@ namespace retroforge
     const std::regex file_names(
       "(parameters|best)(_.*)?\\.prm|summary\\.json|check\\.json|(history|objectives|scan)\\.csv|scan\\.json|"
       "fields\\.pvd|fields_[0-9]{6,}\\.vtu|failed\\.vtu|failure\\.txt|"
-      "(journal|confirmation)\\.jsonl|optimisation\\.(csv|json)|"
+      "(journal|confirmation)\\.jsonl|optimisation\\.(csv|json)|steps(_.*)?\\.csv|"
       "scene\\.(json|pvd)|scene_(billet|die_.*)\\.vtu|"
       "sensitivity(_die_.*)?(\\.vtu|_nodes\\.csv)|billet\\.msh|forged\\.(msh|stl)|"
       "die_.*\\.(stl|vtu)|record\\.h5|report\\.html");

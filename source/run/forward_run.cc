@@ -79,6 +79,12 @@ namespace retroforge
     set_numerics(parameters, model);
   }
 
+  void ForgingProblem::repeat_steps(const std::vector<double> &strokes)
+  {
+    for (NumericsSegment &segment : segments)
+      segment.parameters.press.steps = {strokes, 1.};
+  }
+
   ForwardRun::SegmentRun::SegmentRun(const ForgingProblem &problem,
                                      const std::size_t     segment,
                                      Timings              &timings)
@@ -133,6 +139,7 @@ namespace retroforge
   void ForwardRun::follow(const IncrementEvent &event)
   {
     recording_.keep(event.record);
+    strokes_.push_back(problem_.process.whole_stroke(event.state.stroke, event.state.operation));
     const auto timing = timings_.scope("objectives");
     trace_.add(event);
   }

@@ -79,12 +79,13 @@ namespace retroforge
     const std::string      remeshing =
       remakes ? "'Remeshing/element size=" + as_text(0.7 * forging_case.edge_length()) + "'"
                    : "Remeshing/when=quality";
+    const std::string shorter =
+      press.steps.empty() ? (press.largest_strain ? "accuracy=" + as_text(0.25 * press.accuracy)
+                                                  : "increments=" + std::to_string(2 * press.increments))
+                          : "steps=";
     return "go on from stroke " + as_text(stroke) +
            " mm, up to which it is recorded, by the same command with --resume" +
            (forging_case.command.overwrite ? " in place of --overwrite" : "") +
-           " and other numerics, for instance --set Press/" +
-           (press.largest_strain ? "accuracy=" + as_text(0.25 * press.accuracy)
-                                 : "increments=" + std::to_string(2 * press.increments)) +
-           " or --set " + remeshing;
+           " and other numerics, for instance --set Press/" + shorter + " or --set " + remeshing;
   }
 } // namespace retroforge

@@ -171,6 +171,8 @@ namespace retroforge
     const TetMesh &mesh = event.state.epoch->scene.mesh;
     if (event.record.remesh)
       std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());
+    if (event.record.cuts > 0 && !case_.parameters.press.steps.empty())
+      std::printf("      not kept whole: halved %u time(s)\n", event.record.cuts);
     if (!std::isnan(seconds_)) // solved, not restored
     {
       const double now = timings_.seconds("total");

@@ -122,14 +122,32 @@ namespace retroforge
     }
   }
 
-  CommandLine Scan::command_of(const ScanPoint &point) const
+  CommandLine Scan::command_in(const std::string &name, const Command chosen) const
   {
     CommandLine run;
-    run.command          = parameters_.scan.gradients ? Command::gradient : Command::simulate;
+    run.command          = chosen;
     run.case_file        = command_.case_file;
-    run.output_directory = point.directory;
+    run.output_directory = command_.output_directory + "/points/" + name;
     run.overrides        = command_.overrides;
     run.overrides.emplace_back("Output/fields every", "0");
+    return run;
+  }
+
+  CommandLine Scan::command_of_nominal() const
+  {
+    CommandLine run = command_in("nominal", Command::simulate);
+    run.overrides.emplace_back("Output/record", "false");
+    for (const auto &[name, value] : parameters_.design.at)
+      run.at.emplace_back(name, all_digits(value));
+    return run;
+  }
+
+  CommandLine Scan::command_of(const ScanPoint &point) const
+  {
+    CommandLine run = command_in(std::filesystem::path(point.directory).filename().string(),
+                                 parameters_.scan.gradients ? Command::gradient : Command::simulate);
+    if (!steps_.empty())
+      run.overrides.emplace_back("Press/steps", steps_);
     for (const auto &[name, value] : parameters_.design.at)
       if (name != point.parameter)
         run.at.emplace_back(name, all_digits(value));
@@ -148,15 +166,15 @@ namespace retroforge
     return words;
   }
 
-  bool Scan::is_finished(ScanPoint &point) const
+  bool Scan::is_finished(const CommandLine &run, ScanPoint &design) const
   {
-    const std::string file = point.directory + "/parameters.prm";
+    const std::string file = run.output_directory + "/parameters.prm";
     if (!std::filesystem::is_regular_file(file))
       return false;
-    const CommandLine run = command_of(point);
-    std::string       parameters;
+    std::string parameters;
     Parameters::read(run, parameters);
-    return make_same_results(read_file(file), parameters) && point.read_summary(word_of(run.command.value()));
+    return make_same_results(read_file(file), parameters) &&
+           design.read_summary(word_of(run.command.value()));
   }
 
   std::vector<ScanPoint *> Scan::to_do()
@@ -165,7 +183,7 @@ namespace retroforge
     for (ScanLine &line : lines_)
       for (ScanPoint &point : line.points)
       {
-        point.reused = command_.resume && is_finished(point);
+        point.reused = command_.resume && is_finished(command_of(point), point);
         if (!point.reused)
           points.push_back(&point);
       }
@@ -197,8 +215,7 @@ namespace retroforge
     for (const char *file : {"parameters.prm", "scan.csv", "scan.json"})
       check_writable(command_.output_directory + "/" + file);
     write_file(command_.output_directory + "/parameters.prm", echo_);
-    const std::vector<ScanPoint *> points = to_do();
-    const std::size_t              all    = lines_.size() * parameters_.scan.points;
+    const std::size_t all = lines_.size() * parameters_.scan.points;
     std::printf("Retroforge %s %s, scan of %zu parameter(s), %u points each: %zu runs, %u at a time\n",
                 version,
                 commit,
@@ -210,10 +227,12 @@ namespace retroforge
       std::printf("  note: %s\n", sentence.c_str());
     std::fflush(stdout);
     print_warnings(warnings_);
+    set_interrupt_message("stopped; the same command with --resume keeps the points that are finished");
+    run_nominal();
+    const std::vector<ScanPoint *> points = to_do();
     if (command_.resume)
       std::printf("  %zu of them are finished and reused\n", all - points.size());
     std::fflush(stdout);
-    set_interrupt_message("stopped; the same command with --resume keeps the points that are finished");
     run_points(points);
     const ScanResults results(lines_, parameters_.scan.degree);
     results.write_csv(command_.output_directory + "/scan.csv");
@@ -224,18 +243,47 @@ namespace retroforge
     return results.n_failed() == all ? 1 : 0;
   }
 
+  ChildProcess Scan::prepared(const CommandLine &run) const
+  {
+    const std::string &folder = run.output_directory;
+    make_results_folder(folder, true, echo_); // what is there of an earlier run is not this one's
+    ChildProcess process{words_of(run), folder + "/log.txt"};
+    std::string  line;
+    for (const std::string &word : process.command)
+      line += (line.empty() ? "" : " ") + quoted_for_shell(word);
+    write_file(folder + "/command.txt", line + "\n");
+    return process;
+  }
+
+  void Scan::run_nominal()
+  {
+    if (!parameters_.repeats_steps())
+      return;
+    const CommandLine run = command_of_nominal();
+    // Relative, it would be looked for beside the case's file first.
+    const auto history = std::filesystem::absolute(run.output_directory) / "history.csv";
+    ScanPoint  nominal;
+    nominal.directory = run.output_directory;
+    bool done         = command_.resume && is_finished(run, nominal);
+    if (!done)
+      run_side_by_side({prepared(run)}, environment_, 1, [&](std::size_t, const ExitStatus &end) {
+        done = end.status == 0 && end.signal == 0 && nominal.read_summary("simulate");
+        if (!done)
+          nominal.read_failure(run.output_directory + "/log.txt", end.status, end.signal);
+      });
+    if (done)
+      steps_ = history.lexically_normal().string();
+    std::printf("  nominal design: %s\n",
+                done ? (std::to_string(nominal.increments) + " increments, which are repeated").c_str()
+                     : ("each point chooses its own increments, as it failed: " + nominal.failure).c_str());
+    std::fflush(stdout);
+  }
+
   void Scan::run_points(const std::vector<ScanPoint *> &points)
   {
     std::vector<ChildProcess> runs;
     for (const ScanPoint *point : points)
-    {
-      make_results_folder(point->directory, true, echo_); // what is there of an earlier run is not this one's
-      runs.push_back({words_of(command_of(*point)), point->directory + "/log.txt"});
-      std::string line;
-      for (const std::string &word : runs.back().command)
-        line += (line.empty() ? "" : " ") + quoted_for_shell(word);
-      write_file(point->directory + "/command.txt", line + "\n");
-    }
+      runs.push_back(prepared(command_of(*point)));
     const auto  begin = std::chrono::steady_clock::now();
     std::size_t done  = 0;
     run_side_by_side(runs, environment_, at_a_time(), [&](const std::size_t i, const ExitStatus &end) {

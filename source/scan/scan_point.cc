@@ -42,6 +42,7 @@ namespace retroforge
       if (summary.at("command") != command || summary.at("version") != version ||
           summary.at("commit") != commit)
         return false;
+      increments = summary.at("increments");
       for (const auto &objective : summary.at("objectives"))
       {
         const std::string name = objective.at("name");

@@ -99,7 +99,7 @@ namespace retroforge
       for (const LineObjective &judged : *named)
         out << ',' << judged.name << " [" << judged.unit << "]," << judged.name << ": gradient,"
             << judged.name << ": fit," << judged.name << ": slope of the fit";
-    out << ",failure\n";
+    out << ",increments,failure\n";
     for (std::size_t l = 0; l < lines_.size(); ++l)
       for (std::size_t i = 0; i < lines_[l].points.size(); ++i)
       {
@@ -113,6 +113,7 @@ namespace retroforge
           write_cell(out, judged != nullptr && judged->fit ? judged->fit->value(point.value) : NAN);
           write_cell(out, judged != nullptr && judged->fit ? judged->fit->slope(point.value) : NAN);
         }
+        write_cell(out, point.objectives.empty() ? NAN : double(point.increments));
         out << ',' << (point.failure.empty() ? "" : csv_quoted(point.failure)) << '\n';
       }
     write_file(file, out.str());

@@ -7,6 +7,8 @@
 #include <retroforge/steps/change_of_mesh.h>
 #include <retroforge/time/forging.h>
 
+#include <algorithm>
+
 namespace retroforge
 {
   /// Increments between looks at whether the surface of a mesh that is not remade crosses itself.
@@ -23,7 +25,12 @@ namespace retroforge
                    const StrokeStep      &end,
                    const Remesher        &remesher,
                    Timings               &timings)
-      : model_(model), end_(end), remesher_(remesher), timings_(timings), limits_(model, press, remesher)
+      : model_(model)
+      , steps_(press.steps)
+      , end_(end)
+      , remesher_(remesher)
+      , timings_(timings)
+      , limits_(model, press, remesher)
   {
   }
 
@@ -211,10 +218,15 @@ namespace retroforge
     constexpr unsigned int deepest = 30;
     const double           whole = nominal_step(), done = (state.stroke - state.numerics_stroke) / whole;
     const auto             step = [&](const unsigned int depth) { return std::ldexp(whole, -int(depth)); };
-    while (step(state.depth) > last_step * (1. + 1e-9) && state.depth < deepest)
+    if (!steps_.empty()) // it counts within a step that is not kept whole: as long as the last one, or longer
+      for (state.depth = 0; step(state.depth + 1) > last_step * (1. - 1e-9) && state.depth < deepest;)
+        ++state.depth;
+    while (steps_.empty() && step(state.depth) > last_step * (1. + 1e-9) && state.depth < deepest)
       ++state.depth;
     while (!limits_.allow_strain(state.strain_rate * step(state.depth)) && state.depth < most_halvings)
       ++state.depth;
+    if (!steps_.empty())
+      return;
     // Back to longer steps once a whole number of them fits, and nothing slips or is strained too far in them.
     const auto bears = [&](const unsigned int depth) {
       const double number = std::ldexp(done, depth);
@@ -228,6 +240,32 @@ namespace retroforge
     const double least = limits_.borne_step(state.strain_rate) / shortest_at_end;
     while (left > 0. && step(state.depth) > 0.5 * left * (1. + 1e-9) && step(state.depth + 1) > least)
       ++state.depth;
+  }
+
+  double
+  Forging::next_step(const Process<double> &process, const ForgingState &state, unsigned int &cuts) const
+  {
+    cuts = 0;
+    return told_by_strokes(state.stroke,
+                           steps_.empty() ? std::min(nominal_step() / (1 << state.depth),
+                                                     last_stroke(process, state) - state.stroke)
+                                          : repeated_step(process, state, cuts));
+  }
+
+  double
+  Forging::repeated_step(const Process<double> &process, const ForgingState &state, unsigned int &cuts) const
+  {
+    const double rounding = 1e-9 * nominal_step(), at = process.whole_stroke(state.stroke, state.operation);
+    const auto   end   = std::upper_bound(steps_.ends.begin(), steps_.ends.end(), at + rounding);
+    const double begin = end == steps_.ends.begin() ? 0. : *std::prev(end);
+    const double left  = last_stroke(process, state) - state.stroke;
+    double       step  = end == steps_.ends.end() ? left : std::min(*end - at, left);
+    // The rest of one that was not kept whole, in parts as long as the last increment.
+    if (at > begin + rounding)
+      return step / std::max(1., std::ceil(std::ldexp(step / nominal_step(), state.depth) - 1e-9));
+    for (; !limits_.bear(state, step) && cuts < most_halvings; ++cuts)
+      step *= 0.5;
+    return step;
   }
 
   void Forging::change_numerics(std::optional<std::string> parameters, ForgingState &state)
@@ -305,7 +343,7 @@ namespace retroforge
         limits_.check_fold(state);
       record.operation = state.operation;
       record.stroke    = state.stroke;
-      record.step = std::min(nominal_step() / (1 << state.depth), last_stroke(process, state) - state.stroke);
+      record.step      = next_step(process, state, record.cuts);
       record.contact =
         limits_.choose_steps() ? model_.step.contact.in_steps_of(record.step) : model_.step.contact;
       record.parameters = std::exchange(state.parameters, std::nullopt);
@@ -315,18 +353,22 @@ namespace retroforge
       for (;;)
       {
         auto rejection = attempt(process, state, guess, record, solved);
-        if (!rejection)
-          rejection = too_strained(state, solved);
-        if (!rejection)
+        if (is_good(rejection))
+          if (const auto strained = too_strained(state, solved))
+            rejection = strained;
+        const bool remeshes =
+          rejection && rejection->of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0;
+        if (is_good(rejection) && !remeshes)
           break;
         is_full = rejection->is_full |= is_full;
-        if (rejection->of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0)
+        if (remeshes)
         {
           renew();
           guess = state.next;
           continue;
         }
-        record.step = std::ldexp(record.step, -static_cast<int>(rejection->halvings));
+        record.step =
+          told_by_strokes(record.stroke, std::ldexp(record.step, -static_cast<int>(rejection->halvings)));
         record.cuts += rejection->halvings;
         if (rejection->for_accuracy)
           record.contact = model_.step.contact.in_steps_of(record.step);

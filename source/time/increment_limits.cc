@@ -26,6 +26,10 @@ namespace retroforge
   /// arm of this part of an edge. That much, a mesh that feels a narrow contact as a line may miss.
   constexpr double most_held = 0.1, longest_arm = 0.7;
 
+  /// By which a step that is repeated may go farther than one that is chosen: neighbouring designs come somewhat
+  /// farther in the same step than the one that chose it, and are to keep it.
+  constexpr double slack_of_repeated = 2.;
+
   namespace
   {
     std::string at(const Vec3 &x)
@@ -88,14 +92,31 @@ namespace retroforge
   {
     if (is_full(process, epoch.scene, record, X_next))
       return StepRejection{"the cavity is full", 1, false, true};
-    if (const auto reason = violated_limit(epoch.scene, X, X_next))
-      return StepRejection{*reason};
-    const Slip slip = largest_slip(process, record, X, X_next);
+    const auto reason     = violated_limit(epoch.scene, X, X_next);
+    const Slip slip       = largest_slip(process, record, X, X_next);
+    const bool bears_slip = allow(slip.of_edge / slack_of_repeated);
+    if (reason)
+      return StepRejection{*reason,
+                           1,
+                           true,
+                           false,
+                           false,
+                           bears_slip && !violated_limit(epoch.scene, X, X_next, slack_of_repeated)};
     if (allow(slip.of_edge))
       return {};
     // Velocities hardly depend on the increment's length: what it must be is known at once.
-    return StepRejection{
-      "a node would slip along " + slip.where, halvings(slip.of_edge / press_.largest_slip), false};
+    return StepRejection{"a node would slip along " + slip.where,
+                         halvings(slip.of_edge / press_.largest_slip),
+                         false,
+                         false,
+                         false,
+                         bears_slip};
+  }
+
+  bool IncrementLimits::bear(const ForgingState &state, const double step) const
+  {
+    return allow(state.slip * step / slack_of_repeated) &&
+           allow_strain(state.strain_rate * step / slack_of_repeated);
   }
 
   std::optional<StepRejection> IncrementLimits::strain_rejection(const double strain) const
@@ -107,7 +128,8 @@ namespace retroforge
                          halvings(strain / *press_.largest_strain),
                          false,
                          false,
-                         true};
+                         true,
+                         allow_strain(strain / slack_of_repeated)};
   }
 
   bool IncrementLimits::is_full(const Process<double>      &process,
@@ -162,27 +184,29 @@ namespace retroforge
   std::optional<std::string> IncrementLimits::violated_limit(const TetMesh              &mesh,
                                                              const CellIndex             c,
                                                              const NodalVectors<double> &X,
-                                                             const NodalVectors<double> &X_next) const
+                                                             const NodalVectors<double> &X_next,
+                                                             const double                slack) const
   {
     const auto   before = corners(mesh.cells[c], X), after = corners(mesh.cells[c], X_next);
     const double volume = cell_geometry(after).volume;
-    if (!(volume > press_.smallest_volume * cell_geometry(before).volume))
+    if (!(volume > press_.smallest_volume / slack * cell_geometry(before).volume))
       return (volume > 0. ? "an element would be crushed" : "an element would be inverted") + at(before[0]);
     for (unsigned int a = 0; a < 4; ++a)
       for (unsigned int b = 0; b < a; ++b)
         if (((after[a] - before[a]) - (after[b] - before[b])).norm() >
-            press_.largest_move * (before[a] - before[b]).norm())
+            slack * press_.largest_move * (before[a] - before[b]).norm())
           return "an edge would be turned or stretched by more than Press/largest move" + at(before[a]);
     return {};
   }
 
   std::optional<std::string> IncrementLimits::violated_limit(const Scene                &scene,
                                                              const NodalVectors<double> &X,
-                                                             const NodalVectors<double> &X_next) const
+                                                             const NodalVectors<double> &X_next,
+                                                             const double                slack) const
   {
     const auto &owned     = scene.discretization.cells().owned();
     const auto  is_broken = [&](const CellIndex c) {
-      return violated_limit(scene.mesh, c, X, X_next).has_value();
+      return violated_limit(scene.mesh, c, X, X_next, slack).has_value();
     };
     const auto found = std::find_if(owned.begin(), owned.end(), is_broken);
     // All ranks tell of the same cell.
@@ -190,7 +214,7 @@ namespace retroforge
       dealii::Utilities::MPI::min(found == owned.end() ? invalid_index : *found, scene.discretization.comm());
     if (first == invalid_index)
       return {};
-    return violated_limit(scene.mesh, first, X, X_next);
+    return violated_limit(scene.mesh, first, X, X_next, slack);
   }
 
   IncrementLimits::Slip IncrementLimits::largest_slip(const Process<double>      &process,

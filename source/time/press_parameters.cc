@@ -41,6 +41,15 @@ namespace retroforge
                       "root is the largest "
                       "strain of an increment, in the mean over where metal flows. Units: none.",
                       Double(1e-6, 0.1));
+    prm.add_parameter("steps",
+                      steps_file,
+                      "Table (.csv) with a column `stroke', at which increments end, as history.csv of a "
+                      "run: they are repeated "
+                      "instead of being chosen, stretched where they do not end at the stroke. One is halved "
+                      "where there is no "
+                      "equilibrium, or where it goes more than twice as far as `accuracy' (with increments = "
+                      "0), `largest move', "
+                      "`largest slip' and `smallest volume' ask. Empty: chosen. Units: none.");
     prm.add_parameter(
       "scheme", scheme, "Time scheme: " + join(described) + ". Units: none.", Selection(choices));
     prm.add_parameter(
@@ -72,6 +81,7 @@ namespace retroforge
       Double(0.));
     prm.leave_subsection();
     tag(prm, "Press", SettingRole::numerics);
+    tag(prm, "Press/steps", SettingTags::Files::one);
     for (const char *setting : {"leading die", "motion", "motion numbers"})
       tag(prm, std::string("Press/") + setting, SettingRole::scene);
   }

@@ -44,7 +44,7 @@ namespace retroforge
       }
     };
 
-    /// A run that decides everything anew may also fail anew: then there is no difference, and the rest of
+    /// A run that decides anew may also fail anew: then there is no difference, and the rest of
     /// the check goes on.
     Values free_differences(const Line                &line,
                             const DifferenceEvaluator &evaluator,

@@ -8,13 +8,13 @@ namespace retroforge
   DifferenceEvaluator make_difference_evaluator(const Case &forging_case, const ForwardRun &run)
   {
     DifferenceEvaluator differences;
-    differences.free = [&forging_case](const std::vector<double> &mu, const ShapePerturbation &shift) {
+    differences.free = [&forging_case, &run](const std::vector<double> &mu, const ShapePerturbation &shift) {
+      ForgingProblem problem(
+        forging_case, process_at(forging_case, mu, shift), positions_at(forging_case, mu, shift));
+      if (forging_case.parameters.repeats_steps())
+        problem.repeat_steps(run.strokes());
       Timings    timings;
-      ForwardRun changed(forging_case,
-                         process_at(forging_case, mu, shift),
-                         positions_at(forging_case, mu, shift),
-                         ForwardRun::Keep::nothing,
-                         timings);
+      ForwardRun changed(std::move(problem), ForwardRun::Keep::nothing, timings);
       changed.forge();
       return forging_case.combine(changed.values());
     };

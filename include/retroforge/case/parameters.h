@@ -88,6 +88,9 @@ namespace retroforge
     /// @throws Error  where steps, contact or penalty come out zero or infinite
     Parameters &resolve_defaults(const BilletSize &size);
 
+    /// Whether other designs repeat the increments of the nominal one; given ones, all designs have.
+    bool repeats_steps() const { return design.repeat_steps && press.steps_file.empty(); }
+
     /// Returns the process as the file has it.
     Process<double> process(const BilletSize &size) const;
     /// Returns what its contact law follows from.

@@ -17,6 +17,7 @@ namespace retroforge
     std::multimap<std::string, double> at;
     /// Values of the billet's parameters at which it is meshed anew, one set after the other.
     std::vector<std::multimap<std::string, double>> meshed_at;
+    bool                                            repeat_steps = true;
 
     void add_parameters(dealii::ParameterHandler &prm);
 

@@ -17,19 +17,24 @@ namespace retroforge
     /// @param forging_case  must live as long
     explicit CachedRun(const Case &forging_case);
 
-    /// Forges a design. @return its values, or why there are none
-    Evaluation forge(const std::vector<double> &mu);
+    /// Forges a design.
+    /// @param steps  the design whose increments it repeats; null, or this one: it chooses
+    /// @return its values, or why there are none
+    Evaluation forge(const std::vector<double> &mu, const Evaluation *steps);
 
     /// Returns the gradient of each objective by itself. @param known  what came of the design, which is
     /// forged again where it is not in memory   @throws Error  where that gives something else, or for a
     /// derivative that is no number
-    std::vector<std::vector<double>> gradients(const Evaluation &known);
+    std::vector<std::vector<double>> gradients(const Evaluation &known, const Evaluation *steps);
 
     /// Returns the run of a design, to be looked at.
-    const ForwardRun &forged(const Evaluation &known) { return in_memory(known); }
+    const ForwardRun &forged(const Evaluation &known, const Evaluation *steps)
+    {
+      return in_memory(known, steps);
+    }
 
   private:
-    ForwardRun &in_memory(const Evaluation &known);
+    ForwardRun &in_memory(const Evaluation &known, const Evaluation *steps);
     std::string described(const std::vector<double> &mu) const;
 
     const Case                    &case_;

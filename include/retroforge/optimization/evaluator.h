@@ -77,8 +77,17 @@ namespace retroforge
     Jobs jobs(const std::vector<double> &mu) const;
     /// Returns the jobs that go on at a time, one for each group.
     std::vector<Jobs> waves(const std::vector<double> &mu) const;
+    /// Returns the design whose increments a scenario repeats; null where none is forged yet.
+    const Evaluation *steps(std::size_t scenario) const
+    {
+      return journal_.find_steps(scenarios_.name(scenario));
+    }
+    /// Which jobs of a wave choose the increments that the others of their scenario repeat.
+    std::vector<bool> which_choose_steps(const Jobs &wave) const;
     /// @return whether all of the wave succeeded
     bool forge(const Jobs &wave);
+    /// Forges some of a wave, those before the first failure. @return whether all that is known succeeded
+    bool forge_some(const Jobs &wave, const std::vector<bool> &which);
     void sweep(const Jobs &wave);
     /// Runs the open jobs of a wave, each by its group, and shares the results.
     std::vector<Evaluation> shared_out(const Jobs                                   &wave,

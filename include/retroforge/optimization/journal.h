@@ -20,6 +20,8 @@ namespace retroforge
     /// Gradients of the objectives in the parameters; empty where they were not computed.
     std::vector<std::vector<double>> gradients;
     std::string                      operation = {}; ///< operation that was forged; empty for the main one
+    /// Strokes at the ends of its increments, where other designs repeat them [mm].
+    std::vector<double> steps = {};
 
     bool failed() const { return values.empty(); }
 
@@ -27,7 +29,7 @@ namespace retroforge
     template <typename Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &mu &values &failure &increments &seconds &gradients &operation;
+      archive &mu &values &failure &increments &seconds &gradients &operation &steps;
     }
   };
 
@@ -64,6 +66,8 @@ namespace retroforge
     /// Number of a design in an operation; size() where it is not here. Of the main one on the mesh in use.
     std::size_t       place_of(const std::vector<double> &mu, const std::string &operation = "") const;
     const Evaluation *find(const std::vector<double> &mu, const std::string &operation = "") const;
+    /// Returns the design whose increments others repeat in an operation, on the mesh in use; null before it.
+    const Evaluation *find_steps(const std::string &operation) const;
     const Evaluation &operator[](const std::size_t i) const { return evaluations_[i]; }
 
     /// @param made_at  what tells the mesh from others: the designs it was made at, one after the other;

@@ -27,6 +27,9 @@ namespace retroforge
                    Process<double>  process,
                    Objectives       objectives = {});
 
+    /// Makes it repeat the increments of another run. @param strokes  at which they end
+    void repeat_steps(const std::vector<double> &strokes);
+
     Parameters                     parameters;
     std::shared_ptr<const TetMesh> billet, nominal_billet; ///< the latter tells lengths that are left open
     NodalVectors<double>           X_0;
@@ -112,7 +115,9 @@ namespace retroforge
     /// Returns what a record begins with.
     RecordHeader record_header(const std::string &parameters) const;
 
-    const ForgingState         &state() const { return state_; }
+    const ForgingState &state() const { return state_; }
+    /// Strokes at the ends of increments, over all operations [mm].
+    const std::vector<double>  &strokes() const { return strokes_; }
     const Process<double>      &process() const { return problem_.process; }
     const NodalVectors<double> &X_0() const { return problem_.X_0; }
     const std::vector<Die>     &dies() const { return problem_.model.dies; }
@@ -146,7 +151,7 @@ namespace retroforge
     /// Takes the run into a segment, whose numerics the model has.
     void enter(std::size_t segment);
 
-    /// Keeps an increment, solved or restored, and what objectives need of it.
+    /// Keeps an increment, solved or restored, the stroke at its end, and what objectives need of it.
     void follow(const IncrementEvent &event);
 
     ForgingProblem              problem_;
@@ -156,6 +161,7 @@ namespace retroforge
     const bool                  can_go_back_; ///< the increments are kept or recorded
     Recording                   recording_;
     ForgingState                state_;
+    std::vector<double>         strokes_;     ///< up to it
     std::size_t                 segment_ = 0; ///< that the state is in
     std::unique_ptr<SegmentRun> running_;     ///< of it
   };

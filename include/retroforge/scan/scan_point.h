@@ -20,9 +20,10 @@ namespace retroforge
     std::string            parameter;
     double                 value = 0.;
     std::string            directory;
-    std::vector<Objective> objectives; ///< empty where the run failed
-    std::string            failure;    ///< why it did
-    bool                   reused = false;
+    std::vector<Objective> objectives;     ///< empty where the run failed
+    std::string            failure;        ///< why it did
+    unsigned int           increments = 0; ///< of the run; 0 where it failed
+    bool                   reused     = false;
 
     /// Takes the objectives from the summary in `directory`, if there is one of this command, made by this
     /// build.

@@ -16,9 +16,9 @@ namespace retroforge
     double                      time;
   };
 
-  /// The time loop through the operations of a process: increments of equal stroke, or as long as an accuracy
-  /// bears, halved while an element would invert or a node would cross too much of an edge, on meshes that are
-  /// remade when they must. In a replay what was recorded is obeyed instead.
+  /// The time loop through the operations of a process: increments of equal stroke, as long as an accuracy
+  /// bears, or those of another run, halved while an element would invert or a node would cross too much of an
+  /// edge, on meshes that are remade when they must. In a replay what was recorded is obeyed instead.
   class Forging
   {
   public:
@@ -88,6 +88,18 @@ namespace retroforge
                           ForgingState          &state,
                           const Observer        &observer) const;
 
+    /// Returns the next increment's length, before anything is known of it [mm].
+    /// @param cuts  out: how often it is half of one that is to be repeated
+    double next_step(const Process<double> &process, const ForgingState &state, unsigned int &cuts) const;
+    /// Returns that of one that is to be repeated, or of a part of it.
+    double repeated_step(const Process<double> &process, const ForgingState &state, unsigned int &cuts) const;
+    /// Returns whether an increment is good enough: one that is to be repeated is kept where one that is chosen
+    /// would be shorter.
+    bool is_good(const std::optional<StepRejection> &rejection) const
+    {
+      return !rejection || (!steps_.empty() && rejection->is_bearable);
+    }
+
     /// Chooses how often the next increment is halved, after one of last_step [mm].
     /// @param left  stroke to the end of the operation [mm]
     void choose_depth(double last_step, double left, ForgingState &state) const;
@@ -98,6 +110,7 @@ namespace retroforge
     double nominal_step() const { return model_.step.contact.step; }
 
     const ForgingModel   &model_;
+    const GivenSteps     &steps_; ///< that are repeated
     const StrokeStep      end_;
     const Remesher       &remesher_;
     Timings              &timings_;

@@ -20,6 +20,7 @@ namespace retroforge
     bool         of_mesh      = true;  ///< a better mesh may be enough
     bool         is_full      = false; ///< there is no room for the metal
     bool         for_accuracy = false; ///< the increment is sound
+    bool         is_bearable  = false; ///< it goes less than twice as far as it may
   };
 
   /// The end of a forging in which there is no room left for the metal: no other numerics help.
@@ -66,6 +67,10 @@ namespace retroforge
     {
       return !press_.largest_strain || strain <= *press_.largest_strain;
     }
+
+    /// Whether a step that is repeated may be expected to go less than twice as far as it may.
+    /// @param state  before it
+    bool bear(const ForgingState &state, double step) const;
 
     /// Returns why an increment that strains the metal so is too long for the accuracy, if it is.
     std::optional<StepRejection> strain_rejection(double strain) const;
@@ -119,14 +124,17 @@ namespace retroforge
     };
 
     /// Returns which limit a cell or its edges violate, if any.
+    /// @param slack  by which they may go farther
     std::optional<std::string> violated_limit(const TetMesh              &mesh,
                                               CellIndex                   c,
                                               const NodalVectors<double> &X,
-                                              const NodalVectors<double> &X_next) const;
+                                              const NodalVectors<double> &X_next,
+                                              double                      slack) const;
     /// Returns that of the first cell that violates one. Collective.
     std::optional<std::string> violated_limit(const Scene                &scene,
                                               const NodalVectors<double> &X,
-                                              const NodalVectors<double> &X_next) const;
+                                              const NodalVectors<double> &X_next,
+                                              double                      slack = 1.) const;
     Slip                       largest_slip(const Process<double>      &process,
                                             const IncrementRecord      &record,
                                             const NodalVectors<double> &X,

@@ -4,6 +4,7 @@
 
 #include <retroforge/steps/press_motion.h>
 #include <retroforge/steps/scheme.h>
+#include <retroforge/time/given_steps.h>
 
 #include <deal.II/base/parameter_handler.h>
 
@@ -24,6 +25,8 @@ namespace retroforge
     /// there may be.
     std::optional<double> largest_strain;
     unsigned int          most_increments = 0;
+    std::string           steps_file;
+    GivenSteps            steps; ///< those of the file, or of another design
     std::string           scheme          = Scheme::all().front().name;
     double                smallest_volume = 0.2;
     double                largest_move    = 0.5;

@@ -17,7 +17,7 @@ namespace retroforge
   {
     using Values = std::vector<double>;
 
-    /// Decides everything anew.
+    /// Decides everything anew, but for increments that other designs repeat (Parameters::repeats_steps).
     std::function<Values(const std::vector<double> &mu, const ShapePerturbation &shift)> free;
     /// Obeys the recorded decisions.
     std::function<Values(const std::vector<double> &mu, const ShapePerturbation &shift)> replayed;

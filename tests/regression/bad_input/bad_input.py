@@ -106,6 +106,14 @@ STLS = {
 }
 
 
+STEPS = {
+    "no_column.csv": "increment,time\n1,0.1\n",
+    "far.csv": "stroke\n0.5\nfar\n",
+    "back.csv": "stroke\n0.5\n0.4\n",
+    "no_rows.csv": "stroke\n",
+}
+
+
 # name: (arguments after the case file, what the message must say)
 MISTAKES = {
     "unknown parameter": (settings("Press/strok=3"), r"Press/strok\b.*stroke"),
@@ -120,6 +128,11 @@ MISTAKES = {
     "pictures below none": (settings("Output/fields every=-1"), r"Output/fields every.*-1.*auto"),
     "pictures of half an increment": (settings("Output/fields every=2.5"), r"Output/fields every.*2\.5.*auto"),
     "unknown choice": (settings("Press/scheme=leapfrog"), r"Press/scheme.*leapfrog.*midpoint"),
+    "missing steps": (settings("Press/steps=absent.csv"), r"absent\.csv.*cannot be read"),
+    "steps without strokes": (settings("Press/steps=no_column.csv"), r"no_column\.csv, line 1.*no column `stroke'.*history\.csv"),
+    "steps in words": (settings("Press/steps=far.csv"), r"far\.csv, line 3.*'far'"),
+    "steps that go back": (settings("Press/steps=back.csv"), r"back\.csv, line 3.*0\.4 after 0\.5"),
+    "no steps": (settings("Press/steps=no_rows.csv"), r"no_rows\.csv.*no increments"),
     "die without section": (settings("Dies/names=lower, upper, third"), r"[Dd]ie third"),
     "no die": (settings("Dies/names="), r"Die"),
     "unknown law of friction": (settings("Die upper/friction law=Nortan"),
@@ -483,6 +496,8 @@ def forbidden_output():
 def mistakes():
     for name, content in MESHES.items():
         write(f"{name}.msh", content)
+    for name, content in STEPS.items():
+        write(name, content)
     for name, content in STLS.items():
         with open(name, "wb") as file:
             file.write(content)

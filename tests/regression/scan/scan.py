@@ -44,9 +44,11 @@ def whole_scan():
     ranges = (1.693 * np.linspace(0.99, 1.01, 5), np.linspace(-0.2, 0.2, 5))
     for line, values in zip(found["scans"], ranges):
         judge_line(line, [row for row in rows if row["parameter"] == line["parameter"]], values)
-    by_hand = start(["sh", "-c", text_of("whole/points/material_K_002/command.txt").replace("whole/points", "hand")])
+    by_hand = start(["sh", "-c", text_of("whole/points/material_K_002/command.txt").replace("--output whole/points", "--output hand")])
     energy = summary_of("hand/material_K_002")["objectives"][0]["value"]
     judge("a point repeated by hand", by_hand.returncode == 0 and energy == float(rows[1]["energy [mJ]"]))
+    judge("points repeat the increments of the nominal design", "--set Press/steps=" in text_of("whole/points/material_K_002/command.txt") and
+          {row["increments"] for row in rows} == {str(summary_of("whole/points/nominal")["increments"])})
     judge("records are gone", not os.path.exists("whole/points/material_K_001/record.h5"))
 
 
@@ -119,7 +121,7 @@ def stopped():
     """Its runs end with it."""
     fine = ("Billet/element size=1", "Press/increments=1000")
     with subprocess.Popen(command("scan", "stopped", *fine), env=ENVIRONMENT, stdout=subprocess.DEVNULL) as scanning:
-        history = "stopped/points/material_K_001/history.csv"
+        history = "stopped/points/nominal/history.csv"
         for _ in range(300):
             if os.path.exists(history):
                 break

@@ -56,6 +56,29 @@ namespace
               << "\n";
     std::remove("operations.jsonl");
   }
+
+  /// The increments that others repeat are those of the first design in the operation on the mesh.
+  void steps()
+  {
+    Journal journal({"1.0 abc", ""});
+    journal.write_to("steps.jsonl");
+    journal.add({{1.}, {2.}, "", 2, 0.5, {}, "small", {1. / 3., 0.7}});
+    const bool none = journal.find_steps("") == nullptr;
+    journal.add({{1.}, {3.}, "", 3, 0.5, {}, "", {0.1, 0.2, 0.7}});
+    journal.add({{2.}, {3.}, "", 3, 0.5, {}});
+    journal.use_mesh("a: 1");
+    const bool none_on_mesh = journal.find_steps("") == nullptr;
+    journal.add({{2.}, {3.}, "", 1, 0.5, {}, "", {0.7}});
+    Journal          again = Journal::read("steps.jsonl");
+    const Evaluation first = *again.find_steps(""), small = *again.find_steps("small");
+    again.use_mesh("a: 1");
+    std::cout << "steps: "
+              << answer(none && none_on_mesh && first.mu[0] == 1. && first.steps.size() == 3 &&
+                        small.steps == std::vector<double>({1. / 3., 0.7}) &&
+                        again.find_steps("")->mu[0] == 2. && again.find_steps("small")->steps == small.steps)
+              << "\n";
+    std::remove("steps.jsonl");
+  }
 } // namespace
 
 int main()
@@ -85,6 +108,7 @@ int main()
   std::cout << "no word of operations where there is one: "
             << answer(read_file("journal.jsonl").find("operation") == std::string::npos) << "\n";
   operations();
+  steps();
 
   const std::string whole = read_file("journal.jsonl");
   write_file("journal.jsonl", whole.substr(0, whole.size() - 10));
