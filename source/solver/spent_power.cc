@@ -12,7 +12,7 @@ namespace retroforge
     constexpr std::size_t of_friction = 1, of_m = 2, of_dies = 3;
 
     /// Speed of closing, as a part of the die's, below which points rest: there kappa would follow the last digits.
-    constexpr double at_rest = 0.01;
+    constexpr double at_rest = 0.03;
 
     /// Part of an increment that a die presses after it arrived, below which it does not count.
     constexpr double just_touching = 1e-12;
@@ -97,8 +97,8 @@ namespace retroforge
       const Number  rest = (at_rest * D) * (at_rest * D), square = moments[0] * moments[2] + rest;
       if (value_of(square) > 0.)
       {
-        const Number part = (moments[1] * moments[1] + rest) / square;
-        at_once += moments[1] * part * part;
+        const Number part = (moments[1] * moments[1] + rest) / square, squared = part * part;
+        at_once += moments[1] * squared * squared;
       }
     }
     parts.closing = 0.5 * (1. + m) * (closing_power(terms) - at_once);

@@ -27,7 +27,7 @@ namespace retroforge
     bool    edges_touch    = true;
     bool    counts_closing = true;
     bool    holds_loose    = true;
-    double  edge_sinking   = 0.005;
+    double  edge_sinking   = 0.01;
     double  largest_depth  = 0.05;
 
     void add_parameters(dealii::ParameterHandler &prm);

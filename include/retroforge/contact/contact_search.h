@@ -17,7 +17,7 @@
 /// touch, and its middle is in the die. So the middles of such edges are points, too. Their penalty is soft:
 /// nodes and edges together are more constraints than the surface has motions, and stiff ones would fight.
 /// Since gaps are found anew in each increment, what an edge gives way does not add up: a penalty at which it
-/// sinks with 0.5 % of the press speed leaves it 0.5 % of an increment's stroke in the die, times the pressure
+/// sinks with 1 % of the press speed leaves it 1 % of an increment's stroke in the die, times the pressure
 /// there over the mean one.
 ///
 /// Where velocities are quadratic, points are the nodes of the velocity, middles of edges among them.

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""The unfilled volume of a bell over the stroke, by both projections, their mean, that of free nodes, and by samples:  run.py BUILD [approach]
+"""The unfilled volume of a bell over the stroke, by both projections, their mean, that of free nodes, and itself:  run.py BUILD [approach]
 
 `approach`: only the first contact, by a bell that starts at a distance: does the metal rest until then?
 
@@ -63,8 +63,8 @@ def main():
     with open(os.path.join("run", "objectives.csv")) as file:
         rows = [{name.split(" [")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
     z = heights_above_grid(os.path.join("run", "die_bell.stl"))
-    print("| stroke [mm] | half piece onto die | half die onto piece | mean (109) | its free nodes only | by samples | true | mean / true | "
-          "free / true | samples / true |\n" + "| --- " * 10 + "|")
+    print("| stroke [mm] | half piece onto die | half die onto piece | mean (109) | its free nodes only | unfilled volume | true | mean / true | "
+          "free / true | volume / true |\n" + "| --- " * 10 + "|")
     table = []
     for row in rows:
         true = np.clip(z - row["stroke"], 0.0, None).sum() * (WIDTH / len(z))**2 - summary["volume_initial"]
@@ -77,9 +77,9 @@ def main():
     draw(table)
     case_tools.figure("steps_up_of_the_mean", int((np.diff(table[:, 3]) >= 0).sum()))
     case_tools.figure("steps_up_of_free_nodes", int((np.diff(table[:, 4]) >= 0).sum()))
-    case_tools.figure("steps_up_of_the_samples", int((np.diff(table[:, 5]) >= 0).sum()))
+    case_tools.figure("steps_up_of_the_volume", int((np.diff(table[:, 5]) >= 0).sum()))
     # The last few rows compare small differences; the cavity is then nearly full.
-    case_tools.figure("samples_against_true", np.abs(table[:, 5] - table[:, 6]).max() / table[0, 5])
+    case_tools.figure("volume_against_true", np.abs(table[:, 5] - table[:, 6]).max() / table[0, 5])
 
 
 def draw(table):
@@ -88,7 +88,7 @@ def draw(table):
     from matplotlib import pyplot
     figure, axes = pyplot.subplots(figsize=(7, 4))
     for column, style, label in ((1, "-", "half piece onto die"), (2, "-", "half die onto piece"), (3, "-", "mean (109)"),
-                                 (4, "--", "mean, free nodes only"), (5, "o", "by samples"), (6, "k-", "true")):
+                                 (4, "--", "mean, free nodes only"), (5, "o", "unfilled volume"), (6, "k-", "true")):
         axes.plot(table[:, 0], table[:, column], style, markersize=4, label=label)
     axes.set_xlabel("stroke [mm]")
     axes.set_ylabel("unfilled volume of a quarter [mm³]")
