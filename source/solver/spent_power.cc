@@ -12,7 +12,7 @@ namespace retroforge
     constexpr std::size_t of_friction = 1, of_m = 2, of_dies = 3;
 
     /// Speed of closing, as a part of the die's, below which points rest: there kappa would follow the last digits.
-    constexpr double at_rest = 0.03;
+    constexpr double at_rest = 0.025;
 
     /// Part of an increment that a die presses after it arrived, below which it does not count.
     constexpr double just_touching = 1e-12;

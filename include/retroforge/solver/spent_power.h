@@ -19,7 +19,7 @@
 ///     D = c (v - u)^(1+m), C = c (v - u)^m u. The truth, c (v - u) v^m, is D^(1-m) (D + C)^m.
 /// Both are linear in u, so that they hold for a gap that closes in several increments, too. Between the two,
 /// the share of the second is for each die
-///   kappa = (((sum N u)^2 + r^2) / (sum N sum N u^2 + r^2))^4,  r = 0.03 D.
+///   kappa = (((sum N u)^2 + r^2) / (sum N sum N u^2 + r^2))^4,  r = 0.025 D.
 /// The ratio is 1 where all pressed points close at one speed, or rest, and about the share of the arriving
 /// points in the force where the others rest. Its power counts more of what arrives as arriving at a body that
 /// flows (measured, doc/theory/increment_and_adjoint.md). (What a gap costs that opens everywhere at once is not the sum of what

@@ -34,7 +34,7 @@ namespace
 
   std::vector<Direction> directions(const RecordedRun &run)
   {
-    std::mt19937                           generator(2);
+    std::mt19937                           generator(3);
     std::uniform_real_distribution<double> uniform(-1., 1.);
     const NodalVectors<double>             still(run.state().workpiece.X.size());
     std::vector<Direction>                 list = {{"random X_0", still, 0., 0., {}},
