@@ -29,6 +29,10 @@ namespace retroforge
     constexpr double worthwhile_gain = 1.5;
     // Distance from a die, over the element size, within which a node touches it.
     constexpr double touching_distance = 1e-2;
+    // Distance from a die, over the element size, within which a point of the surface rests on it and is put there. Were
+    // it pushed out of the die only, a surface at rest, which contact holds within its penetration, would have a kink
+    // there.
+    constexpr double resting_distance = 1e-5;
 
     /// Edges that metal may be drawn over: those that stick out, and the rim of an open die. Where a die that
     /// was made for a sector ends in a plane of symmetry, nothing is.
@@ -258,15 +262,16 @@ namespace retroforge
   PushOut Remesher::push_out(const DieStates &states) const
   {
     return [this, &states](const Vec3 &x) {
+      const double          resting = resting_distance * element_size_;
       std::vector<PushStep> steps;
       for (unsigned int d = 0; d < dies_.size(); ++d)
       {
         const Vec3 &at = steps.empty() ? x : steps.back().x;
-        if (const DieFeature feature = dies_[d].closest(at, states[d].displacement, 0.);
+        if (const DieFeature feature = dies_[d].closest(at, states[d].displacement, resting);
             feature.found() && states[d].in_press != 0)
         {
           const auto projection = dies_[d].project(at, states[d].displacement, feature);
-          if (projection.delta < 0. && dies_[d].surface())
+          if (projection.delta < resting && dies_[d].surface())
             steps.push_back({d, feature, at + projection.delta * projection.n});
         }
       }
