@@ -56,6 +56,9 @@ class Page:
         filled = [j for j in range(len(header)) if j < 2 or any(row[j] not in ("", "–") for row in rows)]
         shown = [j for j in filled if self.run.copies != 1 or header[j] != "#whole part"]
         self.to.table([header[j] for j in shown], [[row[j] for j in shown] for row in rows])
+        for objective in self.run.objectives:
+            if objective.get("note"):
+                self.to.note(f"Of {objective['name']}: {objective['note']}.")
         if self.run.copies is None:
             self.to.note("Forces, energies and volumes are of the model, whose symmetry planes bound no whole part.")
         elif self.run.copies != 1:
@@ -119,9 +122,12 @@ class Page:
     @staticmethod
     def ranking(objective, rows):
         """Header and rows of a table."""
-        header = ("parameter", "#value", "unit", "#derivative", "#" + bracketed("for +1 %", objective.get("unit")))
-        return header, [(e.parameter["name"], number(e.parameter["value"]), pretty(e.parameter.get("unit")),
-                         number(e.derivative), number(e.for_one_percent, 4, sign="+")) for e in rows]
+        header = ("parameter", "#value", "unit", "#derivative", "#" + bracketed("for +1 %", objective.get("unit")), "how far it holds")
+        cells = [(e.parameter["name"], number(e.parameter["value"]), pretty(e.parameter.get("unit")),
+                  number(e.derivative), number(e.for_one_percent, 4, sign="+"),
+                  e.parameter.get("trust", {}).get(objective["name"], "–")) for e in rows]
+        shown = len(header) if any(row[-1] != "–" for row in cells) else len(header) - 1
+        return header[:shown], [row[:shown] for row in cells]
 
     def sensitivities(self):
         if self.run.sensitivity is None:

@@ -85,6 +85,10 @@ namespace retroforge
       if (event.record.solves.back().active[p])
         touched_.insert(event.record.pairs[p].die);
     watch_edges(event);
+    decisions_.push_back({whole_stroke(case_.process, retroforge::place(event.record)),
+                          whole_stroke(case_.process, place(event.state)),
+                          event.record.remesh != nullptr,
+                          event.record.cuts});
     if (is_due(event.state, case_.parameters.objectives.every))
       add_objectives(event.state);
     const auto       timing = timings_.scope("output");

@@ -166,7 +166,12 @@ namespace retroforge
     if (case_.command.command != Command::simulate)
       differentiate();
     summarise_run(case_, run_.state(), summary_);
-    summarise_objectives(case_, run_.trace(), run_.state(), values_, summary_);
+    summarise_objectives(case_,
+                         run_.trace(),
+                         run_.state(),
+                         values_,
+                         spans_of(run_.objectives(), run_.trace(), output_->decisions()),
+                         summary_);
     summarise_gradients(case_, sensitivities_, summary_);
     summary_.deepest      = output_->deepest();
     summary_.spanned      = output_->spanned();
@@ -307,11 +312,13 @@ namespace retroforge
       differentiate_directly();
     else
       sweep_back();
-    for (const ObjectiveSensitivity &objective : sensitivities_)
+    const auto spans = spans_of(run_.objectives(), run_.trace(), output_->decisions());
+    for (std::size_t j = 0; j < sensitivities_.size(); ++j)
     {
-      check_finite(objective, case_.design);
+      check_finite(sensitivities_[j], case_.design);
+      judge_slopes(case_.combinations[j], spans, case_.design, case_.mu, sensitivities_[j]);
       if (root_)
-        print_gradient(objective, case_.design, case_.mu);
+        print_gradient(sensitivities_[j], case_.design, case_.mu);
     }
   }
 

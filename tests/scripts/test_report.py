@@ -313,6 +313,21 @@ class Report(ScratchTest):
             for expected in (text, '<th class="n">whole part</th>', '<td class="n">250000</td><td class="n">1e+06</td><td>N</td>'):
                 self.assertIn(expected, page)
 
+    def test_trust(self):
+        """What a run says of its slopes stands beside them; without it there is no column."""
+        synthetic_run.write(self.root / "run", n=2, increments=4)
+        path = self.root / "run/summary.json"
+        summary = json.loads(path.read_text())
+        for says in (False, True):
+            if says:
+                summary["objectives"][1]["note"] = "2 remeshings lie within"
+                summary["parameters"][0]["trust"] = {"energy": "within 5 %"}
+                path.write_text(json.dumps(summary))
+            self.assertEqual(call("report", "--no-vtk", self.root / "run").returncode, 0)
+            page = (self.root / "run/report.html").read_text()
+            for text, times in (("<th>how far it holds</th>", 1), ("<td>within 5 %</td>", 1), ("Of late force: 2 remeshings lie within.", 1)):
+                self.assertEqual(page.count(text), times if says else 0, text)
+
     def test_bare_summary(self):
         self.write("run/summary.json", '{"schema": 1, "command": "simulate"}')
         result = call("report", "--no-vtk", self.root / "run")

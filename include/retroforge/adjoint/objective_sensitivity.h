@@ -24,5 +24,7 @@ namespace retroforge
     double              value;
     std::vector<double> gradient; ///< one per parameter
     ShapePerturbation   shape;    ///< derivatives in nodes and vertices
+    /// How far each derivative holds, in words (run/slope_trust.h); empty where that is not known.
+    std::vector<std::string> trust = {};
   };
 } // namespace retroforge

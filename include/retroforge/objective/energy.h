@@ -20,6 +20,7 @@ namespace retroforge
 
     std::string name() const override { return "energy"; }
     std::string unit() const override { return "mJ"; }
+    bool        is_of_forces() const override { return true; }
 
     /// Returns what went into deformation and into friction [mJ].
     static EnergyParts<double> split(const PathRows<double> &rows);

@@ -52,6 +52,10 @@ namespace retroforge
                                    const std::vector<double>     &weights,
                                    EquilibriumBar                &bar) const = 0;
 
+    /// Returns whether Phi is a mean, a sum or a maximum of forces along the path, of which it is known how far slopes
+    /// hold (run/slope_trust.h).
+    virtual bool is_of_forces() const { return false; }
+
     /// Returns Phi.
     /// @throws Error  when it is not defined for these increments (an empty window)
     virtual double value(const PathRows<double> &rows) const = 0;

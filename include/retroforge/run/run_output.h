@@ -9,6 +9,7 @@
 #include <retroforge/output/summary.h>
 #include <retroforge/output/time_left.h>
 #include <retroforge/run/power_balance.h>
+#include <retroforge/run/slope_trust.h>
 #include <retroforge/time/objective_trace.h>
 
 #include <memory>
@@ -44,6 +45,9 @@ namespace retroforge
     /// The increment in which most edges of quadratic velocities spanned corners.
     const Summary::Spanned &spanned() const { return spanned_; }
 
+    /// What each increment decided.
+    const std::vector<IncrementDecisions> &decisions() const { return decisions_; }
+
     Summary::PowerBalance balance() const { return balance_.summary(); }
 
     /// Names of the dies that pressed no node.
@@ -68,8 +72,11 @@ namespace retroforge
     Summary::Depth         deepest_;
     Summary::Spanned       spanned_;
     PowerBalance           balance_;
-    TimeLeft               time_left_;
-    double                 seconds_ = Summary::unknown; ///< of the run by the end of the increment before
+
+    std::vector<IncrementDecisions> decisions_;
+
+    TimeLeft time_left_;
+    double   seconds_ = Summary::unknown; ///< of the run by the end of the increment before
 
     std::unique_ptr<History>          history_;
     std::unique_ptr<ObjectiveHistory> objectives_;

@@ -5,6 +5,7 @@
 #include <retroforge/adjoint/objective_sensitivity.h>
 #include <retroforge/case/case.h>
 #include <retroforge/output/summary.h>
+#include <retroforge/run/slope_trust.h>
 #include <retroforge/time/objective_trace.h>
 
 namespace retroforge
@@ -17,13 +18,26 @@ namespace retroforge
   /// Fills in what a summary says of the forging: counts, volumes, restarts.
   void summarise_run(const Case &forging_case, const ForgingState &forged, Summary &summary);
 
+  /// Returns the part of the run that each objective is made of; nothing for those that do not follow from forces.
+  std::vector<std::optional<ValueSpan>> spans_of(const Objectives                      &objectives,
+                                                 const ObjectiveTrace                  &trace,
+                                                 const std::vector<IncrementDecisions> &run);
+
+  /// Fills in how far the derivatives of a combination of objectives hold; where one of them has no span, nothing.
+  void judge_slopes(const Combination                           &combination,
+                    const std::vector<std::optional<ValueSpan>> &spans,
+                    const Design                                &design,
+                    const std::vector<double>                   &mu,
+                    ObjectiveSensitivity                        &sensitivity);
+
   /// Fills in the objectives.
   /// @param values  of each
-  void summarise_objectives(const Case                &forging_case,
-                            const ObjectiveTrace      &trace,
-                            const ForgingState        &forged,
-                            const std::vector<double> &values,
-                            Summary                   &summary);
+  void summarise_objectives(const Case                                  &forging_case,
+                            const ObjectiveTrace                        &trace,
+                            const ForgingState                          &forged,
+                            const std::vector<double>                   &values,
+                            const std::vector<std::optional<ValueSpan>> &spans,
+                            Summary                                     &summary);
 
   /// Fills in the design parameters, with the gradients.
   void summarise_gradients(const Case                              &forging_case,

@@ -77,6 +77,21 @@ def beside():
     judge("which is about the force", near(effort["details"]["true maximum"], last["force"], 1e-2), (effort, last["force"]))
 
 
+def trust():
+    """A block whose mesh is remade before increment 19 of 20, within the few that make the largest force; and one whose mesh stays."""
+    settings = ("Press/increments=20", "Remeshing/when=increments", "Design/parameters=die upper/offset, material/K",
+                "Objectives/names=energy, maximum effort, volume")
+    for every, remeshed in ((18, 1), (20, 0)):
+        done = run("gradient", f"trust{every}", *settings, f"Remeshing/every={every}")
+        judge(f"every {every}: ends", done.returncode == 0 and done.stdout.count("remeshed:") == remeshed, done.stdout + done.stderr)
+        summary, objectives, _ = results(f"trust{every}")
+        judge(f"every {every}: noted", [name for name, o in objectives.items() if "1 remeshing lies" in o.get("note", "")] ==
+              ["maximum effort"] * remeshed and done.stdout.count("note: it is made of") == remeshed, objectives)
+        judge(f"every {every}: slopes", [p["trust"] for p in summary["parameters"]] ==
+              [{"energy": "within 5 %", "maximum effort": "within 20 %"}, {"energy": "exact", "maximum effort": "exact"}], summary["parameters"])
+        judge(f"every {every}: printed", done.stdout.count("; exact\n") == 2 and done.stdout.count("; how far it holds\n") == 2, done.stdout)
+
+
 def not_finite():
     done = run("gradient", "infinite", "Objectives/names=contact pressure", "Objective contact pressure/sharpness=1000")
     judge("infinite results", done.returncode == 1 and "Objective contact pressure: its value is inf" in done.stderr, done.stderr)
@@ -228,4 +243,4 @@ def check():
 
 
 main({"case.prm": prm(CASE), "upper.prm": prm(UPPER), "round.prm": prm(CYLINDER)},
-     (whole_part, beside, not_finite, fields, pictures, chords, lost_volume, failed, stopped, check))
+     (whole_part, beside, trust, not_finite, fields, pictures, chords, lost_volume, failed, stopped, check))
