@@ -36,7 +36,7 @@ namespace retroforge
         if (stage.contact.pairs[p].die == die &&
             stage.scene.discretization.owns(stage.contact.pairs[p].point.nodes[0]))
           power -= contact_force(stage.contact_node(p, view.W, view.active),
-                                 stage.physics.material.law,
+                                 stage.surface_law(p),
                                  stage.physics.contact) *
                    stage.physics.dies[die].velocity;
       return power;
@@ -55,10 +55,10 @@ namespace retroforge
             stage.scene.discretization.owns(stage.contact.pairs[p].point.nodes[0]))
         {
           const ContactNode<double> node = stage.contact_node(p, view.W, view.active);
-          pullback.add(
-            p, reverse_contact_force(node, stage.physics.material.law, stage.physics.contact, -weight * v));
+          pullback.add(p,
+                       reverse_contact_force(node, stage.surface_law(p), stage.physics.contact, -weight * v));
           bar.physics.dies[die].velocity -=
-            weight * contact_force(node, stage.physics.material.law, stage.physics.contact);
+            weight * contact_force(node, stage.surface_law(p), stage.physics.contact);
         }
       pullback.finish();
     }
@@ -180,7 +180,7 @@ namespace retroforge
       throw Error("Maximum effort",
                   "forces are fitted over " + as_text(reach) + " of the path",
                   "it must be a part of it, from 0 to 1",
-                  "use 0.15, or 0 for the force of each increment as it is");
+                  "use 0.08, or 0 for the force of each increment as it is");
   }
 
   double MaximumEffort::true_maximum(const PathRows<double> &rows) const

@@ -12,7 +12,7 @@ namespace retroforge
   namespace
   {
     /// Exponents of M over that of its root.
-    constexpr double above = 8., below = 7.;
+    constexpr double above = 12., below = 11.;
 
     /// Over M(F): where damping begins, and by how much more a fit can be.
     constexpr double damped_from = 1.05, damped_over = 0.1;

@@ -78,6 +78,7 @@ namespace retroforge
 
     std::string name() const override { return "mean effort"; }
     std::string unit() const override { return "N"; }
+    bool        is_of_forces() const override { return true; }
 
     void reverse_integrals(const EquilibriumView<double> &view,
                            const std::vector<double>     &weights,
@@ -101,7 +102,7 @@ namespace retroforge
   class MaximumEffort : public PathIntegralsOf<MaximumEffort>
   {
   public:
-    static constexpr double default_reach = 0.15;
+    static constexpr double default_reach = 0.08;
 
     /// @param reach  of the fits, a part of the path that lies in the window; 0: forces as they are  @throws Error
     MaximumEffort(const Effort        &effort,
@@ -111,6 +112,7 @@ namespace retroforge
 
     std::string name() const override { return "maximum effort"; }
     std::string unit() const override { return "N"; }
+    bool        is_of_forces() const override { return true; }
 
     /// Returns the largest effort of an increment in the window [N]; 0 if there is none.
     double true_maximum(const PathRows<double> &rows) const;

@@ -28,10 +28,10 @@ namespace retroforge
   /// close to linear in the stroke, to the end, where F itself is steep. With D = (x_j - x_i)/reach,
   ///   1/F̃_i = a,   a, b:   min sum_j l_j (1 - D²) F_j^2 (1 - F_j (a + b D))²   over |D| < 1.
   /// The largest of them is taken by
-  ///   M(x) = ( sum_i l_i x_i^(8p) / sum_i l_i x_i^(7p) )^(1/p),
-  ///   M(x) = 1/k log( sum_i l_i exp(8k x_i) / sum_i l_i exp(7k x_i) ):
+  ///   M(x) = ( sum_i l_i x_i^(12p) / sum_i l_i x_i^(11p) )^(1/p),
+  ///   M(x) = 1/k log( sum_i l_i exp(12k x_i) / sum_i l_i exp(11k x_i) ):
   /// a p-norm and a log-sum-exp over that part of the path where x is large, so that a long path is no reason
-  /// to be lower: M is never above the largest x, below it by a factor (7/8)^(1/p) where x rises exponentially,
+  /// to be lower: M is never above the largest x, below it by a factor (11/12)^(1/p) where x rises exponentially,
   /// and not at all where it is constant.
   ///
   /// A step up near the end is extrapolated, too. What is above 1.05 M(F) is damped, with a continuous

@@ -3,7 +3,7 @@
 
 // Proves, on forces given by hand over a stroke of 1, p = 20:
 //   - F = 1/(1.25 - s), of a height that goes down, is fitted exactly: what is off is M's part alone, between
-//     (7/8)^(1/20) - 1 = -0.67 % and 0, with 27, 54, 108 or 270 increments. A constant force is itself.
+//     (11/12)^(1/20) - 1 = -0.43 % and 0, with 27, 54, 108 or 270 increments. A constant force is itself.
 //   - It is the force of an increment: cutting the last one in halves moves it as it moves the largest force.
 //   - An increment that stands out by 5 % of its force, in the middle of a constant one, is seen by a part.
 //   - A step up at the end from any height is damped to at most 1.15, and seen at all that lasts for the reach.
@@ -74,27 +74,27 @@ namespace
 
   void check_values()
   {
-    const double least = std::pow(7. / 8., 1. / 20.) - 1.;
+    const double least = std::pow(11. / 12., 1. / 20.) - 1.;
     for (const unsigned int n : {27, 54, 108, 270})
     {
-      const double of_hyperbola = off(path_of(equal(n), hyperbola, 0.15));
+      const double of_hyperbola = off(path_of(equal(n), hyperbola, 0.08));
       std::printf("%3u increments: a height that goes down %.2f %%, as M alone: %s, constant: %s\n",
                   n,
                   100. * of_hyperbola,
                   yes(of_hyperbola <= 1e-12 && of_hyperbola > least &&
                       std::abs(of_hyperbola - off(path_of(equal(n), hyperbola, 0.))) < 1e-12),
                   yes(std::abs(off(path_of(
-                        equal(n), [](double) { return 3.; }, 0.15))) < 1e-12));
+                        equal(n), [](double) { return 3.; }, 0.08))) < 1e-12));
     }
     std::vector<double> cut = equal(54);
     cut.insert(cut.end() - 1, 1. - 0.5 / 54.);
-    const Path   whole = path_of(equal(54), hyperbola, 0.15), halves = path_of(cut, hyperbola, 0.15);
+    const Path   whole = path_of(equal(54), hyperbola, 0.08), halves = path_of(cut, hyperbola, 0.08);
     const double moved = maximum.value(halves) / maximum.value(whole) - 1.;
     std::printf("the last increment in halves: %.2f %%, of the largest force %.2f %%\n",
                 100. * moved,
                 100. * (largest(halves) / largest(whole) - 1.));
     Path spike = path_of(
-      equal(54), [](double) { return 1.; }, 0.15);
+      equal(54), [](double) { return 1.; }, 0.08);
     spike.force[27] += 0.05;
     std::printf("an increment of 5 %% more in a constant force: %.2f %%\n",
                 100. * (maximum.value(spike) - 1.));
@@ -104,9 +104,9 @@ namespace
         for (unsigned int k = 1; k < n; ++k)
         {
           const double value = maximum.value(path_of(
-            equal(n), [&](const double s) { return s > 1. - k / double(n) ? 1. : before; }, 0.15));
+            equal(n), [&](const double s) { return s > 1. - k / double(n) ? 1. : before; }, 0.08));
           highest            = std::max(highest, value);
-          if (k >= 0.15 * n)
+          if (k >= 0.08 * n)
             lowest = std::min(lowest, value);
         }
     std::printf("steps up: at most 1.15: %s, %.3f; if it lasts, at least the force but for 2 %%: %s\n",
@@ -146,14 +146,14 @@ namespace
       return finite;
     };
     std::printf("finite: no increment %s, no force %s, negative ones %s, some of both %s, one increment %s\n",
-                yes(is_finite(path_of({}, hyperbola, 0.15))),
+                yes(is_finite(path_of({}, hyperbola, 0.08))),
                 yes(is_finite(path_of(
-                  equal(9), [](double) { return 0.; }, 0.15))),
+                  equal(9), [](double) { return 0.; }, 0.08))),
                 yes(is_finite(path_of(
-                  equal(9), [](double) { return -1.; }, 0.15))),
+                  equal(9), [](double) { return -1.; }, 0.08))),
                 yes(is_finite(path_of(
-                  equal(9), [](const double s) { return s - 0.5; }, 0.15))),
-                yes(is_finite(path_of(equal(1), hyperbola, 0.15))));
+                  equal(9), [](const double s) { return s - 0.5; }, 0.08))),
+                yes(is_finite(path_of(equal(1), hyperbola, 0.08))));
   }
 
   void check_derivatives(const char *name, const Path &path, const SmoothMaximum &kind)
@@ -199,7 +199,7 @@ int main()
   check_nothing();
   RandomNumbers random;
   const auto    rough  = [&](const double s) { return hyperbola(s) * (1. + 0.02 * random.scalar()); };
-  const Path    rising = path_of(equal(40), rough, 0.15);
+  const Path    rising = path_of(equal(40), rough, 0.08);
   const Path    damped = path_of(
     equal(40), [](const double s) { return s > 0.93 ? 1. + 0.1 * s : 0.2 + 0.1 * s; }, 0.2);
   std::printf("the damped one is: %s\n", yes(off(damped) > 0.05));
