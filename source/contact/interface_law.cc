@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/coulomb_friction.h>
 #include <retroforge/contact/norton_friction.h>
 #include <retroforge/core/registry.h>
+#include <retroforge/core/text.h>
 
 namespace retroforge
 {
@@ -9,7 +11,12 @@ namespace retroforge
   {
     Registry<InterfaceLaw> &interface_laws()
     {
-      static Registry<InterfaceLaw> laws("law of friction", "Norton", std::make_unique<NortonFriction>());
+      static Registry<InterfaceLaw> laws = [] {
+        Registry<InterfaceLaw> all("law of friction", "Norton", std::make_unique<NortonFriction>());
+        all.add("Tresca", std::make_unique<TrescaFriction>());
+        all.add("Coulomb", std::make_unique<CoulombFriction>());
+        return all;
+      }();
       return laws;
     }
   } // namespace
@@ -31,11 +38,18 @@ namespace retroforge
 
   DieState<double> initial_state(const DieParameters &die)
   {
-    return {die.velocity,
-            Vec3(),
-            die.friction,
-            {},
-            find_interface_law(die.friction_law, "Die " + die.name + "/friction law")};
+    const std::string   section = "Die " + die.name;
+    const unsigned int  number  = find_interface_law(die.friction_law, section + "/friction law");
+    const InterfaceLaw &law     = interface_law(number);
+    if (const NumberInfo info = law.coefficient(); die.friction > info.largest)
+      throw Error(section + "/friction",
+                  "is " + as_text(die.friction) + ", and the law is " + die.friction_law,
+                  "its coefficient " + info.name + " is at most " + as_text(info.largest),
+                  "use a smaller one, or another law");
+    DieState<double> state{die.velocity, Vec3(), die.friction, {}, number};
+    if (law.limit())
+      state.shear_limit = die.shear_limit;
+    return state;
   }
 
   namespace
@@ -46,39 +60,41 @@ namespace retroforge
       const ContactLaw<double>   sharp;
       const SlidingPoint<double> point;
 
-      TypicalSliding(const DieState<double>    &die,
-                     const double               slip,
-                     const double               pressure,
-                     const MaterialLaw<double> &metal)
-          : point{1., die.friction, slip * slip, pressure, metal, sharp}
+      TypicalSliding(const DieState<double> &die, const TypicalContact &at, const MaterialLaw<double> &metal)
+          : point{1.,
+                  die.friction,
+                  at.slip * at.slip,
+                  at.pressure,
+                  die.shear_limit,
+                  at.rate * at.rate,
+                  metal,
+                  sharp}
       {
       }
       TypicalSliding(const TypicalSliding &) = delete; // its members refer to each other
     };
   } // namespace
 
-  double friction_traction(const DieState<double>    &die,
-                           const double               slip,
-                           const double               pressure,
-                           const MaterialLaw<double> &metal)
+  double
+  friction_traction(const DieState<double> &die, const TypicalContact &at, const MaterialLaw<double> &metal)
   {
-    return interface_law(die.interface_law).factor(TypicalSliding(die, slip, pressure, metal).point) * slip;
+    return interface_law(die.interface_law).factor(TypicalSliding(die, at, metal).point) * at.slip;
   }
 
   bool needs_regularisation(const DieState<double> &die, const MaterialLaw<double> &metal)
   {
     return die.friction > 0. &&
-           !std::isfinite(interface_law(die.interface_law).factor(TypicalSliding(die, 0., 1., metal).point));
+           !std::isfinite(
+             interface_law(die.interface_law).factor(TypicalSliding(die, {0., 1., 1.}, metal).point));
   }
 
   double linear_friction(const DieState<double>    &die,
-                         const double               slip,
-                         const double               pressure,
+                         const TypicalContact      &at,
                          const MaterialLaw<double> &metal,
                          const MaterialLaw<double> &linear_metal)
   {
     return interface_law(die.interface_law)
-      .linear_coefficient(TypicalSliding(die, slip, pressure, metal).point, linear_metal);
+      .linear_coefficient(TypicalSliding(die, at, metal).point, linear_metal);
   }
 
   double InterfaceLaw::potential_ratio(const SlidingPoint<double> &) const
@@ -114,6 +130,8 @@ namespace retroforge
                   Number(dv * dv),
                   node.active && !law.has_potential() ? Number(contact.rho * approach_excess(node))
                                                       : Number(0.),
+                  node.shear_limit,
+                  node.rate2,
                   metal,
                   contact}
           , factor(law.factor(point))
@@ -134,6 +152,8 @@ namespace retroforge
       friction.law.reverse(friction.point, log_bar, numbers);
       bar.Sf += log_bar / node.Sf;
       bar.alpha += numbers.coefficient;
+      bar.shear_limit += numbers.limit;
+      bar.rate2 += numbers.rate2;
       add_numbers(numbers.metal, bar.law);
       add_numbers(numbers.contact, bar.contact);
       const double pressure_bar = node.active ? factor_bar * friction.law.pressure_slope(friction.point) : 0.;

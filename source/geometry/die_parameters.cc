@@ -29,14 +29,22 @@ namespace retroforge
     prm.add_parameter(
       "friction law",
       friction_law,
-      "Law of the friction on the die; Norton: tau = -alpha K |dv|^(m-1) dv, with the metal's K "
-      "and m. Units: none.");
+      "Law of the friction on the die. Norton: tau = alpha K |dv|^m, with the metal's K and m. Tresca: tau = "
+      "friction k, k = sigma_0/sqrt3 the shear flow stress of the metal at the die. Coulomb: tau = friction "
+      "p, p "
+      "the pressure of the die, and at most `shear limit' k, by a smooth minimum. Units: none.");
     prm.add_parameter(
       "friction",
       friction,
-      "Coefficient of the law of friction, alpha of Norton's; 0 is a frictionless die. Units: those of the "
-      "law, of Norton's mm^(-m).",
+      "Coefficient of the law of friction: alpha of Norton's, the shear factor of Tresca's, at most 1, mu of "
+      "Coulomb's; 0 is a frictionless die. Units: those of the law, of Norton's mm^(-m), else none.",
       dealii::Patterns::Double(0.));
+    prm.add_parameter(
+      "shear limit",
+      shear_limit,
+      "Part of the metal's shear flow stress that the friction of Coulomb's law cannot exceed; other "
+      "laws do not read it. Units: none.",
+      dealii::Patterns::Double(1e-6, 1.));
     prm.add_parameter("follows billet",
                       follows_billet,
                       "Where the design makes the billet higher or lower, the die starts as far from it as "

@@ -18,6 +18,7 @@ namespace retroforge
   FinalBar::FinalBar(const FinalView<double> &view, const unsigned int target_die)
       : X(view.scene.mesh.n_nodes())
       , q(view.scene.mesh.n_cells(), 0.)
+      , T(view.T != nullptr ? view.scene.mesh.n_nodes() : 0, 0.)
       , target(n_target_vertices(view, target_die))
       , dies(no_derivatives(view.scene.dies))
   {

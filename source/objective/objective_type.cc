@@ -9,6 +9,7 @@
 #include <retroforge/objective/radius.h>
 #include <retroforge/objective/shape_distance.h>
 #include <retroforge/objective/strain_statistics.h>
+#include <retroforge/objective/temperatures.h>
 #include <retroforge/objective/unfilled_volume.h>
 #include <retroforge/objective/volume.h>
 
@@ -30,6 +31,9 @@ namespace retroforge
                                                         mean_strain_type(),
                                                         strain_variance_type(),
                                                         maximum_strain_type(),
+                                                        largest_temperature_type(),
+                                                        least_temperature_type(),
+                                                        temperature_spread_type(),
                                                         volume_type()};
     return types;
   }

@@ -71,6 +71,10 @@ namespace retroforge
                         {"covered", die.covered},
                         {"touches", die.touches},
                         {"mirrored_by", die.mirrored_by}};
+      if (!die.friction_law.empty())
+        json["friction_law"] = die.friction_law;
+      if (die.shear_limit)
+        json["shear_limit"] = *die.shear_limit;
       if (die.touches)
         json["contact_area"] = die.contact_area;
       if (die.overlap)
@@ -210,8 +214,12 @@ namespace retroforge
 
     void list(std::ostream &out, const SceneSummary::Die &die, const bool with_billet)
     {
-      out << "  die " << die.name << ", " << die.shape << ", friction " << die.friction_name << " = "
-          << as_text(die.friction) << '\n';
+      out << "  die " << die.name << ", " << die.shape << ", friction "
+          << (die.friction_law.empty() ? "" : "after " + die.friction_law + ", ") << die.friction_name
+          << " = " << as_text(die.friction);
+      if (die.shear_limit)
+        out << ", shear limit " << as_text(*die.shear_limit);
+      out << '\n';
       if (die.extents)
         out << "    " << range(*die.extents) << ", " << die.n_facets << " facets\n";
       else

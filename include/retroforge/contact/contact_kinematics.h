@@ -14,7 +14,7 @@
 ///
 /// For a point against a die, its position and velocity means of its nodes' (ContactPoint):  u = V_k - v_die,
 /// h = u·n - a(delta),  a = delta/tau or, with a layer l, l/tau asinh(delta/l),  dv = u - (u·n) n.
-/// A node held off the die by an edge that touches counts as touching.
+/// A node held off the die by an edge that touches counts as touching, as far as the die bulges into the edge.
 ///
 /// Uniform pressure does not load the vertices of a quadratic velocity: whether one is pressed would be
 /// decided by the last digits. So one is pressed, too, where the middles of all its surface edges are. On
@@ -97,8 +97,9 @@ namespace retroforge
     std::vector<ContactPair>        pairs;
     std::vector<Projection<Number>> projections; ///< for each pair, at X_i
     std::vector<Number>             scales;      ///< of the ramp of each pair: RampScales
-    /// w(delta/s) for each pair; for a node at which edges may touch in its place, 1 - (1 - w) product (1 -
-    /// w_edge).
+    /// w(delta/s) for each pair; for a node at which edges may touch in its place,
+    ///   1 - (1 - w) product_m (1 - (1 - w(4 b_m/s_m)) w_m),
+    /// b_m the bulge of the die into the edge with the middle m.
     std::vector<Number> ramps;
     /// The factors of this product: (pair of a node, pair of an edge at it).
     std::vector<std::array<unsigned int, 2>> touched_by_edges;
@@ -112,6 +113,9 @@ namespace retroforge
     /// For quadratic velocities: edges at a curved die, and all gaps before they were levelled [mm].
     std::vector<Chord>  chords;
     std::vector<Number> own_gaps;
+    /// Squares of strain rates at the pairs that laws of friction follow (surface_rates.h) [1/s^2]; empty: none
+    /// does.
+    std::vector<Number> rates;
     bool                quadratic = false;
     Number              tau       = 1.; ///< approach time [s]
     ApproachLaw         approach;
@@ -148,10 +152,13 @@ namespace retroforge
   /// reverse_contact_set.
   struct ContactSetBar
   {
-    std::vector<double> delta, ramp;
+    std::vector<double> delta, ramp, rates;
     std::vector<Vec3>   n;
 
-    explicit ContactSetBar(const std::size_t n_pairs) : delta(n_pairs, 0.), ramp(n_pairs, 0.), n(n_pairs) {}
+    explicit ContactSetBar(const std::size_t n_pairs)
+        : delta(n_pairs, 0.), ramp(n_pairs, 0.), rates(n_pairs, 0.), n(n_pairs)
+    {
+    }
   };
 
   /// The laws by which points approach the dies in an increment, and by which friction sets in.
@@ -193,6 +200,8 @@ namespace retroforge
     bool            active; ///< counts as h > 0
     ApproachLaw     approach;
     unsigned int    interface_law = 0; ///< number of the die's law (interface_law.h)
+    Number          shear_limit   = Number(0.);
+    Number          rate2         = Number(0.); ///< square of the metal's strain rate, frozen [1/s^2]
   };
 
   /// Speed at which a gap may close: delta/tau, so that what is in reach arrives within tau; with a layer l
@@ -252,7 +261,7 @@ namespace retroforge
   struct ContactNodeBar
   {
     Vec3   u, n;
-    double delta = 0., tau = 0., S = 0., Sf = 0., alpha = 0.;
+    double delta = 0., tau = 0., S = 0., Sf = 0., alpha = 0., shear_limit = 0., rate2 = 0.;
 
     MaterialLaw<double> law;
     ContactLaw<double>  contact;

@@ -5,11 +5,13 @@
 #include <retroforge/contact/contact_kinematics.h>
 #include <retroforge/geometry/die_parameters.h>
 
+#include <optional>
+
 /// @file
 /// What acts between metal and die at a point of contact: unilateral contact by a penalty, and friction by
 /// the law that the die's section in the parameter file names. The force on the residual is
-///   N n + f dv,   N = rho S [h]^+,   f = factor(S^f, alpha, |dv|^2, N/S, numbers of the metal and of
-///   contact).
+///   N n + f dv,   N = rho S [h]^+,   f = factor(S^f, coefficient, |dv|^2, N/S, numbers of the metal there, its
+///   strain rate, and numbers of contact).
 /// It acts on the residual, so that f is not negative: the traction on the metal is -f dv / S^f.
 namespace retroforge
 {
@@ -23,6 +25,8 @@ namespace retroforge
     /// N/S [MPa]; 0 where the point is not pressed, less where it is held and pulls. To a law with a
     /// potential, which cannot follow it, it is not told: 0.
     Number pressure;
+    Number limit; ///< second coefficient of the die: DieState::shear_limit
+    Number rate2; ///< e^2 of the metal, frozen over the increment (surface_rates.h) [1/s^2]
 
     const MaterialLaw<Number> &metal;
     const ContactLaw<Number>  &contact;
@@ -31,7 +35,7 @@ namespace retroforge
   /// Derivatives of a scalar in the numbers of a SlidingPoint.
   struct SlidingBar
   {
-    double              coefficient = 0.;
+    double              coefficient = 0., limit = 0., rate2 = 0.;
     MaterialLaw<double> metal;
     ContactLaw<double>  contact;
   };
@@ -45,6 +49,15 @@ namespace retroforge
 
     /// Returns the die's coefficient as users know it.
     virtual NumberInfo coefficient() const = 0;
+
+    /// Returns the second coefficient, by which the metal bounds friction, of laws that have one.
+    virtual std::optional<NumberInfo> limit() const { return {}; }
+
+    /// Tells whether friction follows the strain rate of the metal.
+    virtual bool follows_rate() const { return false; }
+
+    /// Tells whether friction is proportional to the slip.
+    virtual bool is_linear(const MaterialLaw<double> &) const { return false; }
 
     /// Tells whether friction is the gradient in V of a potential. Where it follows the pressure, it is not.
     virtual bool has_potential() const = 0;
@@ -65,7 +78,7 @@ namespace retroforge
     /// Returns the potential over f, where there is one: d potential / d|dv| = f |dv|  [mm^2/s^2].
     virtual double potential_ratio(const SlidingPoint<double> &point) const;
 
-    /// Adds the derivatives in the coefficient and the numbers of metal and contact of a scalar whose
+    /// Adds the derivatives in the coefficients, the strain rate and the numbers of metal and contact of a scalar whose
     /// derivative in log(f) is `log_bar`. That in the penalty by way of the pressure is the caller's.
     virtual void reverse(const SlidingPoint<double> &point, double log_bar, SlidingBar &bar) const = 0;
 
@@ -108,23 +121,34 @@ namespace retroforge
   void add_interface_law(const std::string &name, std::unique_ptr<const InterfaceLaw> law);
 
   /// Returns the state that a die starts in.
-  /// @throws Error  where it names no law of friction that there is
+  /// @throws Error  where it names no law of friction that there is, or a coefficient that its law has not
   DieState<double> initial_state(const DieParameters &die);
 
+  /// What is typical of the metal at a die.
+  struct TypicalContact
+  {
+    double slip;     ///< speed along the die [mm/s]
+    double pressure; ///< [MPa]
+    double rate;     ///< equivalent strain rate [1/s]
+  };
+
   /// Returns the traction of a die's friction without regularisation [MPa].
-  /// @param slip  speed [mm/s]      @param pressure  [MPa]
-  double friction_traction(const DieState<double>    &die,
-                           double                     slip,
-                           double                     pressure,
-                           const MaterialLaw<double> &metal);
+  double
+  friction_traction(const DieState<double> &die, const TypicalContact &at, const MaterialLaw<double> &metal);
 
   /// Tells whether a die's friction on a point that sticks is infinitely stiff without regularisation.
   bool needs_regularisation(const DieState<double> &die, const MaterialLaw<double> &metal);
 
+  /// Tells whether a die's friction follows the strain rate of the metal.
+  template <typename Number>
+  bool follows_rate(const DieState<Number> &die)
+  {
+    return value_of(die.friction) != 0. && interface_law(die.interface_law).follows_rate();
+  }
+
   /// Returns that die's coefficient in Norton's law beside a linear metal, for the same traction.
   double linear_friction(const DieState<double>    &die,
-                         double                     slip,
-                         double                     pressure,
+                         const TypicalContact      &at,
                          const MaterialLaw<double> &metal,
                          const MaterialLaw<double> &linear_metal);
 

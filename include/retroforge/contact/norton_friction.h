@@ -13,6 +13,7 @@ namespace retroforge
   public:
     NumberInfo coefficient() const override { return {"alpha", "mm^(-m)", true}; }
     bool       has_potential() const override { return true; }
+    bool       is_linear(const MaterialLaw<double> &metal) const override { return metal.is_linear(); }
 
     template <typename Number>
     Number compute_factor(const SlidingPoint<Number> &point) const

@@ -23,12 +23,15 @@ namespace retroforge
     /// Number of the friction law that the coefficient belongs to (contact/interface_law.h); 0: Norton's.
     unsigned int interface_law = 0;
     unsigned int in_press      = 1; ///< whether it stands in the press: 0 or 1
+    /// Part of the metal's shear flow stress that bounds friction, where its law has a bound of its own
+    /// (InterfaceLaw::limit).
+    Number shear_limit = Number(0.);
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[velocity, displacement, friction, vertices, interface_law, in_press] = self;
-      return std::tie(velocity, displacement, friction, vertices, interface_law, in_press);
+      auto &[velocity, displacement, friction, vertices, interface_law, in_press, shear_limit] = self;
+      return std::tie(velocity, displacement, friction, vertices, interface_law, in_press, shear_limit);
     }
   };
 

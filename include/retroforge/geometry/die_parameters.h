@@ -17,6 +17,7 @@ namespace retroforge
     Vec3            velocity;
     std::string     friction_law   = "Norton";
     double          friction       = 0.;
+    double          shear_limit    = 1.;
     bool            follows_billet = false;
 
     explicit DieParameters(std::string name) : name(std::move(name)) {}

@@ -56,6 +56,8 @@ namespace retroforge
       Vec3                   travel;        ///< over the stroke [mm]
       double                 friction      = 0.;
       std::string            friction_name = "alpha"; ///< name of the coefficient in its law
+      std::string            friction_law;            ///< empty: Norton's
+      std::optional<double>  shear_limit;             ///< where the law has one
       bool                   leads         = false;
       double                 smallest_size = unknown; ///< smallest length of the edges wanted near it [mm]
 

@@ -155,6 +155,11 @@ CAVITY = {"Die upper/shape": "stl", "Die upper/point": "0, 0, 0",
           "Objective unfilled volume/region to": "30, 30, 21"}
 
 
+# Flat dies with another law of friction, which follows the strain rate of the metal behind a point.
+LAWS = {"Tresca": "material/K, material/m, die lower/friction, die upper/friction, die upper/speed, die upper/offset",
+        "Coulomb": "material/K, die lower/friction, die lower/shear limit, die upper/friction, die upper/speed, die upper/offset"}
+
+
 def run(build, name, angle, die, whole):
     """The summary."""
     settings = {"Billet/file name": os.path.abspath(f"{name}_whole.msh" if whole else f"{name}.msh"),
@@ -163,6 +168,8 @@ def run(build, name, angle, die, whole):
         quarter = angle == 90 and not whole
         settings |= {**CAVITY, "Die upper/file": os.path.abspath(f"{name}.stl"),
                      "Objective unfilled volume/region from": "0, 0, 14" if quarter else "-30, -30, 14"}
+    if die in LAWS:
+        settings |= {f"Die {d}/friction law": die for d in ("lower", "upper")} | {"Design/parameters": LAWS[die]}
     output = f"{name}_{die}_whole" if whole else f"{name}_{die}"
     return case_tools.run(build, "gradient", os.path.join(HERE, "case.prm"), settings, output)[0]
 
@@ -237,7 +244,8 @@ def main():
     for angle in (90, 60):
         copies = write_scene(angle)
         compare(sys.argv[1], angle, "cavity", copies)
-        compare_nodes(angle, "flat", copies, compare(sys.argv[1], angle, "flat", copies))
+        for die in ("flat", *LAWS):
+            compare_nodes(angle, die, copies, compare(sys.argv[1], angle, die, copies))
 
 
 if __name__ == "__main__":

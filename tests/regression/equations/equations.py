@@ -200,6 +200,11 @@ class Contact:
         r = max(r, 0) if before else r
         return ramp_01(delta / (self.case["width"] * np.sqrt(self.case["c_s"]**2 + (1 - self.case["c_s"]**2) * r**2)))
 
+    def bulging(self, edge):
+        """g of (28)"""
+        ends = [self.delta[k,] for k in edge]
+        return 1 - self.w(edge, 4 * (sum(ends) / 2 - self.delta[edge]))
+
     def level(self):
         """(22)"""
         own = dict(self.delta)
@@ -224,7 +229,7 @@ class Contact:
             if not self.quadratic and len(point) == 1:
                 for edge in EDGES:
                     if edge in self.delta and point[0] in edge:
-                        free *= 1 - self.w(edge, self.delta[edge])
+                        free *= 1 - self.bulging(edge) * self.w(edge, self.delta[edge])
             self.touching[point] = 1 - free
 
     def areas(self):

@@ -6,7 +6,8 @@
 // directions (all nodes at random, the nodes in contact lifted off their die, the speed of the die); and a
 // sweep that leaves out any one term does not. The sweep with omissions is the test's own, built from the
 // library's kernels: complete, it agrees with adjoint_sweep. The times of an increment depend on the speed
-// alone, so their terms must show along that direction, all others along the two that move nodes.
+// alone, so their terms must show along that direction, all others along the two that move nodes. The same under friction
+// after Tresca, for the strain rate that it follows.
 
 #include <deal.II/base/mpi.h>
 
@@ -21,16 +22,22 @@ using namespace retroforge;
 
 namespace
 {
-  const std::vector<std::pair<Term, std::string>> terms = {{Term::gap, "d delta/dX"},
-                                                           {Term::area, "d S/dX"},
-                                                           {Term::friction_area, "d S^f/dX"},
-                                                           {Term::ramp, "w'(delta)"},
-                                                           {Term::lambda_bubble, "bubble part of lambda"},
-                                                           {Term::power_bubble, "dPhi/dbeta"},
-                                                           {Term::closing, "the work on gaps that close"},
-                                                           {Term::first_stage, "lambda of the first stage"},
-                                                           {Term::dt, "d dt/d(speed)"},
-                                                           {Term::tau, "d tau/d(speed)"}};
+  using Terms = std::vector<std::pair<Term, std::string>>;
+
+  const Terms terms = {{Term::gap, "d delta/dX"},
+                       {Term::area, "d S/dX"},
+                       {Term::friction_area, "d S^f/dX"},
+                       {Term::ramp, "w'(delta)"},
+                       {Term::lambda_bubble, "bubble part of lambda"},
+                       {Term::power_bubble, "dPhi/dbeta"},
+                       {Term::closing, "the work on gaps that close"},
+                       {Term::first_stage, "lambda of the first stage"},
+                       {Term::dt, "d dt/d(speed)"},
+                       {Term::tau, "d tau/d(speed)"}};
+
+  const Terms terms_of_tresca = {{Term::rate, "d(e^2)"},
+                                 {Term::rate_position, "d(e^2)/dX"},
+                                 {Term::rate_velocity, "d(e^2)/d(velocity before)"}};
 
   std::vector<Direction> directions(const RecordedRun &run)
   {
@@ -51,36 +58,47 @@ namespace
           run.scene.dies[pair.die].project(pair.point.position(run.scene.mesh.X), Vec3(), pair.feature).n;
     return list;
   }
+
+  void check(RecordedRun &problem, const Terms &omitted)
+  {
+    const auto          along   = directions(problem);
+    const AdjointResult library = problem.adjoint(), complete = sweep(problem, Term::none);
+    std::vector<double> differences;
+    std::cout << "complete sweep\n";
+    for (const Direction &direction : along)
+    {
+      const double h = direction.speed_dot == 0. ? 1e-6 : 1e-5;
+      differences.push_back(difference(problem, direction, h));
+      const double adjoint = slope(problem, complete, direction);
+      std::cout << "  " << direction.name
+                << ": differences within 1e-7: " << yes(relative_error(adjoint, differences.back()) < 1e-7)
+                << ", adjoint_sweep within 1e-13: "
+                << yes(relative_error(adjoint, slope(problem, library, direction)) < 1e-13) << "\n";
+    }
+    for (const auto &[term, name] : omitted)
+    {
+      const AdjointResult without = sweep(problem, term);
+      std::cout << "without " << name << "\n";
+      for (std::size_t d = 0; d < along.size(); ++d)
+      {
+        const double found = relative_error(slope(problem, without, along[d]), differences[d]);
+        const bool   times = term == Term::dt || term == Term::tau;
+        if (times == (along[d].speed_dot != 0.))
+          std::cout << "  " << along[d].name << ": error > 1e-6: " << yes(found > 1e-6) << "\n";
+      }
+    }
+  }
 } // namespace
 
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  RecordedRun                              problem(tilted_block());
-  const auto                               along   = directions(problem);
-  const AdjointResult                      library = problem.adjoint(), complete = sweep(problem, Term::none);
-  std::vector<double>                      differences;
-  std::cout << "complete sweep\n";
-  for (const Direction &direction : along)
-  {
-    const double h = direction.speed_dot == 0. ? 1e-6 : 1e-5;
-    differences.push_back(difference(problem, direction, h));
-    const double adjoint = slope(problem, complete, direction);
-    std::cout << "  " << direction.name
-              << ": differences within 1e-7: " << yes(relative_error(adjoint, differences.back()) < 1e-7)
-              << ", adjoint_sweep within 1e-13: "
-              << yes(relative_error(adjoint, slope(problem, library, direction)) < 1e-13) << "\n";
-  }
-  for (const auto &[term, name] : terms)
-  {
-    const AdjointResult without = sweep(problem, term);
-    std::cout << "without " << name << "\n";
-    for (std::size_t d = 0; d < along.size(); ++d)
-    {
-      const double found = relative_error(slope(problem, without, along[d]), differences[d]);
-      const bool   times = term == Term::dt || term == Term::tau;
-      if (times == (along[d].speed_dot != 0.))
-        std::cout << "  " << along[d].name << ": error > 1e-6: " << yes(found > 1e-6) << "\n";
-    }
-  }
+  RecordedRun                              norton(tilted_block());
+  check(norton, terms);
+  Parameters parameters = tilted_block();
+  for (DieParameters &die : parameters.dies)
+    die.friction_law = "Tresca";
+  RecordedRun tresca(parameters);
+  std::cout << "friction after Tresca\n";
+  check(tresca, terms_of_tresca);
 }

@@ -2,6 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include "ramps_by_duals.h"
+
 #include "recorded_run.h"
 
 #include <retroforge/core/dual.h>
@@ -33,7 +35,10 @@ namespace retroforge
     edge_area,     // d S / dX of edges
     closing,       // the work on gaps that close
     wall,          // width of the ramp by the die's normal
-    coming         // width of the ramp by the metal's velocity in the increment before
+    coming,        // width of the ramp by the metal's velocity in the increment before
+    rate,          // strain rate that friction follows
+    rate_position, // the same by the nodes' positions
+    rate_velocity  // the same by their velocity in the increment before
   };
 
   /// A facet of a smooth die and a point, as project_smoothly() has them: 21 numbers.
@@ -162,41 +167,6 @@ namespace retroforge
     }
   }
 
-  /// Derivatives in the points' own ramps from those in the ramps that count.
-  inline std::vector<double> reverse_ramps(const ContactSet<double> &contact,
-                                           const FrictionRamp       &ramp,
-                                           const ContactSetBar      &bar,
-                                           const Term                omitted)
-  {
-    const auto         &pairs   = contact.pairs;
-    std::vector<double> own_bar = bar.ramp, own;
-    if (omitted == Term::edge_ramp)
-      return own_bar;
-    for (unsigned int p = 0; p < pairs.size(); ++p)
-      own.push_back(ramp(contact.projections[p].delta / contact.scales[p], pairs[p].touching));
-    for (unsigned int p = 0; p < pairs.size(); ++p)
-    {
-      if (!pairs[p].point.is_node())
-        continue;
-      // 1 - product of what does not touch, over the node and its edges
-      std::vector<unsigned int> factors = {p};
-      for (unsigned int q = 0; q < pairs.size(); ++q)
-        if (const auto &nodes = pairs[q].point.nodes;
-            pairs[q].die == pairs[p].die && !pairs[q].point.is_node() &&
-            (nodes[0] == pairs[p].point.nodes[0] || nodes[1] == pairs[p].point.nodes[0]))
-          factors.push_back(q);
-      own_bar[p] -= bar.ramp[p];
-      for (const unsigned int f : factors)
-      {
-        double others = 1.;
-        for (const unsigned int q : factors)
-          others *= q == f ? 1. : 1. - own[q];
-        own_bar[f] += others * bar.ramp[p];
-      }
-    }
-    return own_bar;
-  }
-
   /// The dies' surfaces are smooth, with this feature angle [degrees].
   constexpr double feature_angle = 40.;
 
@@ -212,7 +182,7 @@ namespace retroforge
                           NodalVectors<double>                &V_bar,
                           std::vector<DieState<double>>       &dies_bar)
   {
-    const std::vector<double>             ramps_bar = reverse_ramps(contact, ramp, bar, omitted);
+    const RampsBar ramps_bar = reverse_ramps(contact, ramp, bar.ramp, omitted != Term::edge_ramp);
     std::map<unsigned int, CornerNormals> normals;
     for (unsigned int d = 0; d < dies.size(); ++d)
       if (dies[d].surface())
@@ -221,11 +191,10 @@ namespace retroforge
     {
       const ContactPair &pair = contact.pairs[p];
       const Die         &die  = dies[pair.die];
-      const double       s = contact.scales[p], gap = contact.projections[p].delta;
-      const double       slope     = ramps_bar[p] * ramp.derivative(gap / s);
-      const double       delta_bar = bar.delta[p] + slope / s;
+      const double       s = contact.scales[p], s_bar = ramps_bar.scales[p];
+      const double       delta_bar = bar.delta[p] + ramps_bar.gaps[p];
       Vec3               n_bar     = bar.n[p];
-      if (slope != 0.)
+      if (s_bar != 0.)
       {
         // One die moves: it and the others close along its velocity.
         unsigned int moving = 0;
@@ -236,7 +205,7 @@ namespace retroforge
         const double r = u * n / c.norm();
         if (V.empty() || r > 0.)
         {
-          const double r_bar = -slope * gap / (s * s) * (1. - ramp.wall * ramp.wall) * r / s;
+          const double r_bar = s_bar * (1. - ramp.wall * ramp.wall) * r / s;
           if (omitted != Term::wall)
             n_bar += r_bar / c.norm() * u;
           if (!V.empty() && omitted != Term::coming)
@@ -295,6 +264,7 @@ namespace retroforge
       areas_bar.Sf[p] = omitted == Term::friction_area ? 0. : node.Sf;
       contact_bar.delta[p] += node.delta;
       contact_bar.n[p] += node.n;
+      contact_bar.rates[p] += omitted == Term::rate ? 0. : node.rate2;
       bar.tau += node.tau;
       bar.dies[stage.contact.pairs[p].die].velocity -= node.u;
     }
@@ -483,6 +453,13 @@ namespace retroforge
                 G,
                 V_bar,
                 bar.dies);
+    NodalVectors<double> no_X(X.size()), no_V(X.size());
+    reverse_surface_rates(scene.view(physics.dies, X, &V),
+                          contact.pairs,
+                          contact_bar.rates,
+                          omitted == Term::rate_position ? no_X : G,
+                          omitted == Term::rate_velocity ? no_V : V_bar,
+                          bar.dies);
     reverse_over(problem.process(), place(record), record.contact.approach, bar, process_bar);
   }
 

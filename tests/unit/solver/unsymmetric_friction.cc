@@ -16,7 +16,6 @@
 #include <retroforge/core/timer.h>
 #include <retroforge/solver/newton.h>
 
-#include "../contact/coulomb_friction.h"
 #include "../contact/wavy_sheet.h"
 #include "../element/element_test_tools.h"
 #include "../mesh/block_mesh.h"
@@ -62,6 +61,9 @@ namespace
       {
         die.friction      = 0.25;
         die.interface_law = find_interface_law(law, "test");
+        // Far away: near it the slope by the pressure is known to the square of the penalty times rounding only, and
+        // dual numbers find gaps by another path.
+        die.shear_limit = 1e3;
       }
       contact = contact_of(physics, X);
     }
@@ -241,7 +243,6 @@ int main(int argc, char **argv)
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
     std::cout.setstate(std::ios::failbit);
-  add_coulomb_friction();
   symmetry();
   Errors dual, solved;
   check(ElementPair::mini, 1e3, 0.3, dual, solved);
