@@ -5,6 +5,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <numeric>
+
 namespace retroforge
 {
   namespace
@@ -21,8 +23,8 @@ namespace retroforge
       const FinalObjective &objective = *run.objectives[o].at_end;
       const FinalDecisions &decisions = run.traced.decisions[o];
       const auto            dies      = run.process.at_stroke(end.stroke, end.operation).dies;
-      const auto view = final_view(objective, end.epoch->scene, end.workpiece.X, end.workpiece.strain, dies);
-      const auto integrals = objective.integrals(view, decisions).complete();
+      const auto            view      = final_view(objective, end.epoch->scene, end.workpiece, dies);
+      const auto            integrals = objective.integrals(view, decisions).complete();
       return objective.derivatives(view, decisions, objective.reverse_value(integrals, decisions)).complete();
     }
 
@@ -31,9 +33,10 @@ namespace retroforge
                                         const ForgingState             &end,
                                         const std::vector<Combination> &combinations)
     {
-      std::vector<Costate> costates(combinations.size(),
-                                    {zero_costate<3>(end.workpiece.X.size(), end.workpiece.strain.size()),
-                                     {no_process_derivatives(run.process, run.model.dies), run.model.comm}});
+      std::vector<Costate> costates(
+        combinations.size(),
+        {zero_costate<3>(end.workpiece.X.size(), end.workpiece.strain.size(), run.process.heat.warms()),
+         {no_process_derivatives(run.process, run.model.dies), run.model.comm}});
       for (std::size_t o = 0; o < run.objectives.size(); ++o)
       {
         if (!run.objectives[o].at_end)
@@ -47,6 +50,8 @@ namespace retroforge
           add(weight, bar.X, costates[j].workpiece.X);
           for (std::size_t c = 0; c < bar.q.size(); ++c)
             costates[j].workpiece.strain[c] += weight * bar.q[c];
+          for (std::size_t k = 0; k < bar.T.size(); ++k)
+            costates[j].workpiece.temperature[k] += weight * bar.T[k];
           PhysicsBar physics_bar(run.model.dies);
           if (const auto d = run.objectives[o].at_end->target_die(); d != invalid_index)
             add(weight, bar.target, physics_bar.dies[d].vertices);
@@ -182,7 +187,12 @@ namespace retroforge
       }
     }
     for (Costate &costate : costates)
+    {
+      const auto  &T_bar = costate.workpiece.temperature;
+      const double sum   = std::accumulate(T_bar.begin(), T_bar.end(), 0.);
+      costate.process.add_once([&](Process<double> &part) { part.material.initial.temperature += sum; });
       sweep.gradients.push_back({std::move(costate.workpiece.X), costate.process.complete()});
+    }
     return sweep;
   }
 
@@ -193,7 +203,7 @@ namespace retroforge
     AssertDimension(process.dies.size(), run.model.dies.size());
     std::shared_ptr<MeshEpoch>  epoch = run.first;
     std::vector<PathRows<Dual>> rows(run.objectives.size());
-    auto                        state = initial_state<3>(std::move(X), epoch->scene.mesh.n_cells());
+    auto                        state = workpiece_before(process, std::move(X), epoch->scene.mesh.n_cells());
     StrokeStep                  end{0., 0.};
     for (unsigned int i = 0; i < run.n; ++i)
     {
@@ -227,7 +237,7 @@ namespace retroforge
       else
       {
         const FinalObjective &objective = *run.objectives[o].at_end;
-        const auto            view      = final_view(objective, epoch->scene, state.X, state.strain, dies);
+        const auto            view      = final_view(objective, epoch->scene, state, dies);
         const FinalDecisions &decisions = run.traced.decisions[o];
         values.push_back(objective.value(objective.integrals(view, decisions).complete(), decisions));
       }

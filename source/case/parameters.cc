@@ -33,6 +33,7 @@ namespace retroforge
     press.add_parameters(prm);
     discretization.add_parameters(prm);
     contact.add_parameters(prm);
+    heat.add_parameters(prm);
     newton.add_parameters(prm);
     linear_solver.add_parameters(prm);
     remeshing.add_parameters(prm);
@@ -93,6 +94,12 @@ end
       if (const ReadBy *read_by = tags().choice(entry.path()))
         for (const std::string &sentence : settings_without_effect(entries, entry.path(), *read_by))
           without_effect.push_back(sentence);
+    for (const DieParameters &die : dies)
+      for (const ParameterEntry &entry : entries)
+        if (entry.path() == "Die " + die.name + "/shear limit" && entry.value != entry.default_value &&
+            !interface_law(initial_state(die).interface_law).limit())
+          without_effect.push_back(entry.path() + " = " + entry.value + " has no effect: the friction law " +
+                                   die.friction_law + " has no such limit");
     if (!objectives.combined)
       for (const ParameterEntry &entry : entries)
         if (entry.name == "weight" && entry.value != entry.default_value)
@@ -116,14 +123,15 @@ end
                   "names no objective",
                   "a run is judged by at least one",
                   "leave the line out for the energy");
+    const MaterialLaw<double> metal = material.metal(1.).initial_law();
     for (unsigned int d = 0; d < dies.size(); ++d)
     {
       dies[d].check();
       const DieState<double> state = initial_state(dies[d]);
-      if (contact.slip_fraction < least_slip && needs_regularisation(state, material.law))
+      if (contact.slip_fraction < least_slip && needs_regularisation(state, metal))
         throw Error("Contact/slip regularisation",
-                    "is " + as_text(contact.slip_fraction) +
-                      " with friction and a strain rate sensitivity below 1",
+                    "is " + as_text(contact.slip_fraction) + " with friction after " + dies[d].friction_law +
+                      " that does not fall in proportion to the slip",
                     "the friction of a sticking node would be infinitely stiff",
                     "use 1e-2, or 1e-3 for a sharper law");
     }
@@ -155,7 +163,7 @@ end
 
   void Parameters::leave_out_idle_parameters()
   {
-    for (const auto &[name, reason] : idle_parameters(dies, material.law))
+    for (const auto &[name, reason] : idle_parameters(dies, material.metal(1.)))
       if (const auto found = std::find(design.names.begin(), design.names.end(), name);
           found != design.names.end())
       {

@@ -2,8 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/case/parameters.h>
 #include <retroforge/core/error.h>
+#include <retroforge/geometry/closing_speed.h>
 #include <retroforge/mesh/mesh_quality.h>
-#include <retroforge/time/closing_speed.h>
 
 #include <algorithm>
 #include <cmath>
@@ -118,7 +118,7 @@ namespace retroforge
   double Parameters::mean_pressure(const BilletSize &size) const
   {
     const double speed = closing_speed(initial_states());
-    return open_contact(size).mean_pressure(material.metal(speed / size.height).law, speed);
+    return open_contact(size).mean_pressure(material.metal(speed / size.height).initial_law(), speed);
   }
 
   OpenContact Parameters::open_contact(const BilletSize &size) const
@@ -142,7 +142,8 @@ namespace retroforge
       operation.dies.push_back(d);
     const double speed = closing_speed(process.dies);
     process.material   = material.metal(speed / size.height);
-    process.contact    = open_contact(size).law(process.material.law, speed);
+    process.heat       = heat.law();
+    process.contact    = open_contact(size).law(process.material.initial_law(), speed);
     return process;
   }
 
@@ -154,9 +155,10 @@ namespace retroforge
                                      initial_states(),
                                      leading_die(),
                                      press.stroke,
-                                     material.law.K,
+                                     material.metal(1.).initial_law().K,
                                      made_billet,
-                                     FrictionRamp{touching_gap_, step_model().contact.ramp.sharp}}));
+                                     FrictionRamp{touching_gap_, step_model().contact.ramp.sharp},
+                                     heat.law().warms()}));
     return made;
   }
 

@@ -158,7 +158,7 @@ namespace retroforge
                         const double               rate,
                         const double               radius)
     {
-      return friction_traction(die, 0.5 * rate * radius, flow_stress(law, rate), law);
+      return friction_traction(die, {0.5 * rate * radius, flow_stress(law, rate), rate}, law);
     }
 
     double or_one(const double copies)
@@ -184,9 +184,9 @@ namespace retroforge
     {
       const Process<double> &process = view.process;
       const double           rate = view.speed / height, radius = radius_of(view, height),
-                   stress = flow_stress(process.material.law, rate), most = stress / std::sqrt(3.);
+                   stress = flow_stress(process.material.initial_law(), rate), most = stress / std::sqrt(3.);
       const auto tau = [&](const DieState<double> &die) {
-        return std::min(most, rim_friction(die, process.material.law, rate, radius));
+        return std::min(most, rim_friction(die, process.material.initial_law(), rate, radius));
       };
       double other = 0.;
       if (!is_halved(view))
@@ -194,7 +194,7 @@ namespace retroforge
           if (d != process.operations.front().leading_die)
             other = std::max(other, tau(process.dies[d]));
       const double friction = (tau(process.dies[process.operations.front().leading_die]) + other) * radius /
-                              ((process.material.law.m + 3.) * height);
+                              ((process.material.initial_law().m + 3.) * height);
       return dealii::numbers::PI * radius * radius * (stress + friction);
     }
 
@@ -255,7 +255,7 @@ namespace retroforge
 
     void warn_of_material(const View &view, const SceneEstimate &estimate, Warnings &warnings)
     {
-      const MaterialLaw<double> &law = view.process.material.law;
+      const MaterialLaw<double> law = view.process.material.initial_law();
       if (!(estimate.flow_stress >= least_stress && estimate.flow_stress <= largest_stress))
         warnings.push_back("Material/consistency = " + as_text(law.K) + ": the flow stress is " +
                            as_text(estimate.flow_stress) + " MPa at " + as_text(estimate.strain_rate) +
@@ -274,7 +274,8 @@ namespace retroforge
       const double radius = radius_of(view, estimate.height), shear = estimate.flow_stress / std::sqrt(3.);
       for (unsigned int d = 0; d < view.scene.dies.size(); ++d)
         if (const double part =
-              rim_friction(view.process.dies[d], view.process.material.law, estimate.strain_rate, radius) /
+              rim_friction(
+                view.process.dies[d], view.process.material.initial_law(), estimate.strain_rate, radius) /
               shear;
             part > largest_friction)
           warnings.push_back(
@@ -386,7 +387,7 @@ namespace retroforge
     estimate.speed       = view.speed;
     estimate.height      = height_along(X, view.way);
     estimate.strain_rate = estimate.speed / estimate.height;
-    estimate.flow_stress = flow_stress(process.material.law, estimate.strain_rate);
+    estimate.flow_stress = flow_stress(process.material.initial_law(), estimate.strain_rate);
     estimate.first_force = slab_force(view, estimate.height);
     estimate.final_force =
       slab_force(view, std::max(thinnest * estimate.height, estimate.height - view.closing()));

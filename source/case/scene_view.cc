@@ -108,7 +108,8 @@ namespace retroforge
     // Given ones are of many lengths.
     const unsigned int increments = press.steps.empty() ? press.increments : 0;
     summary_.press = {parts_->leading_die, press.stroke, parts_->seconds, increments, chooses_increments()};
-    summary_.metal = {parts_->parameters.material.law.K, parts_->parameters.material.law.m};
+    const MaterialLaw<double> metal = parts_->process.material.initial_law();
+    summary_.metal                  = {metal.K, metal.m};
     describe_dies();
     if (!parts_->mesh)
       return;
@@ -303,7 +304,11 @@ namespace retroforge
       described.travel        = parts_->seconds * state.velocity;
       described.friction      = given.friction;
       described.friction_name = interface_law(state.interface_law).coefficient().name;
-      described.leads         = die.name == parts_->leading_die;
+      if (state.interface_law != 0)
+        described.friction_law = given.friction_law;
+      if (interface_law(state.interface_law).limit())
+        described.shear_limit = given.shear_limit;
+      described.leads = die.name == parts_->leading_die;
       if (die.surface())
       {
         described.extents = corners_of(die.surface()->vertices(), state.displacement);

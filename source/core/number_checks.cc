@@ -23,7 +23,8 @@ namespace retroforge
                   names.empty() ? owner + " has none" : owner + " has these: " + join(names),
                   names.empty() ? "leave it empty" : "write one value for each, separated by commas");
     for (std::size_t i = 0; i < info.size(); ++i)
-      if (const double x = numbers[i]; !(x > 0. || (x == 0. && info[i].may_vanish)) || x > info[i].largest)
+      if (const double x = numbers[i];
+          !(x > 0. || (x == 0. && info[i].may_vanish) || info[i].any_sign) || x > info[i].largest)
         throw Error(where,
                     info[i].name + " = " + as_text(x),
                     info[i].name + (info[i].may_vanish ? " is not negative" : " is positive") +

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/design/design.h>
-#include <retroforge/time/closing_speed.h>
+#include <retroforge/geometry/closing_speed.h>
 
 namespace retroforge
 {
@@ -204,10 +204,16 @@ namespace retroforge
         case Kind::material:
           number_of(process.material, parameter.number) = mu[j];
           break;
+        case Kind::heat:
+          number_of(process.heat, parameter.number) = mu[j];
+          break;
         case Kind::friction:
           for (unsigned int d = 0; d < dies_.size(); ++d)
             if (d == parameter.die || (parameter.die == invalid_index && dies_[d].friction > 0.))
               process.dies[d].friction = mu[j];
+          break;
+        case Kind::shear_limit:
+          process.dies[parameter.die].shear_limit = mu[j];
           break;
         case Kind::speed:
           for (unsigned int i = 0; i < 3; ++i)
@@ -234,7 +240,7 @@ namespace retroforge
   template <typename Number>
   void Design::set_contact(const std::vector<Number> &mu, Process<Number> &process) const
   {
-    process.contact = contact_.law(process.material.law, closing_speed(process.dies));
+    process.contact = contact_.law(process.material.initial_law(), closing_speed(process.dies));
     for (unsigned int j = 0; j < parameters_.size(); ++j)
       if (parameters_[j].kind == Kind::contact)
         number_of(process.contact, parameters_[j].number) = mu[j];

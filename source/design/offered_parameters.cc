@@ -40,13 +40,14 @@ namespace retroforge
   }
 
   std::map<std::string, std::string> idle_parameters(const std::vector<DieParameters> &dies,
-                                                     const MaterialLaw<double>        &law)
+                                                     const Material<double>           &material)
   {
     std::map<std::string, std::string> idle;
-    bool                               friction = false;
+    bool                               friction = false, by_rate = false;
     for (const DieParameters &die : dies)
     {
       friction |= die.friction > 0.;
+      by_rate |= follows_rate(initial_state(die));
       if (die.friction == 0.)
         idle["die " + die.name + "/friction"] = "the friction of die " + die.name + " is 0";
       if (die.velocity.norm() == 0.)
@@ -58,8 +59,10 @@ namespace retroforge
       if (!ContactLaw<double>::depends_on(number.name, friction))
         idle["contact/" + number.name] = "the friction of all dies is 0";
     for (const NumberInfo &number : MaterialLaw<double>::info())
-      if (!law.depends_on(number.name))
-        idle["material/" + number.name] = "the strain rate sensitivity is 1";
+      if (!material.depends_on(number.name) && !(by_rate && material_type(material.type).reads_consistency()))
+        idle["material/" + number.name] = material_type(material.type).reads_consistency()
+                                            ? "the strain rate sensitivity is 1"
+                                            : "the law of the metal does not read it";
     return idle;
   }
 
@@ -93,20 +96,21 @@ namespace retroforge
                          i,
                          {},
                          info[i].may_vanish,
-                         info[i].largest});
+                         info[i].largest,
+                         info[i].any_sign});
         }
     }
 
     void add_numbers_of(const DieParameters          &die,
                         const DieFreeForm            &form,
-                        const NumberInfo             &friction,
+                        const InterfaceLaw           &law,
                         const unsigned int            d,
                         const double                  width,
                         std::vector<DesignParameter> &all)
     {
       const std::string prefix = "die " + die.name + "/";
       const double      speed  = die.velocity.norm();
-      if (die.friction > 0.)
+      if (const NumberInfo friction = law.coefficient(); die.friction > 0.)
         all.push_back({prefix + "friction",
                        friction.unit,
                        Kind::friction,
@@ -117,6 +121,17 @@ namespace retroforge
                        {},
                        friction.may_vanish,
                        friction.largest});
+      if (const auto limit = law.limit(); limit && die.friction > 0.)
+        all.push_back({prefix + "shear limit",
+                       limit->unit,
+                       Kind::shear_limit,
+                       die.shear_limit,
+                       die.shear_limit,
+                       d,
+                       0,
+                       {},
+                       limit->may_vanish,
+                       limit->largest});
       if (speed > 0.)
         all.push_back({prefix + "speed", "mm/s", Kind::speed, speed, speed, d});
       all.push_back({prefix + "offset", "mm", Kind::offset, 0., width, d});
@@ -137,14 +152,30 @@ namespace retroforge
   {
     const auto with_friction =
       std::find_if(dies_.begin(), dies_.end(), [](const DieParameters &die) { return die.friction > 0.; });
-    const bool                   friction = with_friction != dies_.end();
+    const bool friction = with_friction != dies_.end();
+    const bool by_rate  = std::any_of(process_.dies.begin(), process_.dies.end(), follows_rate<double>);
     std::vector<DesignParameter> all;
     add_numbers_of(
       process_.material,
       "material",
       Kind::material,
-      [&](const std::string &name) { return process_.material.law.depends_on(name); },
+      [&](const std::string &name) {
+        return process_.material.depends_on(name) ||
+               (by_rate && material_type(process_.material.type).reads_consistency());
+      },
       all);
+    if (const Material<double> &metal = process_.material;
+        material_type(metal.type).depends_on_temperature(metal) || process_.heat.warms())
+    {
+      // The metal's initial state follows the numbers of its law: strain, then temperature.
+      DesignParameter temperature{"billet/temperature", "C", Kind::material, metal.initial.temperature, 100.};
+      temperature.number   = metal.info().size() + 1;
+      temperature.any_sign = true;
+      all.push_back(temperature);
+    }
+    if (process_.heat.warms())
+      add_numbers_of(
+        process_.heat, "heat", Kind::heat, [](const std::string &) { return true; }, all);
     add_numbers_of(
       process_.contact,
       "contact",
@@ -158,17 +189,21 @@ namespace retroforge
         {"billet/" + shape.name, shape.unit, Kind::billet, shape.nominal, shape.scale, invalid_index, j});
     }
     for (unsigned int d = 0; d < dies_.size(); ++d)
-      add_numbers_of(dies_[d], die_forms_[d], friction_of(d), d, width_, all);
+      add_numbers_of(dies_[d], die_forms_[d], interface_law(process_.dies[d].interface_law), d, width_, all);
     if (friction)
+    {
+      const NumberInfo coefficient = friction_of(with_friction - dies_.begin());
       all.push_back({"dies/friction",
-                     friction_of(with_friction - dies_.begin()).unit,
+                     coefficient.unit,
                      Kind::friction,
                      with_friction->friction,
                      with_friction->friction,
                      invalid_index,
                      0,
                      {},
-                     true});
+                     true,
+                     coefficient.largest});
+    }
     return all;
   }
 
@@ -179,7 +214,7 @@ namespace retroforge
       known.push_back(parameter.name);
     if (std::find(known.begin(), known.end(), name) != known.end())
       return;
-    const auto idle = idle_parameters(dies_, process_.material.law);
+    const auto idle = idle_parameters(dies_, process_.material);
     if (const auto found = idle.find(name); found != idle.end())
       throw Error(where,
                   "'" + name + "' changes nothing, as " + found->second,

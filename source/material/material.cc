@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/registry.h>
-#include <retroforge/material/material.h>
+#include <retroforge/material/flow_stress_laws.h>
 
 namespace retroforge
 {
@@ -19,10 +19,18 @@ namespace retroforge
       }
     };
 
+    Registry<MaterialType> known_types()
+    {
+      Registry<MaterialType> types("law of the metal", "Norton-Hoff", std::make_unique<NortonHoffMetal>());
+      types.add("power", std::make_unique<PowerMetal>());
+      types.add("Hansel-Spittel", std::make_unique<HanselSpittelMetal>());
+      types.add("table", std::make_unique<TableMetal>());
+      return types;
+    }
+
     Registry<MaterialType> &material_types()
     {
-      static Registry<MaterialType> types(
-        "law of the metal", "Norton-Hoff", std::make_unique<NortonHoffMetal>());
+      static Registry<MaterialType> types = known_types();
       return types;
     }
 
@@ -60,6 +68,15 @@ namespace retroforge
   }
 
   template <typename Number>
+  bool Material<Number>::depends_on(const std::string &name) const
+  {
+    const auto of_law = MaterialLaw<Number>::info();
+    if (std::none_of(of_law.begin(), of_law.end(), [&](const NumberInfo &of) { return of.name == name; }))
+      return true;
+    return initial_law().depends_on(name) && (name == "e0" || material_type(type).reads_consistency());
+  }
+
+  template <typename Number>
   MaterialLaw<Number> Material<Number>::at(const PointState<Number> &state) const
   {
     return type == norton_hoff ? law : material_type(type).law_at(*this, state);
@@ -88,7 +105,8 @@ namespace retroforge
       x.fastAccessDx(0)           = 0.;
       for_each_number([&](const Dual &y, const double &y_bar) { x_bar += y_bar * y.dx(0); }, law, law_bar);
     };
-    for_each_number(pull_one, metal, bar);
+    for_each_number(pull_one, metal.law, bar.law);
+    for_each_number(pull_one, metal.numbers, bar.numbers);
     for_each_number(pull_one, point, state_bar);
   }
 } // namespace retroforge

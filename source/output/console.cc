@@ -68,13 +68,15 @@ namespace retroforge
     std::stable_sort(order.begin(), order.end(), [&](const std::size_t a, const std::size_t b) {
       return std::abs(effect(a)) > std::abs(effect(b));
     });
-    std::printf("\n  gradient of %s = %.10g%s\n  %-24s %14s   %18s   for +1 %%\n",
+    const bool tells_trust = !objective.trust.empty();
+    std::printf("\n  gradient of %s = %.10g%s\n  %-24s %14s   %18s   for +1 %%%s\n",
                 objective.name.c_str(),
                 objective.value,
                 unit.c_str(),
                 "parameter",
                 "value",
-                "derivative");
+                "derivative",
+                tells_trust ? "; how far it holds" : "");
     for (const std::size_t j : order)
     {
       const DesignParameter &parameter = design.parameters()[j];
@@ -86,7 +88,7 @@ namespace retroforge
                   unit.c_str());
       if (mu[j] == 0.)
         std::printf(" (of %.4g %s)", parameter.scale, parameter.unit.c_str());
-      std::printf("\n");
+      std::printf("%s%s\n", tells_trust ? "; " : "", tells_trust ? objective.trust[j].c_str() : "");
     }
   }
 
@@ -108,6 +110,8 @@ namespace retroforge
       if (!is_model && std::isfinite(objective.whole))
         std::printf("; of the whole part %.12g %s", objective.whole, unit);
       std::printf("\n");
+      if (!objective.note.empty())
+        std::printf("    note: %s\n", objective.note.c_str());
     }
   } // namespace
 
@@ -121,6 +125,16 @@ namespace retroforge
         "  the surface crossed itself, or cells at it stayed flat, in places thinner than an element: "
         "%.3g mm^3 were taken away there, and put back elsewhere\n",
         summary.volume_repaired);
+    if (std::isfinite(summary.heat.warming))
+      std::printf(
+        summary.heat.warms
+          ? "  the work warmed the metal by %.3g K on the mean; left out: in %.3g s dies chill a skin of "
+            "%.2g mm\n"
+          : "  heat is left out: the work would warm the metal by %.3g K on the mean, and in %.3g s dies "
+            "chill a skin of %.2g mm\n",
+        summary.heat.warming,
+        summary.heat.seconds,
+        summary.heat.chilled);
     for (const std::string &warning : summary.warnings)
       std::printf("  warning: %s\n", warning.c_str());
     const auto total = summary.wall_seconds.find("total");

@@ -21,6 +21,7 @@ namespace retroforge
     const std::vector<double>  &P;
     const CellFields           &cells; ///< where V and P are an equilibrium
     const std::vector<double>  &strain;
+    const std::vector<double>  &temperature;  ///< empty: not followed
     const NodalVectors<double> *displacement; ///< null: unknown
     const ContactFields        *contact;      ///< null: unknown
   };
@@ -94,6 +95,8 @@ namespace retroforge
       picture.add_linear("slip_velocity", "mm/s", workpiece.contact->slip);
     }
     picture.add_constant("equivalent_strain", "", workpiece.strain);
+    if (!workpiece.temperature.empty())
+      picture.add_linear("temperature", "C", workpiece.temperature);
     picture.add_constant("strain_rate", "1/s", cells.strain_rate);
     picture.add_constant("von_mises_stress", "MPa", cells.von_mises);
     picture.add_constant("deviatoric_stress", "MPa", cells.stress);
@@ -135,13 +138,23 @@ namespace retroforge
   {
     const Discretization<3>    discretization(billet_, model_.discretization, MPI_COMM_SELF);
     const std::vector<double>  zero(billet_.n_nodes(), 0.), strain(billet_.n_cells(), 0.);
+    const auto                 before = workpiece_before(process_, X_0_, billet_.n_cells());
     const NodalVectors<double> still(billet_.n_nodes()), at_rest(discretization.condensed_nodes()->n());
     const ContactFields        contact{zero, zero, still};
     const CellFields cells = cell_fields(discretization, X_0_, Field<double>(discretization), [&](CellIndex) {
-      return process_.material.at({});
+      return process_.material.initial_law();
     });
     write(fields_file(0),
-          {billet_, discretization.middles(), X_0_, at_rest, zero, cells, strain, &still, &contact});
+          {billet_,
+           discretization.middles(),
+           X_0_,
+           at_rest,
+           zero,
+           cells,
+           strain,
+           before.temperature,
+           &still,
+           &contact});
   }
 
   void FieldWriter::add_billet()
@@ -178,6 +191,7 @@ namespace retroforge
              run.solution->P,
              cells,
              run.workpiece.strain,
+             run.workpiece.temperature,
              &displacement_,
              &contact});
     }
@@ -202,7 +216,7 @@ namespace retroforge
     const LastSolution          at_rest  = {NodalVectors<double>(discretization.condensed_nodes()->n()),
                                             std::vector<double>(discretization.n_vertices(), 0.)};
     const LastSolution          solution = state.solution.value_or(at_rest);
-    const auto                  points   = point_states(mesh, state.workpiece);
+    const auto                  points   = point_states(mesh, process_.material.initial, state.workpiece);
     const auto                  law      = [&](const CellIndex c) { return process_.material.at(points[c]); };
     const CellFields            cells =
       cell_fields(discretization, X, with_bubbles(discretization, X, solution, law), law);
@@ -214,6 +228,7 @@ namespace retroforge
            solution.P,
            cells,
            state.workpiece.strain,
+           state.workpiece.temperature,
            displacement,
            nullptr});
     add_step({state.stroke, 0., state.operation}, "failed.vtu", "failed", state.workpiece.X);

@@ -60,6 +60,7 @@ namespace retroforge
       add_unless_empty(json, "details", number_map(objective.details));
       if (std::isfinite(objective.whole))
         json["whole"] = objective.whole;
+      add_unless_empty(json, "note", objective.note.empty() ? Json() : Json(objective.note));
       return json;
     }
 
@@ -70,6 +71,7 @@ namespace retroforge
                    {"unit", parameter.unit},
                    {"scale", json_number(parameter.scale)}};
       add_unless_empty(json, "gradient", number_map(parameter.gradient));
+      add_unless_empty(json, "trust", Json(parameter.trust));
       return json;
     }
 
@@ -136,6 +138,11 @@ namespace retroforge
                                {"95_percent_below", json_number(balance.most_below)},
                                {"largest", json_number(balance.largest)},
                                {"stroke", json_number(balance.stroke)}};
+    if (std::isfinite(heat.warming))
+      json["heat"] = {{"warms", heat.warms},
+                      {"mean_warming", json_number(heat.warming)},
+                      {"seconds", json_number(heat.seconds)},
+                      {"chilled_depth", json_number(heat.chilled)}};
     if (!deepest.die.empty())
       json["deepest"] = {
         {"depth", json_number(deepest.depth)},

@@ -108,7 +108,7 @@ namespace retroforge
       , trace_(problem_.objectives, problem_.process)
       , can_go_back_(keep == Keep::increments || !directory.empty())
       , recording_(directory, keep == Keep::increments)
-      , state_(Forging::start(first_epoch_, problem_.X_0))
+      , state_(Forging::start(first_epoch_, problem_.process, problem_.X_0))
   {
     enter(0);
   }
@@ -231,7 +231,7 @@ namespace retroforge
                                   const NodalVectors<double> &X_0,
                                   const Forging::Observer    &observer) const
   {
-    ForgingState state = Forging::start(first_epoch_, X_0);
+    ForgingState state = Forging::start(first_epoch_, process, X_0);
     running_->forging.replay(process, state_.increments, recorded().record, state, observer);
     return state;
   }

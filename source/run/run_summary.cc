@@ -33,6 +33,26 @@ namespace retroforge
     }
   } // namespace
 
+  namespace
+  {
+    /// k/(rho c) of hot steel [mm^2/s].
+    constexpr double diffusivity = 5.6;
+
+    /// Warming by the work of deformation,  chi E/(rho c |Omega|),  and the depth  sqrt(a t)  of a chill.
+    Summary::LeftOut
+    left_out_of_heat(const Process<double> &process, const ForgingState &forged, const double volume)
+    {
+      Summary::LeftOut heat;
+      if (forged.increments == 0)
+        return heat;
+      heat.warms   = process.heat.warms();
+      heat.warming = process.heat.fraction * forged.energy.deformation / (process.heat.capacity * volume);
+      heat.seconds = process.whole_time(forged.stroke, forged.operation);
+      heat.chilled = std::sqrt(diffusivity * heat.seconds);
+      return heat;
+    }
+  } // namespace
+
   double shape_volume(const Case &forging_case)
   {
     if (!has_measures(forging_case.parameters.billet))
@@ -60,17 +80,65 @@ namespace retroforge
     summary.volume_initial        = volume(forging_case.billet.cells, forging_case.X_0);
     summary.volume_final          = volume(forged.epoch->scene.mesh.cells, forged.workpiece.X);
     summary.volume_repaired       = forged.removed_volume;
+    summary.heat                  = left_out_of_heat(forging_case.process, forged, summary.volume_final);
     summarise_restarts(forging_case.segments, summary);
   }
 
-  void summarise_objectives(const Case                &forging_case,
-                            const ObjectiveTrace      &trace,
-                            const ForgingState        &forged,
-                            const std::vector<double> &values,
-                            Summary                   &summary)
+  std::vector<std::optional<ValueSpan>> spans_of(const Objectives                      &objectives,
+                                                 const ObjectiveTrace                  &trace,
+                                                 const std::vector<IncrementDecisions> &run)
+  {
+    std::vector<std::optional<ValueSpan>> spans;
+    for (std::size_t o = 0; o < objectives.size(); ++o)
+    {
+      const auto &path = objectives[o].path;
+      if (path && path->is_of_forces())
+        spans.push_back(span_of(shares_of_increments(*path, trace.recorded().rows[o]), run));
+      else
+        spans.push_back({});
+    }
+    return spans;
+  }
+
+  void judge_slopes(const Combination                           &combination,
+                    const std::vector<std::optional<ValueSpan>> &spans,
+                    const Design                                &design,
+                    const std::vector<double>                   &mu,
+                    ObjectiveSensitivity                        &sensitivity)
+  {
+    // Of a sum, what made of the fewest increments and remeshed most often counts.
+    ValueSpan worst;
+    worst.part = 1.;
+    for (std::size_t o = 0; o < spans.size(); ++o)
+      if (combination.weights[o] != 0.)
+      {
+        if (!spans[o])
+          return;
+        worst.part     = std::min(worst.part, spans[o]->part);
+        worst.remeshed = std::max(worst.remeshed, spans[o]->remeshed);
+      }
+    constexpr double rounding = 1e-6, percent = 0.01;
+    const double     value = sensitivity.value;
+    for (std::size_t j = 0; j < mu.size(); ++j)
+    {
+      const double slope = sensitivity.gradient[j];
+      sensitivity.trust.push_back(
+        trust_in_slope(worst,
+                       percent * design.parameters()[j].scale * slope / value,
+                       std::abs(slope * mu[j] - value) <= rounding * std::abs(value)));
+    }
+  }
+
+  void summarise_objectives(const Case                                  &forging_case,
+                            const ObjectiveTrace                        &trace,
+                            const ForgingState                          &forged,
+                            const std::vector<double>                   &values,
+                            const std::vector<std::optional<ValueSpan>> &spans,
+                            Summary                                     &summary)
   {
     const auto evaluations = trace.evaluate(forged);
     for (std::size_t o = 0; o < forging_case.objectives.size(); ++o)
+    {
       summary.objectives.push_back(
         {forging_case.objectives[o].name,
          values[o],
@@ -78,6 +146,9 @@ namespace retroforge
          evaluations[o].parts,
          evaluations[o].details,
          copies(forging_case, forging_case.objectives[o], summary.whole) * values[o]});
+      if (spans[o])
+        summary.objectives.back().note = note_on(*spans[o]);
+    }
     if (forging_case.parameters.objectives.combined)
       summary.objectives.push_back({forging_case.combinations[0].name,
                                     forging_case.combine(values)[0],
@@ -95,7 +166,11 @@ namespace retroforge
       const DesignParameter &parameter = forging_case.design.parameters()[j];
       summary.parameters.push_back({parameter.name, forging_case.mu[j], parameter.unit, {}, parameter.scale});
       for (const ObjectiveSensitivity &objective : sensitivities)
+      {
         summary.parameters.back().gradient[objective.name] = objective.gradient[j];
+        if (!objective.trust.empty())
+          summary.parameters.back().trust[objective.name] = objective.trust[j];
+      }
     }
   }
 } // namespace retroforge

@@ -19,11 +19,13 @@ namespace retroforge
     bar_.contact.delta[p] += node_bar.delta;
     bar_.contact.n[p] += node_bar.n;
     bar_.physics.tau += node_bar.tau;
-    add_numbers(node_bar.law, bar_.physics.material.law);
+    reverse_surface_law(view_.stage, p, node_bar.law, bar_.physics);
     add_numbers(node_bar.contact, bar_.physics.contact);
     DieState<double> &die = bar_.physics.dies[view_.stage.contact.pairs[p].die];
     die.velocity -= node_bar.u;
     die.friction += node_bar.alpha;
+    die.shear_limit += node_bar.shear_limit;
+    bar_.contact.rates[p] += node_bar.rate2;
   }
 
   void ContactPullback::add(const unsigned int p, const ContactNodeBar &node_bar)

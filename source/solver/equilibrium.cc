@@ -60,7 +60,10 @@ namespace retroforge
     node.Sf            = areas.Sf[p];
     node.alpha         = die.friction;
     node.interface_law = die.interface_law;
-    node.active        = active.is_given() ? (*active)[p] != 0 : value_of(approach_excess(node)) > 0.;
+    node.shear_limit   = die.shear_limit;
+    if (!contact.rates.empty())
+      node.rate2 = contact.rates[p];
+    node.active = active.is_given() ? (*active)[p] != 0 : value_of(approach_excess(node)) > 0.;
     return node;
   }
 
@@ -70,6 +73,30 @@ namespace retroforge
     return std::all_of(physics.dies.begin(), physics.dies.end(), [](const DieState<Number> &die) {
       return value_of(die.friction) == 0. || interface_law(die.interface_law).has_potential();
     });
+  }
+
+  template <typename Number>
+  bool Equilibrium<Number>::is_linear() const
+  {
+    const auto law = converted<double>(initial_law_);
+    return law.is_linear() &&
+           std::all_of(physics.dies.begin(), physics.dies.end(), [&](const DieState<Number> &die) {
+             return value_of(die.friction) == 0. || interface_law(die.interface_law).is_linear(law);
+           });
+  }
+
+  template <typename Number>
+  std::pair<PointState<Number>, std::vector<CellIndex>>
+  Equilibrium<Number>::surface_state(const unsigned int p) const
+  {
+    const std::vector<CellIndex> cells = cells_behind(scene.mesh, scene.topology, contact.pairs[p].point);
+    PointState<Number>           mean;
+    for (const CellIndex c : cells)
+    {
+      const PointState<Number> of_cell = state(c);
+      for_each_number([&](Number &x, const Number &y) { x += y / double(cells.size()); }, mean, of_cell);
+    }
+    return {mean, cells};
   }
 
   template <typename Number>
@@ -104,7 +131,7 @@ namespace retroforge
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (scene.sees(contact.pairs[p].point))
         contact.pairs[p].point.add_to_velocity(
-          contact_force(contact_node(p, W, chosen), physics.material.law, physics.contact), r.V);
+          contact_force(contact_node(p, W, chosen), surface_law(p), physics.contact), r.V);
     add_hold_forces(*this, W, r);
     return r;
   }
@@ -123,7 +150,7 @@ namespace retroforge
     });
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (discretization.owns(contact.pairs[p].point.nodes[0]))
-        power.second += friction_power(contact_node(p, W, active), physics.material.law, physics.contact);
+        power.second += friction_power(contact_node(p, W, active), surface_law(p), physics.contact);
     return power;
   }
 
@@ -164,7 +191,7 @@ namespace retroforge
     std::vector<Vec3> forces(stage.scene.dies.size());
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       forces[stage.contact.pairs[p].die] -=
-        contact_force(stage.contact_node(p, W, active), stage.physics.material.law, stage.physics.contact);
+        contact_force(stage.contact_node(p, W, active), stage.surface_law(p), stage.physics.contact);
     return forces;
   }
 
@@ -219,12 +246,36 @@ namespace retroforge
                    const MaterialLaw<double> &law_bar,
                    PhysicsBar                &bar)
   {
+    if (!stage.physics.material.depends_on_state() || stage.points.empty())
+    {
+      reverse_initial_law(stage.physics.material, law_bar, bar.material);
+      return;
+    }
     PointState<double> state_bar;
     reverse_at(stage.physics.material, stage.state(c), law_bar, bar.material, state_bar);
-    if (!stage.physics.material.depends_on_state())
-      return;
     bar.points.resize(stage.scene.mesh.n_cells());
     add_numbers(state_bar, bar.points[c]);
+  }
+
+  void reverse_surface_law(const Equilibrium<double> &stage,
+                           const unsigned int         p,
+                           const MaterialLaw<double> &law_bar,
+                           PhysicsBar                &bar)
+  {
+    if (!stage.physics.material.depends_on_state())
+    {
+      reverse_initial_law(stage.physics.material, law_bar, bar.material);
+      return;
+    }
+    if (stage.physics.dies[stage.contact.pairs[p].die].friction == 0.)
+      return;
+    const auto [mean, cells] = stage.surface_state(p);
+    PointState<double> mean_bar;
+    reverse_at(stage.physics.material, mean, law_bar, bar.material, mean_bar);
+    for_each_number([&](double &x) { x /= double(cells.size()); }, mean_bar);
+    bar.points.resize(stage.scene.mesh.n_cells());
+    for (const CellIndex c : cells)
+      add_numbers(mean_bar, bar.points[c]);
   }
 
   void reverse_residual(const EquilibriumView<double> &view, const Field<double> &lambda, EquilibriumBar &bar)
@@ -253,7 +304,7 @@ namespace retroforge
       if (const ContactPoint &point = stage.contact.pairs[p].point; discretization.owns(point.nodes[0]))
         pullback.add_at_fixed_velocity(p,
                                        reverse_contact_force(stage.contact_node(p, view.W, view.active),
-                                                             stage.physics.material.law,
+                                                             stage.surface_law(p),
                                                              stage.physics.contact,
                                                              point.velocity(lambda.V)));
     pullback.finish();
@@ -290,7 +341,7 @@ namespace retroforge
       if (discretization.owns(stage.contact.pairs[p].point.nodes[0]))
         pullback.add(p,
                      reverse_friction_power(stage.contact_node(p, view.W, view.active),
-                                            stage.physics.material.law,
+                                            stage.surface_law(p),
                                             stage.physics.contact,
                                             friction));
     pullback.finish();

@@ -213,7 +213,7 @@ namespace retroforge
         speed = std::max(speed, die.velocity.norm());
       const double              length    = std::cbrt(volume(scene.mesh.cells, X));
       const double              rate      = speed / length;
-      const MaterialLaw<double> newtonian = physics.material.law.newtonian(rate);
+      const MaterialLaw<double> newtonian = physics.material.initial_law().newtonian(rate);
       return newtonian(1.5 * rate * rate) * rate * length * length / speed;
     }
   } // namespace

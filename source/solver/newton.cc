@@ -76,7 +76,7 @@ namespace retroforge
     {
       const auto [volume, speed] = volume_and_speed(stage);
       const double rate = typical_rate(volume, speed), n = stage.scene.mesh.n_nodes(), v = volume / n;
-      const MaterialLaw<double> newtonian = stage.physics.material.law.newtonian(rate);
+      const MaterialLaw<double> newtonian = stage.physics.material.initial_law().newtonian(rate);
       const double              stress    = newtonian(1.5 * rate * rate) * rate;
       return {stress * std::cbrt(v * v) * std::sqrt(n), rate * v * std::sqrt(n)};
     }
@@ -243,12 +243,13 @@ namespace retroforge
   {
     const auto [volume, speed] = volume_and_speed(stage);
     Physics<double> newtonian  = stage.physics;
-    newtonian.material         = stage.physics.material.law.newtonian(typical_rate(volume, speed));
+    newtonian.material         = stage.physics.material.initial_law().newtonian(typical_rate(volume, speed));
     const double slip = 0.1 * speed, rate = typical_rate(volume, speed),
                  pressure = 1.5 * rate * newtonian.material.law(1.5 * rate * rate);
     for (auto &die : newtonian.dies)
     {
-      die.friction = linear_friction(die, slip, pressure, stage.physics.material.law, newtonian.material.law);
+      die.friction = linear_friction(
+        die, {slip, pressure, rate}, stage.physics.material.initial_law(), newtonian.material.law);
       die.interface_law = 0;
     }
     const Equilibrium<double> linear(scene_, newtonian, stage.contact, stage.X);
@@ -331,7 +332,7 @@ namespace retroforge
     Assert(frozen.fits(stage.contact.pairs.size()) && pressed.fits(stage.contact.pairs.size()),
            dealii::ExcMessage("a choice of active contacts has an entry for each pair"));
     NewtonStatistics statistics;
-    const bool       linear    = stage.physics.material.law.is_linear();
+    const bool       linear    = stage.is_linear();
     const bool       from_rest = is_at_rest(scene_.discretization, W);
     if (from_rest && !linear)
       initial_guess(stage, W, frozen, statistics);

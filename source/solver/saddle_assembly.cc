@@ -244,7 +244,7 @@ namespace retroforge
         continue;
       const Tensor<2, 3> of_point =
         point.velocity_weight() * point.velocity_weight() *
-        contact_tangent(stage.contact_node(p, W, active), stage.physics.material.law, stage.physics.contact);
+        contact_tangent(stage.contact_node(p, W, active), stage.surface_law(p), stage.physics.contact);
       for (unsigned int a = 0; a < point.n_velocity_nodes(); ++a)
         if (const unsigned int k = velocities_.place(point.velocity_node_at(a)); k < velocities_.n_owned())
           for (unsigned int b = 0; b < point.n_velocity_nodes(); ++b)

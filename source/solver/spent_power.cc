@@ -38,7 +38,7 @@ namespace retroforge
     std::vector<Number>        terms(n_power_terms(stage.scene.dies.size()), Number(0.));
     std::tie(terms[0], terms[of_friction]) = stage.power(view.W, view.active);
     if (has_number_of_metal(stage.scene))
-      terms[of_m] = stage.physics.material.law.m;
+      terms[of_m] = stage.physics.material.initial_law().m;
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_counted(stage, p))
       {
@@ -59,7 +59,7 @@ namespace retroforge
            dealii::ExcDimensionMismatch(weights.size(), n_power_terms(stage.scene.dies.size())));
     reverse_power(view, weights[0], weights[of_friction], bar);
     if (has_number_of_metal(stage.scene))
-      bar.physics.material.law.m += weights[of_m];
+      reverse_initial_law(stage.physics.material, {0., weights[of_m], 0.}, bar.physics.material);
     ContactPullback pullback(view, bar);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_counted(stage, p))

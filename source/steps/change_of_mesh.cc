@@ -5,6 +5,26 @@
 
 namespace retroforge
 {
+  namespace
+  {
+    /// The entries of a row of J with the least and the largest value, between which the new value stays: weights
+    /// of J may be negative, and a temperature out of the range of those around would be none.
+    template <typename Number>
+    std::pair<NodeIndex, NodeIndex>
+    extremes(const TransferOperator &J, const unsigned int k, const std::vector<Number> &q)
+    {
+      NodeIndex least = J.node[J.begin[k]], largest = least;
+      for (unsigned int i = J.begin[k]; i < J.begin[k + 1]; ++i)
+      {
+        if (value_of(q[J.node[i]]) < value_of(q[least]))
+          least = J.node[i];
+        if (value_of(q[J.node[i]]) > value_of(q[largest]))
+          largest = J.node[i];
+      }
+      return {least, largest};
+    }
+  } // namespace
+
   template <typename Number>
   void MemberTransfer<Number>::operator()(const NodalVectors<Number> &positions,
                                           NodalVectors<Number>       &to) const
@@ -15,7 +35,18 @@ namespace retroforge
   template <typename Number>
   void MemberTransfer<Number>::operator()(const NodeField<Number> &q, NodeField<Number> &to) const
   {
+    to = q;
+    if (q.empty())
+      return;
     to = remesh.transfer.apply<Number>(q);
+    for (unsigned int k = 0; k < to.size(); ++k)
+    {
+      const auto [least, largest] = extremes(remesh.transfer, k, q);
+      if (value_of(to[k]) < value_of(q[least]))
+        to[k] = q[least];
+      else if (value_of(to[k]) > value_of(q[largest]))
+        to[k] = q[largest];
+    }
   }
 
   template <typename Number>
@@ -44,11 +75,28 @@ namespace retroforge
     remesh.positions.reverse_positions({old_mesh, remesh.mesh, dies, states}, positions, q_bar, to, dies_bar);
   }
 
-  void ReverseMemberTransfer::operator()(const NodeField<double> &,
+  void ReverseMemberTransfer::operator()(const NodeField<double> &q,
                                          const NodeField<double> &q_bar,
                                          NodeField<double>       &to) const
   {
-    to = remesh.transfer.apply_transpose<double>(q_bar);
+    to = q_bar;
+    if (q_bar.empty())
+      return;
+    const TransferOperator   &J         = remesh.transfer;
+    const std::vector<double> unbounded = J.apply<double>(q);
+    std::vector<double>       mapped    = q_bar;
+    std::vector<double>       bounded(old_mesh.n_nodes(), 0.);
+    for (unsigned int k = 0; k < mapped.size(); ++k)
+    {
+      const auto [least, largest] = extremes(J, k, q);
+      if (unbounded[k] < q[least])
+        bounded[least] += std::exchange(mapped[k], 0.);
+      else if (unbounded[k] > q[largest])
+        bounded[largest] += std::exchange(mapped[k], 0.);
+    }
+    to = J.apply_transpose<double>(mapped);
+    for (std::size_t i = 0; i < to.size(); ++i)
+      to[i] += bounded[i];
   }
 
   void ReverseMemberTransfer::operator()(const NodeVectorField<3, double> &,

@@ -14,7 +14,6 @@ namespace retroforge
   {
     for (const auto &stage : solved.stages)
       add_history(stage->view(), solved.start->dt, state);
-    complete_history(scene_.discretization, state);
     state.X        = solved.X;
     state.velocity = solved.velocity;
   }
@@ -30,7 +29,6 @@ namespace retroforge
         observer(view, dt);
         add_history(view, dt, next);
       });
-    complete_history(scene_.discretization, next);
     const Dual dt = process.duration(place(record));
     next.velocity.resize(next.X.size());
     for (std::size_t k = 0; k < next.X.size(); ++k)

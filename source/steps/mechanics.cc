@@ -23,10 +23,9 @@ namespace retroforge
                                           record.contact.approach_law(record.step),
                                           record.contact.edge_stiffness,
                                           record.contact.counts_closing}))
+      , history(scene, process, state)
   {
     contact.hold = record.hold;
-    if (process.material.depends_on_state())
-      points = point_states(scene.mesh, state);
   }
 
   template struct IncrementStart<double>;
@@ -34,6 +33,7 @@ namespace retroforge
 
   SolvedStage::SolvedStage(const Scene                  &scene,
                            const IncrementStart<double> &start,
+                           const unsigned int            s,
                            NodalVectors<double>          positions,
                            const SolveRecord            &solve,
                            const double                  weight,
@@ -41,7 +41,7 @@ namespace retroforge
       : X(std::move(positions))
       , active(solve.active)
       , weight(weight)
-      , stage(scene, start.physics, start.contact, X, start.points)
+      , stage(scene, start.physics, start.contact, X, start.history.points(s))
       , W(scene.discretization)
   {
     if (!bubbles.empty())
@@ -96,12 +96,24 @@ namespace retroforge
     return dealii::Utilities::MPI::max(found ? 1 : 0, scene_.discretization.comm()) > 0;
   }
 
-  std::shared_ptr<const IncrementStart<double>> Mechanics::start_of(const Process<double>           &process,
+  std::shared_ptr<IncrementStart<double>> Mechanics::start_of(const Process<double>           &process,
+                                                              const WorkpieceState<3, double> &state,
+                                                              const IncrementRecord           &record) const
+  {
+    const auto timing = timings_.scope("contact");
+    return std::make_shared<IncrementStart<double>>(scene_, process, state, record);
+  }
+
+  std::shared_ptr<IncrementStart<double>> Mechanics::recorded_start(const Process<double>           &process,
                                                                     const WorkpieceState<3, double> &state,
                                                                     const IncrementRecord &record) const
   {
-    const auto timing = timings_.scope("contact");
-    return std::make_shared<const IncrementStart<double>>(scene_, process, state, record);
+    auto          start  = start_of(process, state, record);
+    const Scheme &scheme = scheme_of(record);
+    for (unsigned int s = 0; s + 1 < scheme.n_stages() && start->history.is_needed(); ++s)
+      start->history.add(
+        scheme, s, recorded_stage(*start, state.X, scheme, record.solves, s)->view(), start->dt);
+    return start;
   }
 
   const Scheme &Mechanics::scheme_of(const IncrementRecord &record) const
@@ -109,12 +121,12 @@ namespace retroforge
     return record.scheme == model_.scheme.name ? model_.scheme : Scheme::by_name(record.scheme);
   }
 
-  std::vector<SolveRecord> Mechanics::solve_stages(const IncrementStart<double> &start,
-                                                   const NodalVectors<double>   &X,
-                                                   const bool                    replay,
-                                                   const bool                    all_found,
-                                                   const InitialGuess           &guess,
-                                                   IncrementRecord              &record)
+  std::vector<SolveRecord> Mechanics::solve_stages(IncrementStart<double>     &start,
+                                                   const NodalVectors<double> &X,
+                                                   const bool                  replay,
+                                                   const bool                  all_found,
+                                                   const InitialGuess         &guess,
+                                                   IncrementRecord            &record)
   {
     Field<double>            W      = guess.W;
     const Scheme            &scheme = scheme_of(record);
@@ -124,9 +136,10 @@ namespace retroforge
     for (unsigned int s = 0; s < scheme.n_stages() && !lost; ++s)
     {
       const NodalVectors<double> position = advanced(X, start.dt, scheme.a[s], solves);
-      const Equilibrium<double>  stage(scene_, start.physics, start.contact, position, start.points);
-      const ActiveChoice         frozen = replay ? ActiveChoice(record.solves[s].active) : ActiveChoice();
-      const Origin               origin = s == 0 ? guess.origin : Origin::previous;
+      const Equilibrium<double>  stage(
+        scene_, start.physics, start.contact, position, start.history.points(s));
+      const ActiveChoice frozen = replay ? ActiveChoice(record.solves[s].active) : ActiveChoice();
+      const Origin       origin = s == 0 ? guess.origin : Origin::previous;
       guess.advance(s == 0 ? guess.ahead : record.step * (scheme.node(s) - scheme.node(s - 1)), W);
       const NewtonStatistics statistics =
         newton_.solve(stage, W, frozen, origin, s == 0 ? ActiveChoice() : ActiveChoice(solves.back().active));
@@ -138,6 +151,9 @@ namespace retroforge
       if (scene_.discretization.middles())
         solves.back().vertices = motion(stage, W);
       lost = !replay && !all_found && contacts_missed(stage, W);
+      // As a replay will have it.
+      if (!lost && start.history.is_needed() && s + 1 < scheme.n_stages())
+        start.history.add(scheme, s, recorded_stage(start, X, scheme, solves, s)->view(), start.dt);
     }
     record.linear_solves += system_.n_solves - solves_before;
     if (lost)
@@ -236,18 +252,15 @@ namespace retroforge
     }
   }
 
-  std::shared_ptr<const SolvedStage> Mechanics::recorded_stage(const IncrementStart<double> &start,
-                                                               const NodalVectors<double>   &X,
-                                                               const IncrementRecord        &record,
-                                                               const unsigned int            s,
-                                                               const NodeVector<3, double>  &bubbles) const
+  std::shared_ptr<const SolvedStage> Mechanics::recorded_stage(const IncrementStart<double>   &start,
+                                                               const NodalVectors<double>     &X,
+                                                               const Scheme                   &scheme,
+                                                               const std::vector<SolveRecord> &solves,
+                                                               const unsigned int              s,
+                                                               const NodeVector<3, double>    &bubbles) const
   {
-    return std::make_shared<const SolvedStage>(scene_,
-                                               start,
-                                               advanced(X, start.dt, scheme_of(record).a[s], record.solves),
-                                               record.solves[s],
-                                               scheme_of(record).b[s],
-                                               bubbles);
+    return std::make_shared<const SolvedStage>(
+      scene_, start, s, advanced(X, start.dt, scheme.a[s], solves), solves[s], scheme.b[s], bubbles);
   }
 
   SolvedIncrement Mechanics::recorded(std::shared_ptr<const IncrementStart<double>> start,
@@ -258,7 +271,7 @@ namespace retroforge
     SolvedIncrement solved{start, {}, advanced(X, start->dt, scheme.b, record.solves), mean_velocity(record)};
     for (unsigned int s = 0; s < scheme.n_stages(); ++s)
       if (scheme.b[s] != 0.)
-        solved.stages.push_back(recorded_stage(*start, X, record, s));
+        solved.stages.push_back(recorded_stage(*start, X, scheme, record.solves, s));
     return solved;
   }
 
@@ -266,7 +279,7 @@ namespace retroforge
                                       const WorkpieceState<3, double> &state,
                                       const IncrementRecord           &record) const
   {
-    return recorded(start_of(process, state, record), state.X, record);
+    return recorded(recorded_start(process, state, record), state.X, record);
   }
 
   NodalVectors<double> Mechanics::mean_velocity(const IncrementRecord &record) const

@@ -25,6 +25,7 @@ namespace retroforge
       RankSum<ContactSetBar>        contact;
       RankSum<PhysicsBar>           physics;
       RankSum<NodalVectors<double>> velocity; ///< of the increment before
+      StageHistoryBar               history;
       /// In the positions of each stage: of those that follow the one that is reversed.
       std::vector<NodalVectors<double>> Y;
     };
@@ -76,12 +77,13 @@ namespace retroforge
     const MPI_Comm                comm   = scene_.discretization.comm();
     const Scheme                 &scheme = scheme_of(record);
     const unsigned int            n      = scheme.n_stages();
-    const auto                    shared = start_of(process, state, record);
+    const auto                    shared = recorded_start(process, state, record);
     const IncrementStart<double> &start  = *shared;
     std::vector<IncrementBar>     bars(costates.size(),
                                    {{ContactSetBar(record.pairs.size()), comm},
                                         {PhysicsBar(scene_.dies), comm},
                                         {NodalVectors<double>(X.size()), comm},
+                                        {},
                                         std::vector<NodalVectors<double>>(n)});
     earlier_lambdas_.resize(n);
     earlier_bubbles_.resize(n);
@@ -90,7 +92,7 @@ namespace retroforge
     std::vector<double> largest(costates.size(), 0.);
     for (unsigned int s = n; s-- > 0;)
     {
-      const auto                    at   = recorded_stage(start, X, record, s, earlier_bubbles_[s]);
+      const auto at = recorded_stage(start, X, scheme, record.solves, s, earlier_bubbles_[s]);
       const EquilibriumView<double> view = at->view();
       earlier_bubbles_[s]                = at->W.V;
       system_.assemble(at->stage, at->W, at->active);
@@ -109,10 +111,10 @@ namespace retroforge
             part.dt += weight * dot(*there, record.solves[s].motion());
         });
         if (scheme.b[s] != 0.)
-        {
           source(j, view, stage_bar);
+        const bool leaves_history = bar.history.reverse_add(scheme, s, view, start.dt, stage_bar);
+        if (scheme.b[s] != 0. || leaves_history)
           rhs.sum_ghosts();
-        }
         NodalVectors<double> motion_bar(X.size());
         for (const auto &[weight, there] : led_to)
           for (std::size_t k = 0; k < X.size(); ++k)
@@ -139,6 +141,8 @@ namespace retroforge
                               bar.velocity.part(),
                               physics.dies);
         bar.Y[s] = position_bar.complete();
+        if (process.material.depends_on_state())
+          bar.history.take(scene_, process.heat.warms(), s, bar.physics);
       }
     }
     for (std::size_t j = 0; j < costates.size(); ++j)
@@ -149,12 +153,7 @@ namespace retroforge
         for (std::size_t k = 0; k < X.size(); ++k)
           workpiece.X[k] += bars[j].Y[s][k];
       workpiece.velocity = bars[j].velocity.complete();
-      if (process.material.depends_on_state())
-      {
-        physics.points.resize(scene_.mesh.n_cells());
-        const RankSum<std::vector<PointState<double>>> points_bar(std::move(physics.points), comm);
-        reverse_point_states(scene_.mesh, points_bar.complete(), workpiece);
-      }
+      bars[j].history.add_to(workpiece);
       reverse_over(process, place(record), record.contact.approach, physics, costates[j].process.part());
     }
   }

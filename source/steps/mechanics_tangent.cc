@@ -35,6 +35,24 @@ namespace retroforge
       return values;
     }
 
+    /// Gives the numbers that normal forces are made of the values of the run: dual numbers, which find gaps by
+    /// another path, round them otherwise, and times the penalty that is 1e-9 of a pressure, which Coulomb's law
+    /// takes for one that changes.
+    void take_values(const IncrementStart<double> &from, IncrementStart<Dual> &to)
+    {
+      const auto take = [](const double value, Dual &x) { x.val() = value; };
+      for_each_number([&](const double &value, Dual &x) { take(value, x); }, from.physics, to.physics);
+      take(from.dt, to.dt);
+      take(from.contact.tau, to.contact.tau);
+      AssertDimension(from.contact.projections.size(), to.contact.projections.size());
+      for (std::size_t p = 0; p < to.contact.projections.size(); ++p)
+      {
+        take(from.contact.projections[p].delta, to.contact.projections[p].delta);
+        for (unsigned int i = 0; i < 3; ++i)
+          take(from.contact.projections[p].n[i], to.contact.projections[p].n[i]);
+      }
+    }
+
     Field<Dual> make_dual(const Field<double> &value, const Field<double> &dot)
     {
       Field<Dual> W;
@@ -85,15 +103,18 @@ namespace retroforge
     AssertDimension(record.solves.size(), scheme_of(record).n_stages());
     WorkpieceState<3, double> value;
     convert(state, value);
-    const auto                 start_value = start_of(values_of(process), value, record);
-    const IncrementStart<Dual> start(scene_, process, state, record);
-    const Scheme              &scheme = scheme_of(record);
-    std::vector<Moved>         stages;
+    const auto           start_value = recorded_start(values_of(process), value, record);
+    IncrementStart<Dual> start(scene_, process, state, record);
+    take_values(*start_value, start);
+    const Scheme      &scheme = scheme_of(record);
+    std::vector<Moved> stages;
     for (unsigned int s = 0; s < scheme.n_stages(); ++s)
     {
       const NodalVectors<Dual> position = advanced(state.X, start.dt, scheme.a[s], stages);
-      const Equilibrium<Dual>  stage(scene_, start.physics, start.contact, position, start.points);
-      const Field<Dual>        W = tangent_field(stage, *recorded_stage(*start_value, value.X, record, s));
+      const Equilibrium<Dual>  stage(scene_, start.physics, start.contact, position, start.history.points(s));
+      const Field<Dual>        W =
+        tangent_field(stage, *recorded_stage(*start_value, value.X, scheme, record.solves, s));
+      start.history.add(scheme, s, {stage, W, record.solves[s].active}, start.dt);
       stages.push_back({retroforge::motion(stage, W)});
       if (scheme.b[s] != 0.)
         observer({stage, W, record.solves[s].active, scheme.b[s]}, start.dt);

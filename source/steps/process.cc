@@ -80,7 +80,7 @@ namespace retroforge
   {
     AssertIndexRange(at.operation, operations.size());
     const Operation<Number> &operation = operations[at.operation];
-    Physics<Number>          physics{material, contact, dies};
+    Physics<Number>          physics{material, contact, dies, heat};
     const Number             passed = nominal_time(at.stroke, at.operation);
     const Number             faster = pace(operation, at);
     for (unsigned int d = 0; d < dies.size(); ++d)
@@ -116,6 +116,7 @@ namespace retroforge
     process_bar.material.numbers.resize(process.material.numbers.size(), 0.);
     add_numbers(bar.material, process_bar.material);
     add_numbers(bar.contact, process_bar.contact);
+    add_numbers(bar.heat, process_bar.heat);
     const double speed = process.speed(at.operation), dt_bar = bar.dt + approach * bar.tau;
     const double path = operation.motion.path(at.stroke, at.step), faster = pace(operation, at);
     // In scale/speed, by which all times are made of paths, and in the pace.

@@ -34,12 +34,14 @@ namespace retroforge
   {
   }
 
-  ForgingState Forging::start(std::shared_ptr<MeshEpoch> epoch, const NodalVectors<double> &X_0)
+  ForgingState Forging::start(std::shared_ptr<MeshEpoch>  epoch,
+                              const Process<double>      &process,
+                              const NodalVectors<double> &X_0)
   {
     Assert(epoch != nullptr, dealii::ExcMessage("a run starts on a mesh"));
     AssertDimension(X_0.size(), epoch->scene.mesh.n_nodes());
     ForgingState state;
-    state.workpiece = initial_state<3>(X_0, epoch->scene.mesh.n_cells());
+    state.workpiece = workpiece_before(process, X_0, epoch->scene.mesh.n_cells());
     state.volume    = volume(epoch->scene.mesh.cells, X_0);
     state.next.W    = Field<double>(epoch->scene.discretization);
     state.epoch     = std::move(epoch);
@@ -143,15 +145,16 @@ namespace retroforge
     Field<double> W(scene.discretization);
     W.V.take(state.solution->V);
     W.P.take(state.solution->P);
-    return optimal_sizes(scene.mesh,
-                         state.workpiece.X,
-                         indicated_errors(scene.discretization,
-                                          state.workpiece.X,
-                                          W,
-                                          process.material,
-                                          point_states(scene.mesh, state.workpiece)),
-                         velocity_degree(scene.discretization),
-                         remesher_.error_size_bounds());
+    return optimal_sizes(
+      scene.mesh,
+      state.workpiece.X,
+      indicated_errors(scene.discretization,
+                       state.workpiece.X,
+                       W,
+                       process.material,
+                       point_states(scene.mesh, process.material.initial, state.workpiece)),
+      velocity_degree(scene.discretization),
+      remesher_.error_size_bounds());
   }
 
   void Forging::remesh(const Process<double> &process, ForgingState &state, IncrementRecord &record) const

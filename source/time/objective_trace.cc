@@ -32,27 +32,29 @@ namespace retroforge
   template <typename Number>
   FinalView<Number> final_view(const FinalObjective                &objective,
                                const Scene                         &scene,
-                               const NodalVectors<Number>          &X,
-                               const std::vector<Number>           &strain,
+                               const WorkpieceState<3, Number>     &workpiece,
                                const std::vector<DieState<Number>> &dies)
   {
-    AssertDimension(X.size(), scene.mesh.n_nodes());
-    AssertDimension(strain.size(), scene.mesh.n_cells());
+    AssertDimension(workpiece.X.size(), scene.mesh.n_nodes());
+    AssertDimension(workpiece.strain.size(), scene.mesh.n_cells());
     AssertDimension(dies.size(), scene.dies.size());
     const unsigned int d     = objective.target_die();
     const bool         moved = d != invalid_index && !dies[d].vertices.empty();
-    return {scene, X, strain, dies, moved ? &dies[d].vertices : nullptr};
+    return {scene,
+            workpiece.X,
+            workpiece.strain,
+            dies,
+            moved ? &dies[d].vertices : nullptr,
+            workpiece.temperature.empty() ? nullptr : &workpiece.temperature};
   }
 
   template FinalView<double> final_view(const FinalObjective &,
                                         const Scene &,
-                                        const NodalVectors<double> &,
-                                        const std::vector<double> &,
+                                        const WorkpieceState<3, double> &,
                                         const std::vector<DieState<double>> &);
   template FinalView<Dual>   final_view(const FinalObjective &,
                                         const Scene &,
-                                        const NodalVectors<Dual> &,
-                                        const std::vector<Dual> &,
+                                        const WorkpieceState<3, Dual> &,
                                         const std::vector<DieState<Dual>> &);
 
   void ObjectiveTrace::add(const IncrementEvent &event)
@@ -74,7 +76,7 @@ namespace retroforge
                               const ForgingState                  &state,
                               const std::vector<DieState<double>> &dies)
     {
-      return final_view(objective, state.epoch->scene, state.workpiece.X, state.workpiece.strain, dies);
+      return final_view(objective, state.epoch->scene, state.workpiece, dies);
     }
 
     Evaluation evaluated(const PathObjective &objective, const PathRows<double> &rows)

@@ -13,6 +13,7 @@
 #include <retroforge/design/design.h>
 #include <retroforge/design/design_parameters.h>
 #include <retroforge/discretization/discretization_parameters.h>
+#include <retroforge/material/heat_parameters.h>
 #include <retroforge/material/material_parameters.h>
 #include <retroforge/objective/objective_parameters.h>
 #include <retroforge/output/output_parameters.h>
@@ -41,6 +42,7 @@ namespace retroforge
     PressParameters            press;
     DiscretizationParameters   discretization;
     ContactParameters          contact;
+    HeatParameters             heat;
     NewtonParameters           newton;
     LinearSolverParameters     linear_solver;
     ObjectivesParameters       objectives;

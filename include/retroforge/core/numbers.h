@@ -8,6 +8,8 @@
 #include <deal.II/base/exceptions.h>
 
 #include <limits>
+#include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -17,7 +19,8 @@
 /// products of derivatives are loops. An aggregate `template <typename Number> struct A` has
 /// `template <typename Self> static auto members(Self &self) { auto &[a, b] = self; return std::tie(a, b); }`
 /// where the structured binding does not compile when a member is forgotten. Members are numbers, vectors of
-/// space, lists, aggregates, and integers, which are decisions: they are copied, and have no derivative.
+/// space, lists, aggregates, and integers and shared data, which are decisions: they are copied, and have no
+/// derivative.
 namespace retroforge
 {
   template <typename T>
@@ -37,6 +40,15 @@ namespace retroforge
     };
     template <int dim, typename Number>
     struct IsVector<dealii::Tensor<1, dim, Number>> : std::true_type
+    {
+    };
+
+    template <typename T>
+    struct IsShared : std::false_type
+    {
+    };
+    template <typename T>
+    struct IsShared<std::shared_ptr<const T>> : std::true_type
     {
     };
 
@@ -91,7 +103,7 @@ namespace retroforge
       for (std::size_t k = 0; k < n; ++k)
         for_each_number(f, a[k], others[k]...);
     }
-    else if constexpr (!std::is_integral_v<T>)
+    else if constexpr (!std::is_integral_v<T> && !internal::IsShared<T>::value)
       internal::for_each_member([&f](auto &...member) { for_each_number(f, member...); }, a, others...);
   }
 
@@ -135,6 +147,9 @@ namespace retroforge
     std::string name, unit;
     bool        may_vanish = false; ///< else it is positive
     double      largest    = std::numeric_limits<double>::infinity();
+    /// The value of one that is not given; none: it must be.
+    std::optional<double> otherwise = {};
+    bool                  any_sign  = false; ///< it may be negative, too
   };
 
   /// Number i of an aggregate.

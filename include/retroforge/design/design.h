@@ -16,7 +16,9 @@ namespace retroforge
     {
       material,      ///< a number of the material law
       contact,       ///< a number of the contact law
+      heat,          ///< a number of the metal's heat
       friction,      ///< friction coefficient of one die, or of all that have friction
+      shear_limit,   ///< bound of one die's friction, where its law has one
       speed,         ///< speed of one die along its velocity
       offset,        ///< offset of one die along its facing direction
       die_shape,     ///< a measure of one tripod or bell
@@ -34,11 +36,12 @@ namespace retroforge
     std::string  measure    = {};            ///< measure of a die's shape
     bool         may_vanish = false;         ///< else it is positive, unless it is free
     double       largest    = std::numeric_limits<double>::infinity();
+    bool         any_sign   = false; ///< a number of a law that may be negative
 
     /// Returns whether values may have any sign: shapes are checked where they are made.
     bool is_free() const
     {
-      return kind == Kind::offset || kind == Kind::die_free_form || kind == Kind::billet;
+      return any_sign || kind == Kind::offset || kind == Kind::die_free_form || kind == Kind::billet;
     }
     /// Returns whether both set the same number.
     bool overlaps(const DesignParameter &other) const;
@@ -47,7 +50,7 @@ namespace retroforge
   /// Names of parameters that would change nothing in a scene, because another number is 0 or 1, and which
   /// that is.
   std::map<std::string, std::string> idle_parameters(const std::vector<DieParameters> &dies,
-                                                     const MaterialLaw<double>        &law);
+                                                     const Material<double>           &material);
 
   /// The map from parameter values to the initial positions and the process, and its derivative: both are
   /// code templated on the number type.

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/material/flow_table.h>
 #include <retroforge/material/material_law.h>
 
 #include <memory>
@@ -11,17 +12,18 @@
 /// Material knows what it follows from. Sorts of metal, MaterialType, are chosen by name.
 namespace retroforge
 {
-  /// The state of the metal at a point, as an increment finds it.
+  /// The state of the metal at a point, as a stage of an increment finds it.
   template <typename Number>
   struct PointState
   {
-    Number strain = Number(0.); ///< accumulated equivalent strain q, dimensionless
+    Number strain      = Number(0.); ///< accumulated equivalent strain q, dimensionless
+    Number temperature = Number(0.); ///< T [C]
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[strain] = self;
-      return std::tie(strain);
+      auto &[strain, temperature] = self;
+      return std::tie(strain, temperature);
     }
   };
 
@@ -29,9 +31,11 @@ namespace retroforge
   template <typename Number>
   struct Material
   {
-    MaterialLaw<Number> law;      ///< law of metal in its initial state: q = 0
+    MaterialLaw<Number> law;      ///< K, m and e0, of which the sort makes the law at a point
     std::vector<Number> numbers;  ///< further numbers of its type, by MaterialType::info
+    PointState<Number>  initial;  ///< the metal's before the stroke
     unsigned int        type = 0; ///< sort of metal, as material_type() counts them; 0: Norton-Hoff
+    std::shared_ptr<const FlowTable> table = {}; ///< of a sort that has one
 
     Material() = default;
     Material(const MaterialLaw<Number> &law) : law(law) {}
@@ -39,8 +43,8 @@ namespace retroforge
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[law, numbers, type] = self;
-      return std::tie(law, numbers, type);
+      auto &[law, numbers, initial, type, table] = self;
+      return std::tie(law, numbers, initial, type, table);
     }
 
     /// Returns how users know its numbers, those of the law and those beyond, in their order.
@@ -49,8 +53,14 @@ namespace retroforge
     /// Tells whether the law at a point depends on the state there.
     bool depends_on_state() const;
 
+    /// Tells whether the stress depends on the number with a name of info().
+    bool depends_on(const std::string &name) const;
+
     /// Returns the law at a point.
     MaterialLaw<Number> at(const PointState<Number> &state) const;
+
+    /// Returns the law of the metal before the stroke: by it forces and rates are estimated.
+    MaterialLaw<Number> initial_law() const { return at(initial); }
   };
 
   /// Adds the derivatives of a scalar in the numbers of the metal and the state of a point, where `law_bar`
@@ -61,9 +71,18 @@ namespace retroforge
                   Material<double>          &bar,
                   PointState<double>        &state_bar);
 
-  /// A sort of metal: how the law at a point follows from the law of metal in its initial state, further
-  /// numbers, and the state. Where that law is linear in the strain rate it stays so, since friction and
-  /// Newton's method ask the initial one. Sorts derive from MaterialTypeOf.
+  /// Adds the derivatives of a scalar in the numbers of the metal, its initial state included: the chain
+  /// through Material::initial_law().
+  inline void reverse_initial_law(const Material<double>    &material,
+                                  const MaterialLaw<double> &law_bar,
+                                  Material<double>          &bar)
+  {
+    reverse_at(material, material.initial, law_bar, bar, bar.initial);
+  }
+
+  /// A sort of metal: how the law at a point follows from K, m and e0, further numbers, and the state. Where
+  /// m is 1 in one state it is so in all, since Newton's method asks the initial one. Sorts derive from
+  /// MaterialTypeOf.
   class MaterialType
   {
   public:
@@ -74,6 +93,15 @@ namespace retroforge
 
     /// Tells whether laws depend on the state: where they do not, no derivatives in it are carried.
     virtual bool depends_on_state() const { return true; }
+
+    /// Tells whether they depend on the temperature, with the numbers that a metal has.
+    virtual bool depends_on_temperature(const Material<double> &) const { return false; }
+
+    /// Tells whether Material::table is read.
+    virtual bool reads_table() const { return false; }
+
+    /// Tells whether K and m are numbers of the metal: else they follow from other numbers alone.
+    virtual bool reads_consistency() const { return true; }
 
     virtual MaterialLaw<double> law_at(const Material<double>   &material,
                                        const PointState<double> &state) const                             = 0;

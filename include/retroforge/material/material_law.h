@@ -8,7 +8,7 @@ namespace retroforge
 {
   /// The law of the metal: isotropic and viscous,  s = factor(eps:eps) eps. All kernels know it by this name,
   /// and need of a law what NortonHoff has: an aggregate of numbers (core/numbers.h) whose call operator is
-  /// the factor, with is_linear(), potential_ratio(), slope(), reverse(), newtonian(), and for users info()
+  /// the factor, with is_linear(), potential_ratio(), slope(), reverse(), shear_stress() with its reverse, newtonian(), and for users info()
   /// and depends_on().
   template <typename Number>
   using MaterialLaw = NortonHoff<Number>;

@@ -6,13 +6,17 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <map>
+
 namespace retroforge
 {
   struct MaterialParameters
   {
-    std::string         type = "Norton-Hoff";
-    MaterialLaw<double> law{1.693, 0.139, 0.}; ///< law of metal in its initial state
-    std::vector<double> numbers;               ///< further numbers of the type
+    std::string                   type = "Norton-Hoff";
+    MaterialLaw<double>           law{1.693, 0.139, 0.};
+    std::map<std::string, double> numbers;     ///< further numbers of the type, by name
+    std::string                   table;       ///< file of the type `table`
+    std::string                   temperature; ///< of the billet before the stroke [C]; empty: not given
 
     void add_parameters(dealii::ParameterHandler &prm);
 

@@ -54,6 +54,24 @@ namespace retroforge
       bar.e0 += log_bar * slope(eps2) * 3. * e0;
     }
 
+    /// Shear flow stress  k = sigma_0/sqrt(3) = K (3 (e^2 + e0^2))^(m/2)  [MPa] at the square of an equivalent
+    /// strain rate [1/s^2]: it does not vanish where the metal is still.
+    Number shear_stress(const Number &rate2) const
+    {
+      return K * power(Number(3. * (rate2 + e0 * e0)), Number(0.5 * m));
+    }
+
+    /// Adds to `bar` the derivatives in K, m and e0 of a scalar whose derivative in log(shear_stress) is
+    /// `log_bar`, and returns that in rate2.
+    double reverse_shear_stress(const double rate2, const double log_bar, NortonHoff<double> &bar) const
+    {
+      const double floored = rate2 + e0 * e0, slope = floored > 0. ? log_bar * 0.5 * m / floored : 0.;
+      bar.K += log_bar / K;
+      bar.m += log_bar * 0.5 * log_or_zero(3. * floored);
+      bar.e0 += 2. * slope * e0;
+      return slope;
+    }
+
     /// The linear law with the same stress at an equivalent strain rate.
     NortonHoff newtonian(const Number &rate) const
     {

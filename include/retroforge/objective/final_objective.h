@@ -28,6 +28,7 @@ namespace retroforge
     const std::vector<DieState<Number>> &dies; ///< displacements at the end
     /// Vertices of the objective's target surface, where a derivative in them is wanted; null: its own.
     const NodalVectors<Number> *target = nullptr;
+    const std::vector<Number>  *T      = nullptr; ///< temperatures of the nodes [C]; null: not followed
   };
 
   /// What an objective decided on a workpiece, a value of the type T::Decisions of FinalObjectiveOf. Of lists
@@ -44,6 +45,7 @@ namespace retroforge
   {
     NodalVectors<double> X;
     std::vector<double>  q;
+    std::vector<double>  T;      ///< empty where temperatures are not followed
     NodalVectors<double> target; ///< vertices of the target, where the view or a die has them; else empty
     /// Displacements, and vertices of dies that are not meant as the target.
     std::vector<DieState<double>> dies;
@@ -55,8 +57,8 @@ namespace retroforge
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[X, q, target, dies] = self;
-      return std::tie(X, q, target, dies);
+      auto &[X, q, T, target, dies] = self;
+      return std::tie(X, q, T, target, dies);
     }
   };
 

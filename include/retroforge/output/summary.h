@@ -33,6 +33,7 @@ namespace retroforge
       std::map<std::string, double> parts;           ///< summands of the value, e.g. deformation and friction
       std::map<std::string, double> details;         ///< other numbers told beside it, e.g. the true maximum
       double                        whole = unknown; ///< value for the whole part, where it adds up over it
+      std::string                   note  = {};      ///< what a user must know of it; empty: nothing
     };
 
     struct Parameter
@@ -43,6 +44,8 @@ namespace retroforge
       std::map<std::string, double> gradient; ///< by objective
       /// Length or size that percentages of the parameter are taken of.
       double scale = unknown;
+      /// By objective, how far the derivative holds, in words; without those of which it is not known.
+      std::map<std::string, std::string> trust = {};
     };
 
     /// Finite differences of one step: with the recorded decisions replayed, and free (decided anew).
@@ -106,6 +109,16 @@ namespace retroforge
       double stroke = unknown; ///< at the end of the increment where it is largest, mm
     };
     PowerBalance balance;
+
+    /// What a run without heat, or without conduction, leaves out, to tell when it matters.
+    struct LeftOut
+    {
+      bool   warms   = false;   ///< the metal warms by its work, so that only the chill is left out
+      double warming = unknown; ///< of the metal by its work, mean over the volume, K
+      double seconds = unknown; ///< time under the press
+      double chilled = unknown; ///< depth that a chill by the dies reaches, mm
+    };
+    LeftOut heat;
 
     /// Quadratic velocities: where most surface edges, of those that touched, spanned a corner of a die.
     struct Spanned

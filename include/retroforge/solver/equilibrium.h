@@ -4,8 +4,10 @@
 
 #include <retroforge/contact/contact_areas.h>
 #include <retroforge/contact/interface_law.h>
+#include <retroforge/contact/surface_rates.h>
 #include <retroforge/discretization/field.h>
 #include <retroforge/element/semi_analytic.h>
+#include <retroforge/material/heat_law.h>
 #include <retroforge/material/material.h>
 
 #include <optional>
@@ -56,12 +58,13 @@ namespace retroforge
     Material<Number>              material;
     ContactLaw<Number>            contact;
     std::vector<DieState<Number>> dies;
+    HeatLaw<Number>               heat = {};
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[material, contact, dies] = self;
-      return std::tie(material, contact, dies);
+      auto &[material, contact, dies, heat] = self;
+      return std::tie(material, contact, dies, heat);
     }
   };
 
@@ -69,8 +72,7 @@ namespace retroforge
   std::vector<DieState<double>> no_derivatives(const std::vector<Die> &dies);
 
   /// Derivatives of a scalar in what Physics holds, in the increment's times (dt, approach time, and the time
-  /// at its start), and in the state of the metal in each cell at its start, of the cells this rank owns;
-  /// empty: none.
+  /// at its start), and in the state of the metal in each cell, of the cells this rank owns; empty: none.
   struct PhysicsBar : Physics<double>
   {
     double                          dt = 0., tau = 0., time = 0.;
@@ -116,7 +118,7 @@ namespace retroforge
   {
   public:
     /// What is passed must live as long.
-    /// @param points  state of the metal in each cell at the start of the increment; empty: the initial one
+    /// @param points  state of the metal in each cell; empty: that before the stroke
     Equilibrium(const Scene                           &scene,
                 const Physics<Number>                 &physics,
                 const ContactSet<Number>              &contact,
@@ -124,10 +126,19 @@ namespace retroforge
                 const std::vector<PointState<Number>> &points = initial_points<Number>());
 
     /// The law of the metal in a cell.
-    MaterialLaw<Number> law(const CellIndex c) const { return physics.material.at(state(c)); }
+    MaterialLaw<Number> law(const CellIndex c) const { return laws_.empty() ? initial_law_ : laws_[c]; }
 
     /// The state of the metal in a cell.
     PointState<Number> state(CellIndex c) const;
+
+    /// The law of the metal behind pair p, at the mean state of the cells there (contact/surface_rates.h).
+    const MaterialLaw<Number> &surface_law(const unsigned int p) const
+    {
+      return surface_laws_.empty() ? initial_law_ : surface_laws_[p];
+    }
+
+    /// The mean state of the cells behind pair p, and these.
+    std::pair<PointState<Number>, std::vector<CellIndex>> surface_state(unsigned int p) const;
 
     /// Pair p as its force sees it, pressed as chosen or by its own h > 0.
     ContactNode<Number>
@@ -142,6 +153,10 @@ namespace retroforge
     /// where the friction of all dies is.
     bool has_potential() const;
 
+    /// Whether forces are proportional to velocities, but for what is pressed: the metal's, and the friction of
+    /// all dies.
+    bool is_linear() const;
+
     /// Which pairs are pressed: those with h > 0, and what they hold (ContactSet::middles_around).
     ActiveSet decide_active(const Field<Number> &W) const;
 
@@ -151,6 +166,11 @@ namespace retroforge
     const NodalVectors<Number>            &X;
     const std::vector<PointState<Number>> &points;
     ContactAreas<Number>                   areas;
+
+  private:
+    MaterialLaw<Number>              initial_law_;
+    std::vector<MaterialLaw<Number>> laws_;         ///< in the cells this rank visits, where they differ
+    std::vector<MaterialLaw<Number>> surface_laws_; ///< of each pair; empty: that of the initial state
   };
 
   /// Sum over the nodes of the norms of the cells' forces, the scale a residual is measured against, as a
@@ -195,6 +215,12 @@ namespace retroforge
                    const MaterialLaw<double> &law_bar,
                    PhysicsBar                &bar);
 
+  /// The same of Equilibrium::surface_law().
+  void reverse_surface_law(const Equilibrium<double> &stage,
+                           unsigned int               p,
+                           const MaterialLaw<double> &law_bar,
+                           PhysicsBar                &bar);
+
   /// Adds the derivatives of  lambda·residual  at fixed W to all but bar.W.
   void
   reverse_residual(const EquilibriumView<double> &view, const Field<double> &lambda, EquilibriumBar &bar);
@@ -217,6 +243,7 @@ namespace retroforge
       , X(X)
       , points(points)
       , areas(contact_areas(scene.mesh, scene.topology, contact, X)) // asks for a position of each node
+      , initial_law_(physics.material.initial_law())
   {
     Assert(physics.dies.size() == scene.dies.size(),
            dealii::ExcDimensionMismatch(physics.dies.size(), scene.dies.size()));
@@ -224,11 +251,22 @@ namespace retroforge
            dealii::ExcDimensionMismatch(contact.ramps.size(), contact.pairs.size()));
     Assert(points.size() == scene.mesh.n_cells() || (points.empty() && !physics.material.depends_on_state()),
            dealii::ExcDimensionMismatch(points.size(), scene.mesh.n_cells()));
+    if (!points.empty() && physics.material.depends_on_state())
+    {
+      laws_.resize(points.size());
+      for (const CellIndex c : scene.discretization.visited_cells())
+        laws_[c] = physics.material.at(points[c]);
+    }
+    if (physics.material.depends_on_state())
+      for (unsigned int p = 0; p < contact.pairs.size(); ++p)
+        surface_laws_.push_back(value_of(physics.dies[contact.pairs[p].die].friction) == 0.
+                                  ? initial_law_
+                                  : physics.material.at(surface_state(p).first));
   }
 
   template <typename Number>
   PointState<Number> Equilibrium<Number>::state(const CellIndex c) const
   {
-    return points.empty() ? PointState<Number>{} : points[c];
+    return points.empty() ? physics.material.initial : points[c];
   }
 } // namespace retroforge

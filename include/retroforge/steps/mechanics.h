@@ -6,7 +6,7 @@
 #include <retroforge/record/increment_record.h>
 #include <retroforge/solver/newton.h>
 #include <retroforge/solver/spent_power.h>
-#include <retroforge/steps/point_states.h>
+#include <retroforge/steps/history.h>
 #include <retroforge/steps/process.h>
 #include <retroforge/steps/scheme.h>
 #include <retroforge/steps/workpiece_state.h>
@@ -43,11 +43,10 @@ namespace retroforge
   template <typename Number>
   struct IncrementStart
   {
-    Physics<Number>    physics;
-    Number             dt; ///< [s]
-    ContactSet<Number> contact;
-    /// State of the metal in each cell, where laws depend on it; else empty.
-    std::vector<PointState<Number>> points;
+    Physics<Number>      physics;
+    Number               dt; ///< [s]
+    ContactSet<Number>   contact;
+    StageHistory<Number> history;
 
     IncrementStart(const Scene                     &scene,
                    const Process<Number>           &process,
@@ -68,6 +67,7 @@ namespace retroforge
 
     SolvedStage(const Scene                  &scene,
                 const IncrementStart<double> &start,
+                unsigned int                  s,
                 NodalVectors<double>          X,
                 const SolveRecord            &solve,
                 double                        weight,
@@ -150,7 +150,12 @@ namespace retroforge
     void forget();
 
   private:
-    std::shared_ptr<const IncrementStart<double>> start_of(const Process<double>           &process,
+    /// That of which no stage is known.
+    std::shared_ptr<IncrementStart<double>> start_of(const Process<double>           &process,
+                                                     const WorkpieceState<3, double> &state,
+                                                     const IncrementRecord           &record) const;
+    /// That of an increment whose stages are recorded.
+    std::shared_ptr<IncrementStart<double>> recorded_start(const Process<double>           &process,
                                                            const WorkpieceState<3, double> &state,
                                                            const IncrementRecord           &record) const;
     /// That of the record, which is the model's unless the run was restarted with another.
@@ -158,22 +163,23 @@ namespace retroforge
     /// Change of (V, P) over the stroke from the first stage to the last; none where they are at one time.
     std::optional<Field<double>> rate(const IncrementRecord &record) const;
     /// @return nothing where a node ran into a die unwatched
-    std::vector<SolveRecord> solve_stages(const IncrementStart<double> &start,
-                                          const NodalVectors<double>   &X,
-                                          bool                          replay,
-                                          bool                          all_found,
-                                          const InitialGuess           &guess,
-                                          IncrementRecord              &record);
+    std::vector<SolveRecord> solve_stages(IncrementStart<double>     &start,
+                                          const NodalVectors<double> &X,
+                                          bool                        replay,
+                                          bool                        all_found,
+                                          const InitialGuess         &guess,
+                                          IncrementRecord            &record);
     /// Energies and forces of the increment.
     void                               account(const SolvedIncrement &solved, IncrementRecord &record) const;
     SolvedIncrement                    recorded(std::shared_ptr<const IncrementStart<double>> start,
                                                 const NodalVectors<double>                   &X,
                                                 const IncrementRecord                        &record) const;
-    std::shared_ptr<const SolvedStage> recorded_stage(const IncrementStart<double> &start,
-                                                      const NodalVectors<double>   &X,
-                                                      const IncrementRecord        &record,
-                                                      unsigned int                  s,
-                                                      const NodeVector<3, double>  &bubbles = {}) const;
+    std::shared_ptr<const SolvedStage> recorded_stage(const IncrementStart<double>   &start,
+                                                      const NodalVectors<double>     &X,
+                                                      const Scheme                   &scheme,
+                                                      const std::vector<SolveRecord> &solves,
+                                                      unsigned int                    s,
+                                                      const NodeVector<3, double>    &bubbles = {}) const;
     /// Returns the relative tolerance of an adjoint system.
     /// @param norm     of its right-hand side
     /// @param largest  maximum of these norms over the increment's stages so far

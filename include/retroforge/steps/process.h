@@ -60,12 +60,13 @@ namespace retroforge
     ContactLaw<Number>             contact;
     std::vector<DieState<Number>>  dies;
     std::vector<Operation<Number>> operations;
+    HeatLaw<Number>                heat = {};
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[material, contact, dies, operations] = self;
-      return std::tie(material, contact, dies, operations);
+      auto &[material, contact, dies, operations, heat] = self;
+      return std::tie(material, contact, dies, operations, heat);
     }
 
     /// Returns the velocity of the leading die of an operation [mm/s].

@@ -13,7 +13,8 @@ namespace retroforge
   template <int dim, typename Number>
   using NodalPositions = std::vector<dealii::Tensor<1, dim, Number>>;
 
-  /// One number per node. At a change of mesh it follows  q' = J q.
+  /// One number per node, or none at all where it is not followed. At a change of mesh it follows  q' = J q,  within
+  /// the range of the values that a row of J takes.
   template <typename Number>
   struct NodeField : std::vector<Number>
   {
@@ -51,12 +52,13 @@ namespace retroforge
     /// Of the nodes in the increment before, by which contact knows how fast metal comes to a die [mm/s]. None
     /// before the first increment of an operation.
     NodeVectorField<dim, Number> velocity;
+    NodeField<Number>            temperature; ///< [C]; none where the metal keeps that before the stroke
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[X, strain, velocity] = self;
-      return std::tie(X, strain, velocity);
+      auto &[X, strain, velocity, temperature] = self;
+      return std::tie(X, strain, velocity, temperature);
     }
   };
 
@@ -64,22 +66,25 @@ namespace retroforge
   template <int dim, typename Number>
   WorkpieceState<dim, Number> initial_state(NodalPositions<dim, Number> X, const std::size_t n_cells)
   {
-    return {std::move(X), CellField<Number>(n_cells, Number(0.)), {}};
+    return {std::move(X), CellField<Number>(n_cells, Number(0.)), {}, {}};
   }
 
   /// Returns zero derivatives in the state of a mesh.
+  /// @param warms  whether it has temperatures
   template <int dim>
-  WorkpieceState<dim, double> zero_costate(const std::size_t n_nodes, const std::size_t n_cells)
+  WorkpieceState<dim, double>
+  zero_costate(const std::size_t n_nodes, const std::size_t n_cells, const bool warms = false)
   {
     return {NodalPositions<dim, double>(n_nodes),
             CellField<double>(n_cells, 0.),
-            NodeVectorField<dim, double>(n_nodes)};
+            NodeVectorField<dim, double>(n_nodes),
+            NodeField<double>(warms ? n_nodes : 0, 0.)};
   }
 
   /// Returns what of a state does not follow from the velocities that are recorded: all but positions and
   /// velocity.
-  template <int dim>
-  WorkpieceState<dim, double> without_motion(WorkpieceState<dim, double> state)
+  template <int dim, typename Number>
+  WorkpieceState<dim, Number> without_motion(WorkpieceState<dim, Number> state)
   {
     state.X.clear();
     state.velocity.clear();

@@ -33,7 +33,8 @@ namespace retroforge
             Timings               &timings);
 
     /// Before the first increment.
-    static ForgingState start(std::shared_ptr<MeshEpoch> epoch, const NodalVectors<double> &X_0);
+    static ForgingState
+    start(std::shared_ptr<MeshEpoch> epoch, const Process<double> &process, const NodalVectors<double> &X_0);
 
     /// From `state` on other numerics hold: it goes on with whole increments of theirs.
     /// @param parameters  the complete input, which the next increment's record is to tell; none where the

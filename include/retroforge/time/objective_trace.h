@@ -15,8 +15,7 @@ namespace retroforge
   template <typename Number>
   FinalView<Number> final_view(const FinalObjective                &objective,
                                const Scene                         &scene,
-                               const NodalVectors<Number>          &X,
-                               const std::vector<Number>           &strain,
+                               const WorkpieceState<3, Number>     &workpiece,
                                const std::vector<DieState<Number>> &dies);
 
   /// What is recorded of a run for its objectives, next to its increments.

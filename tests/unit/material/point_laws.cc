@@ -38,7 +38,7 @@ namespace
   void check_point(Errors &errors)
   {
     const Material<double>    metal = metal_of({1.7, 0.2, 0.1});
-    const PointState<double>  state{0.6};
+    const PointState<double>  state{0.6, 20.};
     const double              base = 1. + 2.5 * 0.6, factor = std::pow(base, 0.3);
     const MaterialLaw<double> law = metal.at(state);
     errors.compare("law", {law.K, law.m, law.e0}, {1.7 * factor, 0.2, 0.1});
@@ -112,7 +112,7 @@ namespace
     NodalVectors<Dual>            X;
     Field<Dual>                   W(discretization);
     for (std::size_t c = 0; c < strain_dot.size(); ++c)
-      points.push_back({along(hardened.points[c].strain, strain_dot[c])});
+      points.push_back({along(hardened.points[c].strain, strain_dot[c]), Dual(0.)});
     convert(corner.X, X);
     for (unsigned int place = 0; place < W.V.size(); ++place)
       convert(corner.W.V.at_place(place), W.V.at_place(place));
@@ -226,10 +226,10 @@ namespace
     refuse(parameters);
     for (const double n : {0., 1.5})
     {
-      parameters.numbers = {1., n};
+      parameters.numbers = {{"a", 1.}, {"n", n}};
       refuse(parameters);
     }
-    parameters.numbers = {0., 0.2};
+    parameters.numbers = {{"a", 0.}, {"n", 0.2}};
     std::cout << "known: " << parameters.metal(1.).info().back().name << "\n";
     parameters.type = "Norton-Hoff";
     refuse(parameters);
