@@ -253,14 +253,41 @@ namespace retroforge
                            " % of the billet's height; 0 takes as many as are wanted");
     }
 
+    /// Of a table of flow stresses.
+    void warn_of_table(const FlowTable &table, const double temperature, Warnings &warnings)
+    {
+      constexpr double much = 0.02;
+      if (table.misfit() > much)
+        warnings.push_back(
+          "Material/table: the power laws of the strain rate that are fitted to it miss stresses by up "
+          "to " +
+          as_text(100. * table.misfit()) +
+          " %; give the rates of the scene only, two of them are met exactly");
+      if (temperature < table.least_temperature() || temperature > table.largest_temperature())
+        warnings.push_back("Material/temperature = " + as_text(temperature) + ": the table is from " +
+                           as_text(table.least_temperature()) + " to " +
+                           as_text(table.largest_temperature()) +
+                           " C, beyond which stresses are those at its edge");
+    }
+
     void warn_of_material(const View &view, const SceneEstimate &estimate, Warnings &warnings)
     {
-      const MaterialLaw<double> law = view.process.material.initial_law();
+      constexpr double          melting = 1400.; // of steel, about [C]
+      const Material<double>   &metal   = view.process.material;
+      const MaterialLaw<double> law     = metal.initial_law();
+      if (const double T = metal.initial.temperature; T > melting)
+        warnings.push_back(
+          "Material/temperature = " + as_text(T) +
+          ": temperatures are in C, and steel melts near 1450: is it in K? Then subtract 273.15");
+      if (metal.table)
+        warn_of_table(*metal.table, metal.initial.temperature, warnings);
       if (!(estimate.flow_stress >= least_stress && estimate.flow_stress <= largest_stress))
-        warnings.push_back("Material/consistency = " + as_text(law.K) + ": the flow stress is " +
-                           as_text(estimate.flow_stress) + " MPa at " + as_text(estimate.strain_rate) +
-                           " /s, the press force about " + as_text(estimate.first_force) +
-                           " N; the consistency is in MPa s^m: divide one in Pa by 1e6");
+        warnings.push_back(
+          (material_type(metal.type).reads_consistency() ? "Material/consistency = " + as_text(metal.law.K)
+                                                         : "Material/law") +
+          ": the flow stress is " + as_text(estimate.flow_stress) + " MPa at " +
+          as_text(estimate.strain_rate) + " /s, the press force about " + as_text(estimate.first_force) +
+          " N; stresses are in MPa, the consistency in MPa s^m: divide those in Pa by 1e6");
       if (!law.is_linear() && law.e0 > largest_regularisation * estimate.strain_rate)
         warnings.push_back(
           "Material/regularising strain rate = " + as_text(law.e0) + ": the scene's strain rate is " +

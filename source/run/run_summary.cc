@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/text.h>
 #include <retroforge/core/version.h>
 #include <retroforge/design/mesh_anew.h>
 #include <retroforge/mesh/mesh_quality.h>
@@ -82,6 +83,22 @@ namespace retroforge
     summary.volume_repaired       = forged.removed_volume;
     summary.heat                  = left_out_of_heat(forging_case.process, forged, summary.volume_final);
     summarise_restarts(forging_case.segments, summary);
+  }
+
+  std::string beyond_table(const Process<double> &process, const WorkpieceState<3, double> &workpiece)
+  {
+    const auto &table = process.material.table;
+    if (!table)
+      return "";
+    const double strain = *std::max_element(workpiece.strain.begin(), workpiece.strain.end());
+    const auto  &T      = workpiece.temperature;
+    const double warmest =
+      T.empty() ? process.material.initial.temperature : *std::max_element(T.begin(), T.end());
+    if (strain <= table->largest_strain() && warmest <= table->largest_temperature())
+      return "";
+    return "the metal was strained up to " + as_text(strain) + " and is up to " + as_text(warmest) +
+           " C warm, and Material/table ends at " + as_text(table->largest_strain()) + " and " +
+           as_text(table->largest_temperature()) + " C: beyond, stresses are those at its edge.";
   }
 
   std::vector<std::optional<ValueSpan>> spans_of(const Objectives                      &objectives,

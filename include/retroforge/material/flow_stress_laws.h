@@ -18,8 +18,8 @@ namespace retroforge
     return sigma * power(Number(3.), Number(-0.5 * (m + 1.)));
   }
 
-  /// K (q + q0)^n exp(-beta (T - T0)),  m + m1 (T - T0):  the sort `power`. @cite Laroussi2003, Eq. (19), with
-  /// q0 beside the strain.
+  /// K (q + q0)^n exp(-beta (T - T0)),  m + m1 (T - T0):  the sort `power`. In place of K and
+  /// m of @cite Laroussi2003, Eq. (19).
   class PowerMetal : public MaterialTypeOf<PowerMetal>
   {
   public:

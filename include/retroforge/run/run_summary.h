@@ -18,6 +18,10 @@ namespace retroforge
   /// Fills in what a summary says of the forging: counts, volumes, restarts.
   void summarise_run(const Case &forging_case, const ForgingState &forged, Summary &summary);
 
+  /// Returns what to know of a run at whose end the metal is strained or warm beyond its table of flow stresses; ""
+  /// where it is not, or has none.
+  std::string beyond_table(const Process<double> &process, const WorkpieceState<3, double> &workpiece);
+
   /// Returns the part of the run that each objective is made of; nothing for those that do not follow from forces.
   std::vector<std::optional<ValueSpan>> spans_of(const Objectives                      &objectives,
                                                  const ObjectiveTrace                  &trace,

@@ -10,6 +10,8 @@
 //   replayed differences to 1e-6, by node positions, speed and offset of the die, and the numbers K, m, a and
 //   n of the metal, of both element pairs and both schemes, of the energy, and of an objective of the strain;
 //   along each the remainder of Taylor's expansion falls with the square of the step;
+// - so it does where the metal warms by its work, by the numbers of its heat and its temperature before the
+//   stroke, of extremes of the temperature;
 // - so it does where the mesh is made anew in between, and the strain is carried over;
 // - and so it does under friction after Tresca and Coulomb, whose flow stress is that of the strained metal behind the
 //   point: as the metal hardens the power of friction grows with its flow stress.
@@ -18,6 +20,7 @@
 
 #include <retroforge/objective/energy.h>
 #include <retroforge/objective/strain_statistics.h>
+#include <retroforge/objective/temperatures.h>
 
 #include "../adjoint/directions.h"
 #include "hardening_metal.h"
@@ -200,24 +203,30 @@ namespace
       std::cout << "  " << against_hand << ", " << order << "\n";
   }
 
-  /// A direction, or numbers of the metal: K, m, e0, a, n, and its strain and temperature before the stroke.
+  /// A direction, or numbers of the metal (K, m, e0, those of its law, its strain and temperature before the
+  /// stroke) and of its heat (capacity, fraction of work).
   struct Way
   {
     Direction           direction;
-    std::vector<double> metal_dot = std::vector<double>(7, 0.);
+    std::vector<double> metal_dot = std::vector<double>(10, 0.);
+    std::vector<double> heat_dot  = {0., 0.};
   };
 
   template <typename Number>
   std::pair<Process<Number>, NodalVectors<Number>> at(const RecordedRun &run, const Way &way, const double t)
   {
-    auto there = along<Number>(run, way.direction, t);
-    auto dot   = way.metal_dot.begin();
-    for_each_number(
-      [&](Number &x) {
-        x = number<Number>(value_of(x) + t * *dot, *dot);
-        ++dot;
-      },
-      there.first.material);
+    auto       there = along<Number>(run, way.direction, t);
+    const auto move  = [t](auto &numbers, const std::vector<double> &dots) {
+      auto dot = dots.begin();
+      for_each_number(
+        [&](Number &x) {
+          x = number<Number>(value_of(x) + t * *dot, *dot);
+          ++dot;
+        },
+        numbers);
+    };
+    move(there.first.material, way.metal_dot);
+    move(there.first.heat, way.heat_dot);
     return there;
   }
 
@@ -229,13 +238,17 @@ namespace
 
   double by_adjoint(const RecordedRun &run, const AdjointResult &bar, const Way &way)
   {
-    double sum = slope(run, bar, way.direction);
-    auto   dot = way.metal_dot.begin();
-    for_each_number([&](const double &x) { sum += x * *dot++; }, bar.process.material);
+    double     sum = slope(run, bar, way.direction);
+    const auto add = [&](const auto &numbers, const std::vector<double> &dots) {
+      auto dot = dots.begin();
+      for_each_number([&](const double &x) { sum += x * *dot++; }, numbers);
+    };
+    add(bar.process.material, way.metal_dot);
+    add(bar.process.heat, way.heat_dot);
     return sum;
   }
 
-  Objectives objectives()
+  Objectives objectives(const bool warms)
   {
     Objectives all;
     all.push_back(
@@ -246,6 +259,14 @@ namespace
                    invalid_index,
                    nullptr,
                    std::make_unique<StrainObjective>(StrainStatistic::variance)});
+    for (const TemperatureExtreme extreme : {TemperatureExtreme::spread, TemperatureExtreme::largest})
+      if (warms)
+        all.push_back({"temperature",
+                       1.,
+                       SymmetryScaling::none,
+                       invalid_index,
+                       nullptr,
+                       std::make_unique<TemperatureObjective>(extreme, 2.)});
     return all;
   }
 
@@ -257,6 +278,15 @@ namespace
       die.friction     = 0.25;
       die.shear_limit  = 0.5;
     }
+    return p;
+  }
+
+  /// The metal warms by its work, by some ten degrees, and softens by that.
+  Parameters warming(Parameters p)
+  {
+    harden_by_power(p);
+    p.heat.heating  = Heating::adiabatic;
+    p.heat.capacity = 0.05;
     return p;
   }
 
@@ -298,7 +328,8 @@ namespace
 
   void check_gradients(const std::string &name, const Parameters &p, const Meshes meshes)
   {
-    RecordedRun                run(p, {p.dies[0].die(), p.dies[1].die()}, objectives(), {}, meshes);
+    const bool                 warms = p.heat.law().warms();
+    RecordedRun                run(p, {p.dies[0].die(), p.dies[1].die()}, objectives(warms), {}, meshes);
     const auto                 sweep = run.sweep(each(run.objectives()));
     const NodalVectors<double> still(run.scene.mesh.n_nodes());
     const auto                 metal = [&](const std::string &number, const unsigned int i) {
@@ -306,14 +337,28 @@ namespace
       way.metal_dot[i] = 1.;
       return way;
     };
-    Largest largest;
-    for (const Way &way : {Way{{"random X_0", random_vectors(still.size()), 0., 0., {}}},
-                           Way{{"speed", still, 1., 0., {}}},
-                           Way{{"offset", still, 0., 1., {}}},
-                           metal("K", 0),
-                           metal("m", 1),
-                           metal("a", 3),
-                           metal("n", 4)})
+    Largest          largest;
+    std::vector<Way> ways = {Way{{"random X_0", random_vectors(still.size()), 0., 0., {}}},
+                             Way{{"speed", still, 1., 0., {}}},
+                             Way{{"offset", still, 0., 1., {}}},
+                             metal("K", 0),
+                             metal("m", 1),
+                             metal("a", 3),
+                             metal("n", 4)};
+    if (warms)
+    {
+      // Steps that warm by a degree, and change the rest by parts alike.
+      ways.push_back(metal("beta", 5));
+      ways.back().metal_dot[5] = 0.01;
+      ways.push_back(metal("T_0", 9));
+      ways.back().metal_dot[9] = 100.;
+      for (const unsigned int i : {0, 1})
+      {
+        ways.push_back({{"heat", still, 0., 0., {}}});
+        ways.back().heat_dot[i] = i == 0 ? 0.05 : -0.5;
+      }
+    }
+    for (const Way &way : ways)
       check_way(run, way, sweep.gradients, largest);
     std::cout << name << ": meshes made anew: " << (run.state().remeshed.empty() ? "none" : "some")
               << ", direct method within 1e-10: " << yes(largest.tangent < 1e-10)
@@ -343,6 +388,7 @@ int main(int argc, char **argv)
   check_gradients("tilted die", block, Meshes::one);
   check_gradients("tilted die, Krylov's method", krylov, Meshes::one);
   check_gradients("tilted die, quadratic velocities", quadratic, Meshes::one);
+  check_gradients("tilted die, warming", warming(block), Meshes::one);
   check_gradients("tilted die, Tresca", with_friction(block, "Tresca"), Meshes::one);
   check_gradients(
     "tilted die, Coulomb, quadratic velocities", with_friction(quadratic, "Coulomb"), Meshes::one);
@@ -355,6 +401,7 @@ int main(int argc, char **argv)
     p->press.increments = 5;
   }
   check_gradients("remeshing", block, Meshes::anew);
+  check_gradients("remeshing, warming", warming(block), Meshes::anew);
   check_gradients("remeshing, Tresca", with_friction(block, "Tresca"), Meshes::anew);
   check_gradients("remeshing, quadratic velocities", quadratic, Meshes::anew);
 }
