@@ -33,10 +33,12 @@ namespace retroforge
                                         const ForgingState             &end,
                                         const std::vector<Combination> &combinations)
     {
-      std::vector<Costate> costates(
-        combinations.size(),
-        {zero_costate<3>(end.workpiece.X.size(), end.workpiece.strain.size(), run.process.heat.warms()),
-         {no_process_derivatives(run.process, run.model.dies), run.model.comm}});
+      std::vector<Costate> costates(combinations.size(),
+                                    {zero_costate<3>(end.workpiece.X.size(),
+                                                     end.workpiece.strain.size(),
+                                                     run.process.heat.warms(),
+                                                     run.process.material.is_damaged()),
+                                     {no_process_derivatives(run.process, run.model.dies), run.model.comm}});
       for (std::size_t o = 0; o < run.objectives.size(); ++o)
       {
         if (!run.objectives[o].at_end)
@@ -52,6 +54,8 @@ namespace retroforge
             costates[j].workpiece.strain[c] += weight * bar.q[c];
           for (std::size_t k = 0; k < bar.T.size(); ++k)
             costates[j].workpiece.temperature[k] += weight * bar.T[k];
+          for (std::size_t c = 0; c < bar.damage.size(); ++c)
+            costates[j].workpiece.damage[c] += weight * bar.damage[c];
           PhysicsBar physics_bar(run.model.dies);
           if (const auto d = run.objectives[o].at_end->target_die(); d != invalid_index)
             add(weight, bar.target, physics_bar.dies[d].vertices);

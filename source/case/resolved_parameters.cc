@@ -158,7 +158,8 @@ namespace retroforge
                                      material.metal(1.).initial_law().K,
                                      made_billet,
                                      FrictionRamp{touching_gap_, step_model().contact.ramp.sharp},
-                                     heat.law().warms()}));
+                                     heat.law().warms(),
+                                     material.damage != Damage::none}));
     return made;
   }
 

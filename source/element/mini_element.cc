@@ -17,16 +17,31 @@ namespace retroforge
       for (unsigned int c = 0; c < 4; ++c)
         g_bar[c] += times(total, V[c]) + 4. * times(eps_bar[c], beta);
     }
+
+    /// And the derivatives in the velocities.
+    void add_unknowns_pullback(const CellGeometry<double> &geometry,
+                               const PointRates<double>   &eps_bar,
+                               CellValues<double>         &w_bar)
+    {
+      const Symmetric<double> total = sum(eps_bar);
+      for (unsigned int c = 0; c < 4; ++c)
+      {
+        w_bar.V[c] += times(total, geometry.g[c]);
+        w_bar.beta += 4. * times(eps_bar[c], geometry.g[c]);
+      }
+    }
   } // namespace
 
-#define RETROFORGE_INSTANTIATE(Number)                                                      \
-  template Number cell_functional(                                                          \
-    const CellGeometry<Number> &, const CellValues<Number> &, const MaterialLaw<Number> &); \
-  template CellValues<Number> cell_residual(                                                \
-    const CellGeometry<Number> &, const CellValues<Number> &, const MaterialLaw<Number> &); \
-  template Number cell_dissipation(                                                         \
-    const CellGeometry<Number> &, const CellValues<Number> &, const MaterialLaw<Number> &); \
-  template Number cell_strain_rate(const CellGeometry<Number> &, const CellValues<Number> &);
+#define RETROFORGE_INSTANTIATE(Number)                                                                   \
+  template Number cell_functional(                                                                       \
+    const CellGeometry<Number> &, const CellValues<Number> &, const MaterialLaw<Number> &);              \
+  template CellValues<Number> cell_residual(                                                             \
+    const CellGeometry<Number> &, const CellValues<Number> &, const MaterialLaw<Number> &);              \
+  template Number cell_dissipation(                                                                      \
+    const CellGeometry<Number> &, const CellValues<Number> &, const MaterialLaw<Number> &);              \
+  template Number            cell_strain_rate(const CellGeometry<Number> &, const CellValues<Number> &); \
+  template Symmetric<Number> cell_deviatoric_stress(                                                     \
+    const CellGeometry<Number> &, const CellValues<Number> &, const MaterialLaw<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE
@@ -44,15 +59,26 @@ namespace retroforge
   {
     const PointRates<double> E =
       reverse_mean_equivalent_rate(SubStrainRates<double>(geometry, w.V, w.beta).eps, weight);
-    const Symmetric<double> E_sum = sum(E);
-    Four<Vec3>              g_bar = {};
-    for (unsigned int c = 0; c < 4; ++c)
-    {
-      w_bar.V[c] += times(E_sum, geometry.g[c]);
-      w_bar.beta += 4. * times(E[c], geometry.g[c]);
-    }
+    add_unknowns_pullback(geometry, E, w_bar);
+    Four<Vec3> g_bar = {};
     add_strain_pullback(E, w.V, w.beta, g_bar);
     reverse_cell_geometry(geometry, 0., g_bar, X_bar);
+  }
+
+  CellSensitivity reverse_cell_deviatoric_stress(const CellGeometry<double> &geometry,
+                                                 const CellValues<double>   &w,
+                                                 const MaterialLaw<double>  &law,
+                                                 const Symmetric<double>    &s_bar,
+                                                 CellValues<double>         &w_bar)
+  {
+    CellSensitivity          bar;
+    const PointRates<double> E =
+      reverse_mean_deviatoric_stress(SubStrainRates<double>(geometry, w.V, w.beta).eps, law, s_bar, bar.law);
+    add_unknowns_pullback(geometry, E, w_bar);
+    Four<Vec3> g_bar = {};
+    add_strain_pullback(E, w.V, w.beta, g_bar);
+    reverse_cell_geometry(geometry, 0., g_bar, bar.X);
+    return bar;
   }
 
   CellSensitivity reverse_cell_residual(const CellGeometry<double> &geometry,
@@ -92,12 +118,7 @@ namespace retroforge
     CellSensitivity              bar;
     const PointDissipation       dissipation =
       reverse_dissipation(rates.eps, law, 0.25 * geometry.volume * weight, bar.law);
-    const Symmetric<double> eps_bar_sum = sum(dissipation.eps_bar);
-    for (unsigned int c = 0; c < 4; ++c)
-    {
-      w_bar.V[c] += times(eps_bar_sum, geometry.g[c]);
-      w_bar.beta += 4. * times(dissipation.eps_bar[c], geometry.g[c]);
-    }
+    add_unknowns_pullback(geometry, dissipation.eps_bar, w_bar);
     Four<Vec3> g_bar = {};
     add_strain_pullback(dissipation.eps_bar, w.V, w.beta, g_bar);
     reverse_cell_geometry(geometry, dissipation.value / geometry.volume, g_bar, bar.X);

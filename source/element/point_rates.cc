@@ -18,22 +18,25 @@ namespace retroforge
     return eps_bar;
   }
 
-  Symmetric<double> mean_deviatoric_stress(const PointRates<double> &eps, const MaterialLaw<double> &law)
+  PointRates<double> reverse_mean_deviatoric_stress(const PointRates<double>  &eps,
+                                                    const MaterialLaw<double> &law,
+                                                    Symmetric<double>          s_bar,
+                                                    MaterialLaw<double>       &law_bar)
   {
-    Symmetric<double> s{};
-    for (const auto &e : eps)
+    remove_trace(s_bar);
+    PointRates<double> eps_bar = {};
+    for (unsigned int a = 0; a < 4; ++a)
     {
-      const double eps2 = double_contraction(e, e);
-      if (eps2 == 0.) // the factor of a law without e0 is infinite there
+      const double eps2 = double_contraction(eps[a], eps[a]);
+      if (eps2 == 0.)
         continue;
-      const double factor = 0.25 * law(eps2);
+      const double factor = 0.25 * law(eps2), product = double_contraction(eps[a], s_bar);
+      const double slope = law.slope(eps2);
       for (unsigned int k = 0; k < 6; ++k)
-        s[k] += factor * e[k];
+        eps_bar[a][k] = factor * (s_bar[k] + 2. * slope * product * eps[a][k]);
+      law.reverse(eps2, factor * product, law_bar);
     }
-    const double mean = trace(s) / 3.;
-    for (unsigned int k = 0; k < 3; ++k)
-      s[k] -= mean;
-    return s;
+    return eps_bar;
   }
 
   StressPower reverse_stress_power(const PointRates<double>  &eps,

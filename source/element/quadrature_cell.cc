@@ -163,27 +163,29 @@ namespace retroforge
       X_bar[c] += bar.X[c];
   }
 
+  // The mean's denominator moves, too, as that of the strain rate's.
   template <int dim>
-  Symmetric<double> cell_deviatoric_stress(const QuadratureGeometry<dim, double> &geometry,
-                                           const QuadratureValues<dim, double>   &w,
-                                           const MaterialLaw<double>             &law)
+  QuadratureSensitivity<dim> reverse_cell_deviatoric_stress(const QuadratureGeometry<dim, double> &geometry,
+                                                            const QuadratureValues<dim, double>   &w,
+                                                            const MaterialLaw<double>             &law,
+                                                            Symmetric<double>                      s_bar,
+                                                            QuadratureValues<dim, double>         &w_bar)
   {
-    const ReferenceElement<dim> &element = *geometry.element;
-    Symmetric<double>            mean    = {};
-    const double                 volume  = cell_volume(geometry);
-    for (unsigned int q = 0; q < element.n_points(); ++q)
-    {
-      const PointFlow<dim, double> state = state_at(geometry, w, q);
-      const PointMap<dim, double>  map(state, element.kinematics());
-      const Symmetric<double>      eps = strain_rate(map, state);
-      if (double_contraction(eps, eps) == 0.) // the factor of a law without e0 is infinite there
-        continue;
-      const Symmetric<double> s = point_stress(eps, law);
-      for (unsigned int k = 0; k < 6; ++k)
-        mean[k] += element.weight(q) * map.volume / volume * s[k];
-    }
-    remove_trace(mean);
-    return mean;
+    remove_trace(s_bar);
+    const double              volume = cell_volume(geometry);
+    const double              mean   = double_contraction(cell_deviatoric_stress(geometry, w, law), s_bar);
+    Symmetric<PointDual<dim>> bar;
+    for (unsigned int k = 0; k < 6; ++k)
+      bar[k] = s_bar[k];
+    const auto difference =
+      [&](const auto &map, const auto &state, const auto &x_law, unsigned int) -> PointDual<dim> {
+      const auto     eps  = strain_rate(map, state);
+      PointDual<dim> less = -mean;
+      if (value_of(double_contraction(eps, eps)) != 0.)
+        less += double_contraction(point_stress(eps, x_law), bar);
+      return less / volume;
+    };
+    return reverse_sum_over_points(geometry, w, law, difference, w_bar);
   }
 
   template <int dim>
@@ -203,19 +205,22 @@ namespace retroforge
     return eps;
   }
 
-#define RETROFORGE_INSTANTIATE_VALUES(dim, Number)                                                 \
-  template Number                        cell_volume(const QuadratureGeometry<dim, Number> &);     \
-  template Number                        cell_functional(const QuadratureGeometry<dim, Number> &,  \
-                                                         const QuadratureValues<dim, Number> &,    \
-                                                         const MaterialLaw<Number> &);             \
-  template QuadratureValues<dim, Number> cell_residual(const QuadratureGeometry<dim, Number> &,    \
-                                                       const QuadratureValues<dim, Number> &,      \
-                                                       const MaterialLaw<Number> &);               \
-  template Number                        cell_dissipation(const QuadratureGeometry<dim, Number> &, \
-                                                          const QuadratureValues<dim, Number> &,   \
-                                                          const MaterialLaw<Number> &);            \
-  template Number                        cell_strain_rate(const QuadratureGeometry<dim, Number> &, \
-                                                          const QuadratureValues<dim, Number> &);
+#define RETROFORGE_INSTANTIATE_VALUES(dim, Number)                                                       \
+  template Number                        cell_volume(const QuadratureGeometry<dim, Number> &);           \
+  template Number                        cell_functional(const QuadratureGeometry<dim, Number> &,        \
+                                                         const QuadratureValues<dim, Number> &,          \
+                                                         const MaterialLaw<Number> &);                   \
+  template QuadratureValues<dim, Number> cell_residual(const QuadratureGeometry<dim, Number> &,          \
+                                                       const QuadratureValues<dim, Number> &,            \
+                                                       const MaterialLaw<Number> &);                     \
+  template Number                        cell_dissipation(const QuadratureGeometry<dim, Number> &,       \
+                                                          const QuadratureValues<dim, Number> &,         \
+                                                          const MaterialLaw<Number> &);                  \
+  template Number                        cell_strain_rate(const QuadratureGeometry<dim, Number> &,       \
+                                                          const QuadratureValues<dim, Number> &);        \
+  template Symmetric<Number>             cell_deviatoric_stress(const QuadratureGeometry<dim, Number> &, \
+                                                                const QuadratureValues<dim, Number> &,   \
+                                                                const MaterialLaw<Number> &);
 #define RETROFORGE_INSTANTIATE(dim)                                                                     \
   RETROFORGE_INSTANTIATE_VALUES(dim, double)                                                            \
   RETROFORGE_INSTANTIATE_VALUES(dim, Dual)                                                              \
@@ -238,9 +243,12 @@ namespace retroforge
                                                                double,                                  \
                                                                QuadratureValues<dim, double> &,         \
                                                                CellVectors<dim, double> &);             \
-  template Symmetric<double>          cell_deviatoric_stress(const QuadratureGeometry<dim, double> &,   \
-                                                             const QuadratureValues<dim, double> &,     \
-                                                             const MaterialLaw<double> &);              \
+  template QuadratureSensitivity<dim> reverse_cell_deviatoric_stress(                                   \
+    const QuadratureGeometry<dim, double> &,                                                            \
+    const QuadratureValues<dim, double> &,                                                              \
+    const MaterialLaw<double> &,                                                                        \
+    Symmetric<double>,                                                                                  \
+    QuadratureValues<dim, double> &);                                                                   \
   template std::array<Symmetric<double>, dim + 1> corner_strain_rates(                                  \
     const QuadratureGeometry<dim, double> &, const QuadratureValues<dim, double> &);
   RETROFORGE_INSTANTIATE(2)

@@ -17,14 +17,16 @@ namespace retroforge
     }
   } // namespace
 
-#define RETROFORGE_INSTANTIATE(Number)                                                            \
-  template Number cell_functional(                                                                \
-    const CellGeometry<Number> &, const TaylorHoodValues<Number> &, const MaterialLaw<Number> &); \
-  template TaylorHoodValues<Number> cell_residual(                                                \
-    const CellGeometry<Number> &, const TaylorHoodValues<Number> &, const MaterialLaw<Number> &); \
-  template Number cell_dissipation(                                                               \
-    const CellGeometry<Number> &, const TaylorHoodValues<Number> &, const MaterialLaw<Number> &); \
-  template Number cell_strain_rate(const CellGeometry<Number> &, const TaylorHoodValues<Number> &);
+#define RETROFORGE_INSTANTIATE(Number)                                                                         \
+  template Number cell_functional(                                                                             \
+    const CellGeometry<Number> &, const TaylorHoodValues<Number> &, const MaterialLaw<Number> &);              \
+  template TaylorHoodValues<Number> cell_residual(                                                             \
+    const CellGeometry<Number> &, const TaylorHoodValues<Number> &, const MaterialLaw<Number> &);              \
+  template Number cell_dissipation(                                                                            \
+    const CellGeometry<Number> &, const TaylorHoodValues<Number> &, const MaterialLaw<Number> &);              \
+  template Number            cell_strain_rate(const CellGeometry<Number> &, const TaylorHoodValues<Number> &); \
+  template Symmetric<Number> cell_deviatoric_stress(                                                           \
+    const CellGeometry<Number> &, const TaylorHoodValues<Number> &, const MaterialLaw<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE
@@ -48,11 +50,20 @@ namespace retroforge
     reverse_cell_geometry(geometry, 0., g_bar, X_bar);
   }
 
-  Symmetric<double> cell_deviatoric_stress(const CellGeometry<double>     &geometry,
-                                           const TaylorHoodValues<double> &w,
-                                           const MaterialLaw<double>      &law)
+  CellSensitivity reverse_cell_deviatoric_stress(const CellGeometry<double>     &geometry,
+                                                 const TaylorHoodValues<double> &w,
+                                                 const MaterialLaw<double>      &law,
+                                                 const Symmetric<double>        &s_bar,
+                                                 TaylorHoodValues<double>       &w_bar)
   {
-    return mean_deviatoric_stress(TaylorHoodRates<double>(geometry, w.V).eps, law);
+    const TaylorHoodRates<double> rates(geometry, w.V);
+    CellSensitivity               bar;
+    const PointRates<double>      eps_bar = reverse_mean_deviatoric_stress(rates.eps, law, s_bar, bar.law);
+    Four<Vec3>                    g_bar   = {};
+    add_velocity_pullback(geometry, eps_bar, w_bar.V);
+    add_gradient_pullback(eps_bar, rates.U, g_bar);
+    reverse_cell_geometry(geometry, 0., g_bar, bar.X);
+    return bar;
   }
 
   CellSensitivity reverse_cell_residual(const CellGeometry<double>     &geometry,

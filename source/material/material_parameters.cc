@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/csv_table.h>
+#include <retroforge/core/enum_setting.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/core/number_checks.h>
@@ -62,6 +63,14 @@ namespace retroforge
       "Temperature of the billet before the stroke, which laws that follow it need. Empty: not "
       "given. Units: C.",
       dealii::Patterns::Anything());
+    add_enum<Damage>(
+      prm,
+      "damage",
+      damage,
+      {{"none", Damage::none}, {"Latham-Cockcroft", Damage::latham_cockcroft}},
+      "Damage that the metal collects, for the objective `damage' and pictures; it weakens nothing. "
+      "Latham-Cockcroft: the integral of max(sigma_1, 0)/sigma_0 over the strain, sigma_1 the largest "
+      "principal stress and sigma_0 the flow stress. Units: none.");
     prm.leave_subsection();
     tag(prm, "Material", SettingRole::scene);
     tag(prm, "Material/table", SettingTags::Files::one);
@@ -151,6 +160,7 @@ namespace retroforge
   {
     Material<double> metal(law);
     metal.type               = find_material_type(type, "Material/law");
+    metal.damage             = static_cast<unsigned int>(damage);
     const MaterialType &sort = material_type(metal.type);
     metal.numbers            = ordered(numbers, sort.info(), type);
     if (law.e0 == 0.)

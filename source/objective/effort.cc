@@ -93,6 +93,13 @@ namespace retroforge
     return value_of(high) > value_of(low) ? Number(high - low) : Number(0.);
   }
 
+  template <typename Number>
+  Number PathWindow::time_inside(const PathRow<Number> &row) const
+  {
+    const Number length = overlap(row);
+    return over == Over::time || row.step == 0. ? length : Number(row.dt * length / row.step);
+  }
+
   namespace
   {
     /// The speed is no sum: one rank has it.
@@ -269,6 +276,7 @@ namespace retroforge
 
 #define RETROFORGE_INSTANTIATE(Number)                                                               \
   template Number              PathWindow::overlap(const PathRow<Number> &) const;                   \
+  template Number              PathWindow::time_inside(const PathRow<Number> &) const;               \
   template std::vector<Number> Effort::terms(const EquilibriumView<Number> &) const;                 \
   template Number              Effort::force(const std::vector<Number> &) const;                     \
   template std::vector<Number> MeanEffort::compute_integrals(const EquilibriumView<Number> &) const; \

@@ -19,6 +19,7 @@ namespace retroforge
       : X(view.scene.mesh.n_nodes())
       , q(view.scene.mesh.n_cells(), 0.)
       , T(view.T != nullptr ? view.scene.mesh.n_nodes() : 0, 0.)
+      , damage(view.damage != nullptr ? view.scene.mesh.n_cells() : 0, 0.)
       , target(n_target_vertices(view, target_die))
       , dies(no_derivatives(view.scene.dies))
   {

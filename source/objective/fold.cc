@@ -218,30 +218,21 @@ namespace retroforge
     template <typename Fold>
     struct FoldType : ObjectiveType
     {
-      double      exponent = 4.;
-      BoxSettings box;
-      double      edge = 1.;
+      double         exponent = 4.;
+      RegionSettings region;
 
       void add_parameters(dealii::ParameterHandler &prm) override
       {
         prm.add_parameter(
           "exponent", exponent, "alpha of the fold indicators. Units: none.", dealii::Patterns::Double(0.));
-        box.add_parameters(prm);
-        prm.add_parameter("region edge",
-                          edge,
-                          "Width over which what folds outside of the box ceases to count. Units: mm.",
-                          dealii::Patterns::Double(1e-300));
+        region.add_parameters(prm);
       }
 
       void make(const std::string &where, const ObjectiveContext &, NamedObjective &objective) const override
       {
         objective.scaling =
           std::is_same_v<Fold, FoldObjective> ? SymmetryScaling::part : SymmetryScaling::none;
-        const auto                  corners = box.make(where);
-        std::optional<SmoothRegion> region;
-        if (corners)
-          region = SmoothRegion{*corners, edge};
-        objective.path = std::make_unique<Fold>(exponent, region);
+        objective.path = std::make_unique<Fold>(exponent, region.make(where));
       }
     };
   } // namespace

@@ -38,7 +38,8 @@ namespace retroforge
 
   void DieSetting::add_parameters(dealii::ParameterHandler &prm)
   {
-    prm.add_parameter("die", name, "Of an effort or contact pressure; empty: the leading die. Units: none.");
+    prm.add_parameter(
+      "die", name, "Of an effort, contact pressure or wear; empty: the leading die. Units: none.");
   }
 
   unsigned int DieSetting::find(const std::string &where, const ObjectiveContext &context) const
@@ -64,7 +65,7 @@ namespace retroforge
                    "window over",
                    over,
                    {{"stroke", Over::stroke}, {"time", Over::time}},
-                   "The part of the run over which an effort is taken is one of stroke or of time. "
+                   "The part of the run over which an objective is taken is one of stroke or of time. "
                    "Units: none.");
     prm.add_parameter("window begin", begin, "Units: mm or s.", dealii::Patterns::Double(0.));
     prm.add_parameter(
@@ -111,11 +112,12 @@ namespace retroforge
 
   void BoxSettings::add_parameters(dealii::ParameterHandler &prm)
   {
-    prm.add_parameter("region from",
-                      from,
-                      "Lower corner of the box in which folds are looked for, or shapes compared; equal "
-                      "corners: everywhere, or what lies behind the mouth of a die for its unfilled volume. "
-                      "Units: mm.");
+    prm.add_parameter(
+      "region from",
+      from,
+      "Lower corner of the box in which folds and stresses are looked for, or shapes compared; equal "
+      "corners: everywhere, or what lies behind the mouth of a die for its unfilled volume. "
+      "Units: mm.");
     prm.add_parameter("region to", to, "Upper corner. Units: mm.");
   }
 
@@ -130,6 +132,22 @@ namespace retroforge
                     "the two are the lower and the upper corner of a box",
                     "give the lower coordinates first");
     return Box(from, to);
+  }
+
+  void RegionSettings::add_parameters(dealii::ParameterHandler &prm)
+  {
+    box.add_parameters(prm);
+    prm.add_parameter("region edge",
+                      edge,
+                      "Width over which what lies outside of the box ceases to count, of an objective of the "
+                      "path. Units: mm.",
+                      dealii::Patterns::Double(1e-300));
+  }
+
+  std::optional<SmoothRegion> RegionSettings::make(const std::string &where) const
+  {
+    const auto corners = box.make(where);
+    return corners ? std::optional(SmoothRegion{*corners, edge}) : std::nullopt;
   }
 
   void TargetSettings::add_parameters(dealii::ParameterHandler &prm)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/objective/contact_pressure.h>
+#include <retroforge/objective/damage_statistics.h>
+#include <retroforge/objective/die_wear.h>
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>
 #include <retroforge/objective/filling.h>
@@ -9,6 +11,7 @@
 #include <retroforge/objective/radius.h>
 #include <retroforge/objective/shape_distance.h>
 #include <retroforge/objective/strain_statistics.h>
+#include <retroforge/objective/stress_maxima.h>
 #include <retroforge/objective/temperatures.h>
 #include <retroforge/objective/unfilled_volume.h>
 #include <retroforge/objective/volume.h>
@@ -23,6 +26,10 @@ namespace retroforge
                                                         fold_type(),
                                                         dimensionless_fold_type(),
                                                         contact_pressure_type(),
+                                                        largest_hydrostatic_pressure_type(),
+                                                        largest_shear_type(),
+                                                        die_wear_type(),
+                                                        damage_type(),
                                                         filling_type(),
                                                         unfilled_volume_type(),
                                                         shape_distance_type(),

@@ -22,6 +22,7 @@ namespace retroforge
     const CellFields           &cells; ///< where V and P are an equilibrium
     const std::vector<double>  &strain;
     const std::vector<double>  &temperature;  ///< empty: not followed
+    const std::vector<double>  &damage;       ///< empty: not followed
     const NodalVectors<double> *displacement; ///< null: unknown
     const ContactFields        *contact;      ///< null: unknown
   };
@@ -97,8 +98,12 @@ namespace retroforge
     picture.add_constant("equivalent_strain", "", workpiece.strain);
     if (!workpiece.temperature.empty())
       picture.add_linear("temperature", "C", workpiece.temperature);
+    if (!workpiece.damage.empty())
+      picture.add_constant("damage", "", workpiece.damage);
     picture.add_constant("strain_rate", "1/s", cells.strain_rate);
     picture.add_constant("von_mises_stress", "MPa", cells.von_mises);
+    if (process_.material.depends_on_state())
+      picture.add_constant("flow_stress", "MPa", cells.flow_stress);
     picture.add_constant("deviatoric_stress", "MPa", cells.stress);
     picture.add_symmetry_planes(symmetry_planes(mesh));
     picture.write(directory_ + "/" + file);
@@ -153,6 +158,7 @@ namespace retroforge
            cells,
            strain,
            before.temperature,
+           before.damage,
            &still,
            &contact});
   }
@@ -192,6 +198,7 @@ namespace retroforge
              cells,
              run.workpiece.strain,
              run.workpiece.temperature,
+             run.workpiece.damage,
              &displacement_,
              &contact});
     }
@@ -229,6 +236,7 @@ namespace retroforge
            cells,
            state.workpiece.strain,
            state.workpiece.temperature,
+           state.workpiece.damage,
            displacement,
            nullptr});
     add_step({state.stroke, 0., state.operation}, "failed.vtu", "failed", state.workpiece.X);

@@ -61,7 +61,9 @@ namespace retroforge
   template <typename Number>
   void MemberTransfer<Number>::operator()(const CellField<Number> &q, CellField<Number> &to) const
   {
-    to = transfer_cells<Number>(old_mesh, X, remesh.transfer, remesh.mesh, q);
+    to = q;
+    if (!q.empty())
+      to = transfer_cells<Number>(old_mesh, X, remesh.transfer, remesh.mesh, q);
   }
 
   template struct MemberTransfer<double>;
@@ -110,7 +112,7 @@ namespace retroforge
                                          const CellField<double> &q_bar,
                                          CellField<double>       &to) const
   {
-    to.assign(old_mesh.n_cells(), 0.);
+    to.assign(q_bar.empty() ? 0 : old_mesh.n_cells(), 0.);
     if (!is_zero(q_bar))
       reverse_transfer_cells(old_mesh, X, remesh.transfer, remesh.mesh, q, q_bar, to, X_bar);
   }

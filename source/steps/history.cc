@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/discretization/strain_history.h>
+#include <retroforge/steps/damage.h>
 #include <retroforge/steps/history.h>
 #include <retroforge/steps/warming.h>
 
@@ -15,6 +16,8 @@ namespace retroforge
     complete_entries(discretization.cells(), state.strain.data(), 1);
     if (!state.temperature.empty())
       add_warming(view, dt, state.temperature);
+    if (!state.damage.empty())
+      add_damage(view, dt, state.damage);
   }
 
   template void add_history(const EquilibriumView<double> &, const double &, WorkpieceState<3, double> &);
@@ -27,6 +30,8 @@ namespace retroforge
   {
     if (!is_zero(costate.temperature))
       reverse_add_warming(view, dt, costate.temperature, bar);
+    if (!is_zero(costate.damage))
+      reverse_add_damage(view, dt, costate.damage, bar);
     if (is_zero(costate.strain))
       return;
     bar.physics.dt += view.weight * reverse_accumulate_strain(view.stage.scene.discretization,
@@ -57,6 +62,7 @@ namespace retroforge
     if (!process.material.depends_on_state())
       return;
     states_.push_back(without_motion(state));
+    states_.back().damage.clear(); // no law follows it
     points_.push_back(point_states(scene.mesh, initial_, states_.back()));
   }
 

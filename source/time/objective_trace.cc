@@ -45,7 +45,8 @@ namespace retroforge
             workpiece.strain,
             dies,
             moved ? &dies[d].vertices : nullptr,
-            workpiece.temperature.empty() ? nullptr : &workpiece.temperature};
+            workpiece.temperature.empty() ? nullptr : &workpiece.temperature,
+            workpiece.damage.empty() ? nullptr : &workpiece.damage};
   }
 
   template FinalView<double> final_view(const FinalObjective &,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/element/cell_geometry.h>
+#include <retroforge/element/point_rates.h>
 #include <retroforge/element/tangent_pack.h>
 
 /// @file
@@ -59,6 +60,22 @@ namespace retroforge
                                 double                      weight,
                                 CellValues<double>         &w_bar,
                                 Four<Vec3>                 &X_bar);
+
+  /// Deviatoric stress of the cell [MPa]: the mean over the four sub-tetrahedra, of equal volume, of the law's
+  /// s_a = 2 K chi_a^((m-1)/2) eps_a, without the trace that is left where the discrete flow is not quite
+  /// incompressible.
+  template <typename Number>
+  Symmetric<Number> cell_deviatoric_stress(const CellGeometry<Number> &geometry,
+                                           const CellValues<Number>   &w,
+                                           const MaterialLaw<Number>  &law);
+
+  /// Adds the derivatives of  s_bar : cell_deviatoric_stress  in the unknowns to w_bar and returns those in X
+  /// and the law.
+  CellSensitivity reverse_cell_deviatoric_stress(const CellGeometry<double> &geometry,
+                                                 const CellValues<double>   &w,
+                                                 const MaterialLaw<double>  &law,
+                                                 const Symmetric<double>    &s_bar,
+                                                 CellValues<double>         &w_bar);
 
   /// Derivative of lambda·cell_residual in X and the law at fixed unknowns: one closed-form sweep, no matrix.
   CellSensitivity reverse_cell_residual(const CellGeometry<double> &geometry,

@@ -97,4 +97,12 @@ namespace retroforge
   {
     return mean_equivalent_rate(SubStrainRates<Number>(geometry, w.V, w.beta).eps);
   }
+
+  template <typename Number>
+  Symmetric<Number> cell_deviatoric_stress(const CellGeometry<Number> &geometry,
+                                           const CellValues<Number>   &w,
+                                           const MaterialLaw<Number>  &law)
+  {
+    return mean_deviatoric_stress(SubStrainRates<Number>(geometry, w.V, w.beta).eps, law);
+  }
 } // namespace retroforge

@@ -42,9 +42,10 @@ namespace retroforge
   }
 
   /// Subtracts the mean of the diagonal.
-  inline void remove_trace(Symmetric<double> &e)
+  template <typename Number>
+  void remove_trace(Symmetric<Number> &e)
   {
-    const double mean = trace(e) / 3.;
+    const Number mean = trace(e) / 3.;
     for (unsigned int k = 0; k < 3; ++k)
       e[k] -= mean;
   }
@@ -141,8 +142,32 @@ namespace retroforge
   PointRates<double> reverse_mean_equivalent_rate(const PointRates<double> &eps, double weight);
 
   /// Mean of the points' stresses without the trace that is left where the discrete flow is not quite
-  /// incompressible [MPa].
-  Symmetric<double> mean_deviatoric_stress(const PointRates<double> &eps, const MaterialLaw<double> &law);
+  /// incompressible [MPa]. Points at rest have none, and no derivative: the factor of a law without e0 is
+  /// infinite there.
+  template <typename Number>
+  Symmetric<Number> mean_deviatoric_stress(const PointRates<Number> &eps, const MaterialLaw<Number> &law)
+  {
+    Symmetric<Number> s;
+    s.fill(Number(0.));
+    for (const auto &e : eps)
+    {
+      const Number eps2 = double_contraction(e, e);
+      if (value_of(eps2) == 0.)
+        continue;
+      const Number factor = 0.25 * law(eps2);
+      for (unsigned int k = 0; k < 6; ++k)
+        s[k] += factor * e[k];
+    }
+    remove_trace(s);
+    return s;
+  }
+
+  /// Derivatives of  s_bar : mean_deviatoric_stress  in eps.
+  /// @param law_bar  the derivatives in the law's numbers are added to it
+  PointRates<double> reverse_mean_deviatoric_stress(const PointRates<double>  &eps,
+                                                    const MaterialLaw<double> &law,
+                                                    Symmetric<double>          s_bar,
+                                                    MaterialLaw<double>       &law_bar);
 
   /// weight * sum of s(eps):eta over the points, with its derivatives.
   struct StressPower

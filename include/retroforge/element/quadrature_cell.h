@@ -123,10 +123,19 @@ namespace retroforge
 
   /// Mean over the volume of the stress s, without the trace that is left where the discrete flow is not
   /// quite incompressible [MPa].
+  template <int dim, typename Number>
+  Symmetric<Number> cell_deviatoric_stress(const QuadratureGeometry<dim, Number> &geometry,
+                                           const QuadratureValues<dim, Number>   &w,
+                                           const MaterialLaw<Number>             &law);
+
+  /// Adds the derivatives of  s_bar : cell_deviatoric_stress  in the unknowns to w_bar and returns those in X
+  /// and the law.
   template <int dim>
-  Symmetric<double> cell_deviatoric_stress(const QuadratureGeometry<dim, double> &geometry,
-                                           const QuadratureValues<dim, double>   &w,
-                                           const MaterialLaw<double>             &law);
+  QuadratureSensitivity<dim> reverse_cell_deviatoric_stress(const QuadratureGeometry<dim, double> &geometry,
+                                                            const QuadratureValues<dim, double>   &w,
+                                                            const MaterialLaw<double>             &law,
+                                                            Symmetric<double>                      s_bar,
+                                                            QuadratureValues<dim, double>         &w_bar);
 
   /// Strain rates eps [1/s] at the vertices, without the bubble: on the axis that around it is that across
   /// it.

@@ -255,6 +255,30 @@ namespace retroforge
   }
 
   template <int dim, typename Number>
+  Symmetric<Number> cell_deviatoric_stress(const QuadratureGeometry<dim, Number> &geometry,
+                                           const QuadratureValues<dim, Number>   &w,
+                                           const MaterialLaw<Number>             &law)
+  {
+    const ReferenceElement<dim> &element = *geometry.element;
+    const Number                 volume  = cell_volume(geometry);
+    Symmetric<Number>            mean;
+    mean.fill(Number(0.));
+    for (unsigned int q = 0; q < element.n_points(); ++q)
+    {
+      const PointFlow<dim, Number> state = state_at(geometry, w, q);
+      const PointMap<dim, Number>  map(state, element.kinematics());
+      const Symmetric<Number>      eps = strain_rate(map, state);
+      if (value_of(double_contraction(eps, eps)) == 0.) // the factor of a law without e0 is infinite there
+        continue;
+      const Symmetric<Number> s = point_stress(eps, law);
+      for (unsigned int k = 0; k < 6; ++k)
+        mean[k] += element.weight(q) * map.volume / volume * s[k];
+    }
+    remove_trace(mean);
+    return mean;
+  }
+
+  template <int dim, typename Number>
   QuadratureValues<dim, Number> cell_residual(const QuadratureGeometry<dim, Number> &geometry,
                                               const QuadratureValues<dim, Number>   &w,
                                               const MaterialLaw<Number>             &law)

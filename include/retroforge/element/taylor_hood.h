@@ -68,9 +68,18 @@ namespace retroforge
 
   /// Mean over the four points of the stress s, without the trace that is left where the discrete flow is not
   /// quite incompressible [MPa].
-  Symmetric<double> cell_deviatoric_stress(const CellGeometry<double>     &geometry,
-                                           const TaylorHoodValues<double> &w,
-                                           const MaterialLaw<double>      &law);
+  template <typename Number>
+  Symmetric<Number> cell_deviatoric_stress(const CellGeometry<Number>     &geometry,
+                                           const TaylorHoodValues<Number> &w,
+                                           const MaterialLaw<Number>      &law);
+
+  /// Adds the derivatives of  s_bar : cell_deviatoric_stress  in the unknowns to w_bar and returns those in X
+  /// and the law.
+  CellSensitivity reverse_cell_deviatoric_stress(const CellGeometry<double>     &geometry,
+                                                 const TaylorHoodValues<double> &w,
+                                                 const MaterialLaw<double>      &law,
+                                                 const Symmetric<double>        &s_bar,
+                                                 TaylorHoodValues<double>       &w_bar);
 
   /// Derivative of lambda·cell_residual in X and the law at fixed unknowns: one closed-form sweep, no matrix.
   CellSensitivity reverse_cell_residual(const CellGeometry<double>     &geometry,

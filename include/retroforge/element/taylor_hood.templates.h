@@ -132,4 +132,12 @@ namespace retroforge
   {
     return mean_equivalent_rate(TaylorHoodRates<Number>(geometry, w.V).eps);
   }
+
+  template <typename Number>
+  Symmetric<Number> cell_deviatoric_stress(const CellGeometry<Number>     &geometry,
+                                           const TaylorHoodValues<Number> &w,
+                                           const MaterialLaw<Number>      &law)
+  {
+    return mean_deviatoric_stress(TaylorHoodRates<Number>(geometry, w.V).eps, law);
+  }
 } // namespace retroforge

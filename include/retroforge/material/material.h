@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/material/damage_law.h>
 #include <retroforge/material/flow_table.h>
 #include <retroforge/material/material_law.h>
 
@@ -35,7 +36,8 @@ namespace retroforge
     std::vector<Number> numbers;  ///< further numbers of its type, by MaterialType::info
     PointState<Number>  initial;  ///< the metal's before the stroke
     unsigned int        type = 0; ///< sort of metal, as material_type() counts them; 0: Norton-Hoff
-    std::shared_ptr<const FlowTable> table = {}; ///< of a sort that has one
+    std::shared_ptr<const FlowTable> table  = {}; ///< of a sort that has one
+    unsigned int                     damage = 0;  ///< a Damage
 
     Material() = default;
     Material(const MaterialLaw<Number> &law) : law(law) {}
@@ -43,8 +45,8 @@ namespace retroforge
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[law, numbers, initial, type, table] = self;
-      return std::tie(law, numbers, initial, type, table);
+      auto &[law, numbers, initial, type, table, damage] = self;
+      return std::tie(law, numbers, initial, type, table, damage);
     }
 
     /// Returns how users know its numbers, those of the law and those beyond, in their order.
@@ -52,6 +54,9 @@ namespace retroforge
 
     /// Tells whether the law at a point depends on the state there.
     bool depends_on_state() const;
+
+    /// Tells whether the workpiece has a damage in each cell.
+    bool is_damaged() const { return damage != static_cast<unsigned int>(Damage::none); }
 
     /// Tells whether the stress depends on the number with a name of info().
     bool depends_on(const std::string &name) const;

@@ -17,6 +17,7 @@ namespace retroforge
     std::map<std::string, double> numbers;     ///< further numbers of the type, by name
     std::string                   table;       ///< file of the type `table`
     std::string                   temperature; ///< of the billet before the stroke [C]; empty: not given
+    Damage                        damage = Damage::none;
 
     void add_parameters(dealii::ParameterHandler &prm);
 

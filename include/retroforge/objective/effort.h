@@ -33,6 +33,10 @@ namespace retroforge
     /// Returns the length of the increment's part inside [s or mm].
     template <typename Number>
     Number overlap(const PathRow<Number> &row) const;
+
+    /// Returns the time of the increment's part inside [s], in an increment of stroke by the share of its stroke.
+    template <typename Number>
+    Number time_inside(const PathRow<Number> &row) const;
   };
 
   /// The force of one increment [N].

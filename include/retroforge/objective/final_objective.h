@@ -29,6 +29,7 @@ namespace retroforge
     /// Vertices of the objective's target surface, where a derivative in them is wanted; null: its own.
     const NodalVectors<Number> *target = nullptr;
     const std::vector<Number>  *T      = nullptr; ///< temperatures of the nodes [C]; null: not followed
+    const std::vector<Number>  *damage = nullptr; ///< of each cell; null: not followed
   };
 
   /// What an objective decided on a workpiece, a value of the type T::Decisions of FinalObjectiveOf. Of lists
@@ -46,6 +47,7 @@ namespace retroforge
     NodalVectors<double> X;
     std::vector<double>  q;
     std::vector<double>  T;      ///< empty where temperatures are not followed
+    std::vector<double>  damage; ///< empty where it is not followed
     NodalVectors<double> target; ///< vertices of the target, where the view or a die has them; else empty
     /// Displacements, and vertices of dies that are not meant as the target.
     std::vector<DieState<double>> dies;
@@ -57,8 +59,8 @@ namespace retroforge
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[X, q, T, target, dies] = self;
-      return std::tie(X, q, T, target, dies);
+      auto &[X, q, T, damage, target, dies] = self;
+      return std::tie(X, q, T, damage, target, dies);
     }
   };
 

@@ -5,6 +5,7 @@
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/objective_type.h>
 #include <retroforge/objective/smooth_maximum.h>
+#include <retroforge/objective/smooth_region.h>
 #include <retroforge/objective/target_surface.h>
 
 #include <optional>
@@ -57,6 +58,17 @@ namespace retroforge
     void add_parameters(dealii::ParameterHandler &prm);
 
     std::optional<Box> make(const std::string &where) const;
+  };
+
+  /// A box with smooth edges that an objective of the path is restricted to, or none.
+  struct RegionSettings
+  {
+    BoxSettings box;
+    double      edge = 1.;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+
+    std::optional<SmoothRegion> make(const std::string &where) const;
   };
 
   /// A shape that the workpiece is compared with.

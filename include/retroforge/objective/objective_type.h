@@ -16,8 +16,9 @@ namespace retroforge
     double                               stroke;      ///< [mm]
     double                               consistency; ///< K, a stress of the size to expect [MPa]
     const TetMesh                       &billet;
-    FrictionRamp ramp;          ///< the friction ramp of contact, by which nodes begin to touch
-    bool         warms = false; ///< whether the workpiece has temperatures
+    FrictionRamp ramp;               ///< the friction ramp of contact, by which nodes begin to touch
+    bool         warms      = false; ///< whether the workpiece has temperatures
+    bool         is_damaged = false; ///< whether its damage is followed
   };
 
   /// A type of objective: its settings, and how an objective is made of them. doc/objectives.md says what

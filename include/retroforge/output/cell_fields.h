@@ -14,6 +14,7 @@ namespace retroforge
     std::vector<double>            strain_rate; ///< e = sqrt(2/3 eps:eps) [1/s]
     std::vector<double>            von_mises;   ///< sqrt(3/2 s:s) of the mean s [MPa]
     std::vector<Symmetric<double>> stress;      ///< s, the deviator [MPa]
+    std::vector<double>            flow_stress; ///< of the law at this strain rate [MPa]
   };
 
   /// Evaluates a flow cell by cell with the kernels that the discretisation assembles, so that a pair of

@@ -33,7 +33,7 @@ namespace retroforge
     }
   };
 
-  /// One number per cell. At a change of mesh it follows transfer_cells().
+  /// One number per cell, or none at all where it is not followed. At a change of mesh it follows transfer_cells().
   template <typename Number>
   struct CellField : std::vector<Number>
   {
@@ -53,12 +53,13 @@ namespace retroforge
     /// before the first increment of an operation.
     NodeVectorField<dim, Number> velocity;
     NodeField<Number>            temperature; ///< [C]; none where the metal keeps that before the stroke
+    CellField<Number>            damage;      ///< dimensionless; none where it is not followed
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[X, strain, velocity, temperature] = self;
-      return std::tie(X, strain, velocity, temperature);
+      auto &[X, strain, velocity, temperature, damage] = self;
+      return std::tie(X, strain, velocity, temperature, damage);
     }
   };
 
@@ -66,19 +67,22 @@ namespace retroforge
   template <int dim, typename Number>
   WorkpieceState<dim, Number> initial_state(NodalPositions<dim, Number> X, const std::size_t n_cells)
   {
-    return {std::move(X), CellField<Number>(n_cells, Number(0.)), {}, {}};
+    return {std::move(X), CellField<Number>(n_cells, Number(0.)), {}, {}, {}};
   }
 
   /// Returns zero derivatives in the state of a mesh.
-  /// @param warms  whether it has temperatures
+  /// @param warms    whether it has temperatures   @param damages  whether its damage is followed
   template <int dim>
-  WorkpieceState<dim, double>
-  zero_costate(const std::size_t n_nodes, const std::size_t n_cells, const bool warms = false)
+  WorkpieceState<dim, double> zero_costate(const std::size_t n_nodes,
+                                           const std::size_t n_cells,
+                                           const bool        warms   = false,
+                                           const bool        damages = false)
   {
     return {NodalPositions<dim, double>(n_nodes),
             CellField<double>(n_cells, 0.),
             NodeVectorField<dim, double>(n_nodes),
-            NodeField<double>(warms ? n_nodes : 0, 0.)};
+            NodeField<double>(warms ? n_nodes : 0, 0.),
+            CellField<double>(damages ? n_cells : 0, 0.)};
   }
 
   /// Returns what of a state does not follow from the velocities that are recorded: all but positions and

@@ -4,11 +4,11 @@
 // Objectives of the final shape and strain.
 // - By hand: a box of 2 x 3 x 4 has the volume 24; strain 0.3 everywhere has the mean 0.3, no variance and
 //   the maximum 0.3; strain 0.2 on part of the cells and 0.7 on the rest, of volume fraction f, has mean 0.2
-//   + 0.5 f and variance 0.25 f (1 - f). A cube of edge 1 within a target that is larger by d all round:
+//   + 0.5 f and variance 0.25 f (1 - f), and damage likewise. A cube of edge 1 within a target that is larger by d all round:
 //   every surface node is d away, every corner of the target sqrt(3) d, so the two projections give 6 d and
 //   sqrt(3) d 6 (1 + 2d)^2 and the mean square is d^2; it vanishes on the cube itself. Side faces of a
 //   cylinder of radius 5 stretched by 1.2: radius 6, no variance.
-// - The reverse against dual numbers in positions, strains, displacements of the dies and vertices of the
+// - The reverse against dual numbers in positions, strains, damages, displacements of the dies and vertices of the
 //   target, each alone, and the Taylor order along all, the closest features kept: under an open, wavy die
 //   that follows its displacement and inside a closed, bumpy surface.
 
@@ -16,6 +16,7 @@
 
 #include <retroforge/core/error.h>
 #include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/objective/damage_statistics.h>
 #include <retroforge/objective/filling.h>
 #include <retroforge/objective/radius.h>
 #include <retroforge/objective/shape_distance.h>
@@ -56,12 +57,22 @@ void check_volume_and_strain(Errors &errors)
                  problem.value(exponential),
                  std::log(fraction * std::exp(70.) + (1. - fraction) * std::exp(20.)) / 100.);
   errors.compare("two strains, true maximum", problem.detail(exponential, "true maximum"), 0.7);
+  const DamageObjective mean_damage(DamageStatistic::mean),
+    damage(DamageStatistic::largest, {SmoothMaximum::Kind::p_norm, 30.});
+  problem.at.damage = problem.at.q;
+  errors.compare("two damages, mean", problem.value(mean_damage), 0.2 + 0.5 * fraction);
+  errors.compare("two damages, p-norm", problem.value(damage), problem.value(p_norm));
+  errors.compare("two damages, true maximum", problem.detail(damage, "true maximum"), 0.7);
+  std::fill(problem.at.damage.begin(), problem.at.damage.end(), 0.);
+  errors.compare("no damage, p-norm", problem.value(damage), 0.);
   for (double &q : problem.at.q)
     q = 0.;
   errors.compare("no strain, p-norm", problem.value(p_norm), 0.);
   bool                 finite    = true;
   const FinalDecisions decisions = p_norm.decide(problem.view(problem.at));
   for (const double bar : problem.reverse(p_norm, decisions, problem.at).q)
+    finite = finite && std::isfinite(bar);
+  for (const double bar : problem.reverse(damage, damage.decide(problem.view(problem.at)), problem.at).damage)
     finite = finite && std::isfinite(bar);
   std::cout << "  no strain, derivatives finite: " << yes(finite) << std::endl;
 }
@@ -220,6 +231,12 @@ double check_all_derivatives()
   check("distance from a closed shape", closed_distance, inside);
   check("distance from a cylinder", side, inside);
   check("mean radius", bore, inside);
+  for (const double q : inside.at.q)
+    inside.at.damage.push_back(1.1 - q);
+  check("mean damage", DamageObjective(DamageStatistic::mean), inside);
+  check("largest damage, p-norm",
+        DamageObjective(DamageStatistic::largest, {SmoothMaximum::Kind::p_norm, 15.}),
+        inside);
   const auto   decided  = closed_filling.compute_decisions(inside.view(inside.at));
   unsigned int on_edges = 0;
   for (const auto *features : {&decided.by_workpiece, &decided.by_target})
@@ -248,6 +265,7 @@ int main(int argc, char **argv)
   const double worst = check_all_derivatives();
   std::cout << "refused" << std::endl;
   refused([] { StrainObjective(StrainStatistic::maximum, {SmoothMaximum::Kind::p_norm, 0.5}); });
+  refused([] { DamageObjective(DamageStatistic::largest, {SmoothMaximum::Kind::p_norm, 0.5}); });
   refused([] { FillingObjective{TargetSurface(scaled(cube(), 1., Vec3())), -1.}; });
   refused([] {
     const auto open = scaled(sheet(2, [](double, double) { return 0.; }), 1., Vec3());

@@ -14,23 +14,25 @@ namespace retroforge
   struct FinalInputs
   {
     NodalVectors<Number>          X;
-    std::vector<Number>           q;
+    std::vector<Number>           q, damage; ///< damage may be empty: not followed
     std::vector<DieState<Number>> dies;
     NodalVectors<Number>          target;
 
     std::vector<Group<Number>> groups()
     {
       std::vector<Group<Number>> groups = {
-        {"X", {}}, {"q", {}}, {"displacement", {}}, {"target", {}}, {"dies", {}}};
+        {"X", {}}, {"q", {}}, {"damage", {}}, {"displacement", {}}, {"target", {}}, {"dies", {}}};
       append(X, groups[0].second);
       for (Number &value : q)
         groups[1].second.push_back(&value);
+      for (Number &value : damage)
+        groups[2].second.push_back(&value);
       for (auto &die : dies)
         for (unsigned int i = 0; i < 3; ++i)
-          groups[2].second.push_back(&die.displacement[i]);
-      append(target, groups[3].second);
+          groups[3].second.push_back(&die.displacement[i]);
+      append(target, groups[4].second);
       for (auto &die : dies)
-        append(die.vertices, groups[4].second);
+        append(die.vertices, groups[5].second);
       return groups;
     }
   };
@@ -46,6 +48,7 @@ namespace retroforge
         : scene(std::move(mesh), DiscretizationChoice(), dies, MPI_COMM_WORLD)
         , at{scene.mesh.X,
              std::vector<double>(scene.mesh.n_cells(), 0.3),
+             {},
              std::vector<DieState<double>>(dies.size()),
              std::move(target)}
     {
@@ -57,7 +60,13 @@ namespace retroforge
     template <typename Number>
     FinalView<Number> view(const FinalInputs<Number> &inputs) const
     {
-      return {scene, inputs.X, inputs.q, inputs.dies, inputs.target.empty() ? nullptr : &inputs.target};
+      return {scene,
+              inputs.X,
+              inputs.q,
+              inputs.dies,
+              inputs.target.empty() ? nullptr : &inputs.target,
+              nullptr,
+              inputs.damage.empty() ? nullptr : &inputs.damage};
     }
 
     template <typename Number>
@@ -92,7 +101,7 @@ namespace retroforge
       const auto     b       = objective.integrals(seen, decisions).complete();
       const auto     weights = objective.reverse_value(b, decisions);
       const FinalBar bar     = objective.derivatives(seen, decisions, weights).complete();
-      return {bar.X, bar.q, bar.dies, bar.target};
+      return {bar.X, bar.q, bar.damage, bar.dies, bar.target};
     }
 
     FinalInputs<Dual> dual_shape() const
@@ -102,6 +111,7 @@ namespace retroforge
         dies[d].vertices.resize(at.dies[d].vertices.size());
       return {NodalVectors<Dual>(at.X.size()),
               std::vector<Dual>(at.q.size(), Dual(0.)),
+              std::vector<Dual>(at.damage.size(), Dual(0.)),
               std::move(dies),
               NodalVectors<Dual>(at.target.size())};
     }

@@ -4,17 +4,21 @@
 // Derivatives of the objectives along a path, over three increments with any positions and velocities under
 // two tilted dies (sliding, pressed and free nodes, nodes within the ramp): the reverse of integrals and
 // value, put together as a backward sweep does it, against dual numbers in each group of inputs alone
-// (positions at the increment's start and at its stage, velocities, bubbles, laws, dies, approach time,
+// (positions at the increment's start and at its stage, velocities, bubbles, pressures, laws, dies, approach time,
 // speed), and the Taylor order along all of them. Windows cut increments, so that an increment's part of the
 // window counts. The same with a smooth, curved die, middles of edges among the points; and the contact
-// pressure with quadratic velocities, where some vertices pull.
+// pressure with quadratic velocities, where some vertices pull. The growth of the damage, a step of the state, in the
+// same way; stresses, wear and it with quadratic velocities, too.
 
 #include <deal.II/base/mpi.h>
 
 #include <retroforge/objective/contact_pressure.h>
+#include <retroforge/objective/die_wear.h>
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>
 #include <retroforge/objective/fold.h>
+#include <retroforge/objective/stress_maxima.h>
+#include <retroforge/steps/damage.h>
 
 #include "../contact/wavy_sheet.h"
 #include "../mesh/block_mesh.h"
@@ -33,6 +37,7 @@ struct PathInputs
   {
     NodalVectors<Number> X, Y, V;
     NodalVectors<Number> bubbles; ///< of all cells, if there are any
+    std::vector<Number>  P;
 
     /// What of it this rank has.
     Field<Number> field(const Scene &scene) const
@@ -41,6 +46,7 @@ struct PathInputs
       NodalVectors<Number> all = V;
       all.insert(all.end(), bubbles.begin(), bubbles.end());
       W.V.take(all);
+      W.P.take(P);
       return W;
     }
   };
@@ -55,6 +61,7 @@ struct PathInputs
                                          {"Y", {}},
                                          {"V", {}},
                                          {"bubbles", {}},
+                                         {"P", {}},
                                          {"K", {&physics.material.law.K}},
                                          {"m", {&physics.material.law.m}},
                                          {"e0", {&physics.material.law.e0}},
@@ -71,15 +78,17 @@ struct PathInputs
       append(state.Y, groups[1].second);
       append(state.V, groups[2].second);
       append(state.bubbles, groups[3].second);
+      for (Number &p : state.P)
+        groups[4].second.push_back(&p);
     }
     for (auto &die : physics.dies)
     {
       for (unsigned int i = 0; i < 3; ++i)
       {
-        groups[9].second.push_back(&die.velocity[i]);
-        groups[10].second.push_back(&die.displacement[i]);
+        groups[10].second.push_back(&die.velocity[i]);
+        groups[11].second.push_back(&die.displacement[i]);
       }
-      groups[11].second.push_back(&die.friction);
+      groups[12].second.push_back(&die.friction);
     }
     return groups;
   }
@@ -95,6 +104,7 @@ PathInputs<Number> empty_inputs(const Scene &scene)
     state.Y.resize(scene.mesh.n_nodes());
     state.V.resize(scene.discretization.condensed_nodes()->n());
     state.bubbles.resize(scene.discretization.has_bubbles() ? scene.mesh.n_cells() : 0);
+    state.P.resize(scene.mesh.n_nodes(), Number(0.));
   }
   inputs.physics.material.law.K = Number(0.);
   inputs.physics.material.law.m = Number(0.);
@@ -148,6 +158,8 @@ struct PathProblem
       }
       for (Vec3 &beta : state.bubbles)
         beta = 0.3 * random.vector();
+      for (double &p : state.P)
+        p = 3. * random.scalar();
       pairs[i] = find_contact_pairs(scene.view(at.physics.dies, state.X), ramp, 1.5 * ramp.width, true);
       active[i] =
         Equilibrium<double>(scene, at.physics, contact(at, i), state.Y).decide_active(state.field(scene));
@@ -231,6 +243,8 @@ struct PathProblem
         const NodeIndex k = W_bar.V.numbering()->node_at(place), n = bar.states[i].V.size();
         (k < n ? bar.states[i].V[k] : bar.states[i].bubbles[k - n]) += W_bar.V.at_place(place);
       }
+      for (unsigned int place = 0; place < W_bar.P.size(); ++place)
+        bar.states[i].P[W_bar.P.numbering()->node_at(place)] += W_bar.P.at_place(place);
       NodalVectors<double> no_velocity_bar(inputs.states[i].X.size());
       reverse_contact_set(scene.view(inputs.physics.dies, inputs.states[i].X),
                           set,
@@ -297,6 +311,58 @@ private:
   EnergyObjective energy_;
 };
 
+/// What the increments add to the damage of cells, summed with weights that differ from cell to cell.
+class DamageGrowth : public PathObjectiveOf<DamageGrowth>
+{
+public:
+  static constexpr unsigned int n_terms = 1;
+
+  std::string name() const override { return "damage growth"; }
+  std::string unit() const override { return "none"; }
+
+  template <typename Number>
+  std::vector<Number> compute_integrals(const EquilibriumView<Number> &view) const
+  {
+    std::vector<Number> damage(view.stage.scene.mesh.n_cells(), Number(0.));
+    add_damage(view, Number(1.), damage);
+    Number sum(0.);
+    for (const CellIndex c : view.stage.scene.discretization.cells().owned())
+      sum += weight(c) * damage[c];
+    return {sum};
+  }
+
+  /// Times are those of the increment, which the terms have: the derivative in dt is the value.
+  void reverse_integrals(const EquilibriumView<double> &view,
+                         const std::vector<double>     &weights,
+                         EquilibriumBar                &bar) const override
+  {
+    std::vector<double> damage_bar(view.stage.scene.mesh.n_cells());
+    for (CellIndex c = 0; c < damage_bar.size(); ++c)
+      damage_bar[c] = weights[0] * weight(c);
+    const double before = bar.physics.dt;
+    reverse_add_damage(view, 1., damage_bar, bar);
+    const double value = weights[0] * compute_integrals(view)[0];
+    if (std::abs(bar.physics.dt - before - value) > 1e-12 * std::abs(value))
+      std::cout << "  WRONG derivative of the damage in time" << std::endl;
+    bar.physics.dt = before;
+  }
+
+  template <typename Number>
+  std::vector<Number> terms(const PathRow<Number> &row, double) const
+  {
+    return {Number(row.dt * row.integrals[0])};
+  }
+
+  template <typename Number>
+  Number combine(const std::vector<Number> &sums, double) const
+  {
+    return sums[0];
+  }
+
+private:
+  static double weight(const CellIndex c) { return 1. + 0.3 * (c % 5); }
+};
+
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
@@ -342,6 +408,19 @@ int main(int argc, char **argv)
   check("dimensionless fold, alpha = 3", DimensionlessFold(3.));
   check("contact pressure, q = 1", ContactPressure(0, 1., 5.));
   check("contact pressure, q = 12", ContactPressure(1, 12., 5.));
+  const SmoothRegion inner{{Vec3({-9., -2., -1.}), Vec3({9., 2., 3.})}, 2.};
+  const auto         check_stresses = [&](const PathProblem &problem) {
+    for (const InnerStress stress : {InnerStress::pressure, InnerStress::shear})
+    {
+      const StressMaximum all(stress, 3., 2.), part(stress, 12., 2., part_of_time, inner);
+      check_of(problem, all.name() + ", q = 3", all);
+      check_of(problem, part.name() + ", q = 12, in a window and a box", part);
+    }
+    check_of(problem, "damage growth", DamageGrowth());
+    check_of(problem, "die wear, total, in a window", DieWear(0, Wear::total, part_of_time));
+    check_of(problem, "die wear, mean, in a box", DieWear(0, Wear::mean, late, inner));
+  };
+  check_stresses(flat);
 
   const PathProblem curved(random, true);
   std::cout << "with a curved die, edges pressed: " << (curved.n_pressed_edges(0) > 10 ? "yes, " : "NO, ")
@@ -351,11 +430,13 @@ int main(int argc, char **argv)
   check_of(curved, "fold, alpha = 4", FoldObjective(4.));
   check_of(curved, "contact pressure, q = 1", ContactPressure(0, 1., 5.));
   check_of(curved, "contact pressure, q = 12", ContactPressure(0, 12., 5.));
+  check_of(curved, "die wear, mean, in a box", DieWear(0, Wear::mean, {}, inner));
 
   const PathProblem quadratic(random, true, ElementPair::taylor_hood);
   std::cout << "quadratic velocities, vertices pull: " << (quadratic.n_pulling() > 0 ? "yes" : "NO")
             << std::endl;
   check_of(quadratic, "contact pressure, q = 1", ContactPressure(0, 1., 5.));
   check_of(quadratic, "contact pressure, q = 12", ContactPressure(0, 12., 5.));
+  check_stresses(quadratic);
   std::cout << "FIGURE path_objective_derivative_error " << worst << std::endl;
 }

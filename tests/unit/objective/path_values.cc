@@ -6,6 +6,7 @@
 // everywhere. With Euler's steps the height falls by v dt and the side q grows by the factor 1 + v dt/(2h).
 // By hand, increment by increment:
 //   power 3 K e^2 h q^2,   effort power / v_die,   fold e^alpha 4 h q,   dimensionless fold 1,
+//   shear sqrt(3) K e,   wear of the upper die rho c e/2 (moment of the area that the top's nodes push on),
 // and, the upper die's velocity v_die being c = 2 above that of the top of the cube, the contact pressure rho
 // c everywhere. Where middles of edges push, too, with the stiffness s over the nodes', a node k has half the
 // force of each of its edges e on its area: p_k = rho c (1 + s/2 sum_e A_e / A_k), A the areas of the faces
@@ -20,9 +21,11 @@
 #include <retroforge/billet/billet.h>
 #include <retroforge/core/error.h>
 #include <retroforge/objective/contact_pressure.h>
+#include <retroforge/objective/die_wear.h>
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>
 #include <retroforge/objective/fold.h>
+#include <retroforge/objective/stress_maxima.h>
 
 #include "objective_test_tools.h"
 
@@ -66,6 +69,7 @@ public:
         V[k] = speed / h * Vec3({X[k][0] / 2., X[k][1] / 2., -X[k][2]});
       Field<double> W(scene_.discretization);
       W.V.take(V);
+      W.P.take(std::vector<double>(X.size(), pressure(i)));
       const Vec3            lower({0., 0., 0.}), upper({0., 0., -v - faster});
       const Physics<double> physics{MaterialLaw<double>{K, 1., 0.},
                                     {rho, 0.},
@@ -82,6 +86,9 @@ public:
     }
     return rows;
   }
+
+  /// That of all nodes in increment i [MPa].
+  static double pressure(const int i) { return 10. + 3. * i; }
 
   double value(const PathObjective &objective) const { return objective.value(rows(objective)); }
 
@@ -137,6 +144,19 @@ public:
   /// height h [mm^2].
   double pushed_area(const double q, const double h) const
   {
+    return sum_of_top(q, h, [](const Vec3 &) { return 1.; });
+  }
+
+  /// The same of the area times the distance from the axis [mm^3].
+  double pushed_moment(const double q, const double h) const
+  {
+    return sum_of_top(q, h, [](const Vec3 &x) { return std::hypot(x[0], x[1]); });
+  }
+
+private:
+  template <typename F>
+  double sum_of_top(const double q, const double h, const F &f) const
+  {
     const auto at = [&](const NodeIndex k) {
       return Vec3({x(k)[0] * q / edge, x(k)[1] * q / edge, x(k)[2] * h / edge});
     };
@@ -144,12 +164,11 @@ public:
     for (const BoundaryFace &face : scene_.mesh.faces)
       for (const NodeIndex k : face.nodes)
         if (is_on_top(k))
-          sum += 0.5 / 3. *
+          sum += 0.5 / 3. * f(at(k)) *
                  cross(at(face.nodes[1]) - at(face.nodes[0]), at(face.nodes[2]) - at(face.nodes[0])).norm();
     return sum;
   }
 
-private:
   const Vec3 &x(const NodeIndex k) const { return scene_.mesh.X[k]; }
   bool        is_linear() const { return scene_.discretization.pair() == ElementPair::mini; }
   bool        is_on_top(const NodeIndex k) const { return x(k)[2] > edge - 1e-9; }
@@ -184,7 +203,9 @@ struct ByHand
 
 void check_values(const Upsetting &run)
 {
-  double              energy = 0., closing = 0., mean = 0., largest = 0.;
+  double              energy = 0., closing = 0., mean = 0., largest = 0., wear = 0., areas = 0., squares = 0.;
+  constexpr double    gamma     = 12.;
+  double              pressures = 0., shears = 0., volumes = 0., late_pressures = 0., late_volumes = 0.;
   std::vector<double> fold(4, 0.);
   ByHand              hand;
   for (int i = 0; i < n_increments; ++i, hand.advance())
@@ -193,7 +214,17 @@ void check_values(const Upsetting &run)
     energy += hand.dt * (v + faster) * hand.effort;
     closing += hand.dt * rho * faster * faster * run.pushed_area(hand.q, hand.h); // all of it where m = 1
     mean += hand.effort * std::max(0., std::min(8.6, end) - std::max(4.1, begin)) / 4.5;
-    largest = std::max(largest, hand.effort);
+    largest           = std::max(largest, hand.effort);
+    const double area = run.pushed_area(hand.q, hand.h), volume = hand.dt * hand.h * hand.q * hand.q;
+    wear += hand.dt * rho * faster * hand.e / 2. * run.pushed_moment(hand.q, hand.h);
+    areas += hand.dt * area;
+    squares += hand.dt * area * area;
+    volumes += volume;
+    pressures += volume * std::pow(Upsetting::pressure(i), gamma);
+    shears += volume * std::pow(std::sqrt(3.) * K * hand.e, gamma);
+    const double late = volume * std::max(0., end - std::max(8.2, begin)) / (end - begin);
+    late_volumes += late;
+    late_pressures += late * std::pow(Upsetting::pressure(i), gamma);
     for (int alpha = 1; alpha <= 4; ++alpha)
       fold[alpha - 1] += hand.dt * std::pow(hand.e, alpha) * hand.side;
   }
@@ -222,6 +253,19 @@ void check_values(const Upsetting &run)
                    quadratic.pressure_with_edges(ContactPressure(1, exponent, 1.)),
                    quadratic.pressure_with_edges_by_hand(exponent));
   }
+  const StressMaximum pressure(InnerStress::pressure, gamma, 5.), shear(InnerStress::shear, gamma, 5.);
+  errors.compare("hydrostatic pressure", run.value(pressure), std::pow(pressures / volumes, 1. / gamma));
+  errors.compare("true maximum of it",
+                 pressure.details(run.rows(pressure)).at("true maximum"),
+                 Upsetting::pressure(n_increments - 1));
+  errors.compare("shear", run.value(shear), std::pow(shears / volumes, 1. / gamma));
+  const SmoothRegion around{{Vec3({-200., -200., -200.}), Vec3({200., 200., 200.})}, 1.};
+  errors.compare("pressure late, in a box around all",
+                 run.value(StressMaximum(InnerStress::pressure, gamma, 5., {Over::stroke, 8.2, 99.}, around)),
+                 std::pow(late_pressures / late_volumes, 1. / gamma));
+  errors.compare("wear, total", run.value(DieWear(1, Wear::total)), wear);
+  errors.compare("wear, mean", run.value(DieWear(1, Wear::mean)), wear * areas / squares);
+  errors.compare("wear of a die without pressure", run.value(DieWear(0, Wear::mean)), 0.);
   errors.compare("die without pressure", run.value(ContactPressure(0, 8., 1.)), 0.);
   const MaximumEffort maximum(by_power, {}, {});
   errors.compare("true maximum of the effort", maximum.true_maximum(run.rows(maximum)), largest);
@@ -260,7 +304,10 @@ void check_at_rest(const Upsetting &run)
   const FoldObjective                      fold(1.);
   const DimensionlessFold                  dimensionless(4.);
   const ContactPressure                    pressure(0, 8., 1.);
-  const std::vector<const PathObjective *> objectives = {&energy, &p_norm, &fold, &dimensionless, &pressure};
+  const StressMaximum                      shear(InnerStress::shear, 8., 1.);
+  const DieWear                            wear(1, Wear::mean);
+  const std::vector<const PathObjective *> objectives = {
+    &energy, &p_norm, &fold, &dimensionless, &pressure, &shear, &wear};
   for (const PathObjective *objective : objectives)
   {
     const auto rows   = run.rows(*objective, 0.);
@@ -292,6 +339,10 @@ int main(int argc, char **argv)
   refused([] { FoldObjective(2., SmoothRegion{{Vec3(), Vec3({1., -1., 1.})}, 1.}); });
   refused([] { ContactPressure(0, 0.5, 1.); });
   refused([] { ContactPressure(0, 8., 0.); });
+  refused([] { StressMaximum(InnerStress::shear, 0.5, 1.); });
+  refused([] { StressMaximum(InnerStress::pressure, 8., 0.); });
+  refused([] { StressMaximum(InnerStress::pressure, 8., 1., {Over::time, 2., 1.}); });
+  refused([] { DieWear(0, Wear::mean, {}, SmoothRegion{{Vec3(), Vec3({1., 1., 1.})}, 0.}); });
   refused([] { MaximumEffort(Effort(1), {}, {SmoothMaximum::Kind::p_norm, 0.}); });
   refused([] { MaximumEffort(Effort(1), {}, {SmoothMaximum::Kind::log_sum_exp, 0.}); });
   refused([] { MaximumEffort(Effort(1), {}, {}, 1.5); });
