@@ -107,6 +107,14 @@ void check_transposes(const ReferenceElement<dim> &element,
   errors.compare(
     "strain rate", dot(bar.numbers(), dots), 0.4 * cell_strain_rate(geometry_of(element, x), x.w).dx(0));
 
+  bar                              = no_derivatives(element);
+  const Symmetric<double> s_bar    = {{0.3, -0.2, 0.5, 0.7, -0.4, 0.1}};
+  const Symmetric<Dual>   stress   = cell_deviatoric_stress(geometry_of(element, x), x.w, x.law);
+  double                  expected = 0.;
+  for (unsigned int k = 0; k < 6; ++k)
+    expected += (k < 3 ? 1. : 2.) * s_bar[k] * stress[k].dx(0);
+  compare("stress", reverse_cell_deviatoric_stress(geometry, at.w, at.law, s_bar, bar.w), expected);
+
   Input<dim> of_w = no_derivatives(element); // in the unknowns alone
   of_w.w          = direction.w;
   const auto y    = along(at, of_w);
