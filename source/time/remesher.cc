@@ -271,7 +271,8 @@ namespace retroforge
             feature.found() && states[d].in_press != 0)
         {
           const auto projection = dies_[d].project(at, states[d].displacement, feature);
-          if (projection.delta < resting && dies_[d].surface())
+          // What rests on a plane lies in it, and is left as it is.
+          if (projection.delta < (dies_[d].surface() ? resting : -resting))
             steps.push_back({d, feature, at + projection.delta * projection.n});
         }
       }
