@@ -31,11 +31,12 @@ def forge(name):
     return closing, whole["force_factor"] * forging.history["force"], forging.objectives.get("bore")
 
 
-def measure(strokes, forces, generator):
-    """Noisy forces at strokes that a press would tell."""
+def write_curve(path, strokes, forces, generator):
+    """Noisy forces, at strokes that are evenly spaced."""
     at = np.linspace(strokes[0], strokes[-1], POINTS)
     exact = np.interp(at, strokes, forces)
-    return at, exact + NOISE * exact.mean() * generator.standard_normal(POINTS)
+    noisy = exact + NOISE * exact.mean() * generator.standard_normal(POINTS)
+    np.savetxt(path, np.column_stack((at, noisy)), fmt=["%.4f", "%.1f"], delimiter=",", header="stroke,force", comments="")
 
 
 def main():
@@ -46,8 +47,7 @@ def main():
     generator = np.random.default_rng(options.seed)
     for name in SIZES:
         strokes, forces, bore = forge(name)
-        table = np.column_stack(measure(strokes, forces, generator))
-        np.savetxt(options.folder / f"{name}.csv", table, fmt=["%.4f", "%.1f"], delimiter=",", header="stroke,force", comments="")
+        write_curve(options.folder / f"{name}.csv", strokes, forces, generator)
         if bore is not None:
             print(f"bore {bore + BORE_NOISE * generator.standard_normal():.4f} +- {BORE_NOISE} mm (without noise {bore:.4f})")
 
