@@ -26,7 +26,12 @@ namespace retroforge
     tag(prm, "Dies", SettingRole::scene);
     dies.clear();
     for (const std::string &name : names_of("Die", "Dies/names", ""))
+    {
       dies.emplace_back(name);
+      const std::string section = dies.back().section();
+      for (const std::string &zone : names_of(section + "/Zone", section + "/zones", ""))
+        dies.back().zones.emplace_back(zone, section);
+    }
     for (DieParameters &die : dies)
       die.add_parameters(prm);
     material.add_parameters(prm);
@@ -94,12 +99,19 @@ end
       if (const ReadBy *read_by = tags().choice(entry.path()))
         for (const std::string &sentence : settings_without_effect(entries, entry.path(), *read_by))
           without_effect.push_back(sentence);
-    for (const DieParameters &die : dies)
+    const auto find_limits = [&](const std::string &section, const std::string &law) {
       for (const ParameterEntry &entry : entries)
-        if (entry.path() == "Die " + die.name + "/shear limit" && entry.value != entry.default_value &&
-            !interface_law(initial_state(die).interface_law).limit())
+        if (entry.path() == section + "/shear limit" && entry.value != entry.default_value &&
+            !interface_law(find_interface_law(law, section + "/friction law")).limit())
           without_effect.push_back(entry.path() + " = " + entry.value + " has no effect: the friction law " +
-                                   die.friction_law + " has no such limit");
+                                   law + " has no such limit");
+    };
+    for (const DieParameters &die : dies)
+    {
+      find_limits(die.section(), die.friction_law);
+      for (const DieZoneParameters &zone : die.zones)
+        find_limits(zone.section(), zone.friction_law);
+    }
     if (!objectives.combined)
       for (const ParameterEntry &entry : entries)
         if (entry.name == "weight" && entry.value != entry.default_value)

@@ -76,7 +76,7 @@ namespace retroforge
       std::vector<std::string> names;
     };
 
-    /// Sections `Die NAME' or `Objective NAME' of files whose name is not in the list: left there for a
+    /// Sections `Die NAME', `Die NAME/Zone NAME' or `Objective NAME' of files whose name is not in the list: left there for a
     /// time. One that may be meant by a name of the list that has no section is none of them, but misspelt.
     std::vector<std::string> unlisted_sections(const std::vector<ParameterLine> &lines,
                                                const std::string                &kind,
@@ -84,7 +84,8 @@ namespace retroforge
     {
       std::vector<std::string> sections, without_section;
       for (const ParameterLine &line : lines)
-        if (!line.value && line.path.rfind(kind + " ", 0) == 0 && line.path.find('/') == std::string::npos)
+        if (!line.value && line.path.rfind(kind + " ", 0) == 0 &&
+            line.path.find('/', kind.size()) == std::string::npos)
           sections.push_back(line.path);
       const auto has_section = [&](const std::string &path) {
         return std::find(sections.begin(), sections.end(), path) != sections.end();

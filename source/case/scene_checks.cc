@@ -263,7 +263,7 @@ namespace retroforge
                             d,
                             process,
                             beside * process.nominal_time(parameters.press.stroke),
-                            process.dies[d].friction == 0.,
+                            !process.dies[d].rubs(),
                             X))
             return;
       std::ostringstream way;
@@ -438,8 +438,8 @@ namespace retroforge
     check_surfaces(parameters, scene, process, X);
     if (const auto motions = free_rigid_motions(scene, process.at_stroke(0.), X); !motions.empty())
     {
-      const bool rubs = std::all_of(
-        process.dies.begin(), process.dies.end(), [](const auto &die) { return die.friction > 0.; });
+      const bool rubs =
+        std::all_of(process.dies.begin(), process.dies.end(), [](const auto &die) { return die.rubs(); });
       throw Error(
         "Billet",
         "no die holds it: it is free to " + join(motions),

@@ -158,7 +158,7 @@ namespace retroforge
                         const double               rate,
                         const double               radius)
     {
-      return friction_traction(die, {0.5 * rate * radius, flow_stress(law, rate), rate}, law);
+      return friction_traction(die.own_friction(), {0.5 * rate * radius, flow_stress(law, rate), rate}, law);
     }
 
     double or_one(const double copies)

@@ -308,6 +308,15 @@ namespace retroforge
         described.friction_law = given.friction_law;
       if (interface_law(state.interface_law).limit())
         described.shear_limit = given.shear_limit;
+      for (const DieZoneParameters &zone : given.zones)
+      {
+        const InterfaceLaw &law = interface_law(find_interface_law(zone.friction_law, zone.section()));
+        described.zones.push_back({zone.name,
+                                   zone.friction_law,
+                                   law.coefficient().name,
+                                   zone.friction,
+                                   law.limit() ? std::optional(zone.shear_limit) : std::nullopt});
+      }
       described.leads = die.name == parts_->leading_die;
       if (die.surface())
       {

@@ -244,6 +244,46 @@ namespace retroforge
     }
   } // namespace
 
+  namespace
+  {
+    /// Where a point of a pair is on its die, as that stands at the start of the run.
+    template <typename Number>
+    Vector3<Number> on_die(const ContactView<Number> &view, const ContactPair &pair)
+    {
+      return pair.point.position(view.X) - view.states[pair.die].displacement;
+    }
+
+    template <typename Number>
+    std::vector<std::vector<Number>> weights_of_zones(const ContactView<Number>      &view,
+                                                      const std::vector<ContactPair> &pairs)
+    {
+      if (std::all_of(
+            view.dies.begin(), view.dies.end(), [](const Die &die) { return die.zones.boxes.empty(); }))
+        return {};
+      std::vector<std::vector<Number>> weights(pairs.size());
+      for (unsigned int p = 0; p < pairs.size(); ++p)
+        for (unsigned int z = 0; z < view.dies[pairs[p].die].zones.boxes.size(); ++z)
+          weights[p].push_back(view.dies[pairs[p].die].zones.weight(z, on_die(view, pairs[p])));
+      return weights;
+    }
+
+    void reverse_weights_of_zones(const ContactView<double>              &view,
+                                  const std::vector<ContactPair>         &pairs,
+                                  const std::vector<std::vector<double>> &weights_bar,
+                                  NodalVectors<double>                   &X_bar,
+                                  std::vector<DieState<double>>          &dies_bar)
+    {
+      for (unsigned int p = 0; p < weights_bar.size(); ++p)
+        for (unsigned int z = 0; z < weights_bar[p].size(); ++z)
+        {
+          const Vec3 at_point =
+            weights_bar[p][z] * view.dies[pairs[p].die].zones.gradient(z, on_die(view, pairs[p]));
+          pairs[p].point.add_to_position(at_point, X_bar);
+          dies_bar[pairs[p].die].displacement -= at_point;
+        }
+    }
+  } // namespace
+
   template <typename Number>
   ContactSet<Number> make_contact_set(const ContactView<Number>      &view,
                                       const std::vector<ContactPair> &pairs,
@@ -266,6 +306,7 @@ namespace retroforge
     contact.approach                                                     = approach.law;
     contact.quadratic                                                    = edges != nullptr;
     contact.rates                                                        = surface_rates(view, pairs);
+    contact.zones                                                        = weights_of_zones(view, pairs);
     const RampScales<Number> scales(approach.ramp, states);
     PairOfVelocityNode       index;
     for (unsigned int p = 0; p < pairs.size(); ++p)
@@ -288,9 +329,8 @@ namespace retroforge
       contact.ramps[node] += (1. - contact.ramps[node]) * part_of(contact, edge) * contact.ramps[edge];
     // A triangle is visited from its first pair of each die.
     for (unsigned int p = 0; p < pairs.size(); ++p)
-      if (const ContactPoint &point = pairs[p].point; point.has_own_velocity() &&
-                                                      value_of(states[pairs[p].die].friction) != 0. &&
-                                                      value_of(contact.ramps[p]) > 0.)
+      if (const ContactPoint &point = pairs[p].point;
+          point.has_own_velocity() && states[pairs[p].die].rubs() && value_of(contact.ramps[p]) > 0.)
         point.for_each_face(mesh, topology, [&](const unsigned int f) {
           for_each_triangle(mesh, edges, f, [&](const std::array<NodeIndex, 3> &corners) {
             if (std::find(corners.begin(), corners.end(), point.velocity_node) == corners.end())
@@ -325,6 +365,7 @@ namespace retroforge
     AssertDimension(velocity_bar.size(), view.X.size());
     AssertDimension(dies_bar.size(), view.dies.size());
     reverse_surface_rates(view, contact.pairs, bar.rates, X_bar, velocity_bar, dies_bar);
+    reverse_weights_of_zones(view, contact.pairs, bar.zones, X_bar, dies_bar);
     std::vector<double> gaps_bar = bar.delta, scales_bar(contact.pairs.size(), 0.);
     if (contact.quadratic)
       reverse_level_gaps(view.X, ramp, contact, bar.ramp, gaps_bar, scales_bar, X_bar);

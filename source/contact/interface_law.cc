@@ -36,19 +36,31 @@ namespace retroforge
     interface_laws().add(name, std::move(law));
   }
 
+  namespace
+  {
+    /// @throws Error  where there is no such law, or it has no such coefficient
+    template <typename Given>
+    ZoneFriction<double> friction_of(const Given &given)
+    {
+      const std::string   section = given.section();
+      const unsigned int  number  = find_interface_law(given.friction_law, section + "/friction law");
+      const InterfaceLaw &law     = interface_law(number);
+      if (const NumberInfo info = law.coefficient(); given.friction > info.largest)
+        throw Error(section + "/friction",
+                    "is " + as_text(given.friction) + ", and the law is " + given.friction_law,
+                    "its coefficient " + info.name + " is at most " + as_text(info.largest),
+                    "use a smaller one, or another law");
+      return {given.friction, law.limit() ? given.shear_limit : 0., number};
+    }
+  } // namespace
+
   DieState<double> initial_state(const DieParameters &die)
   {
-    const std::string   section = "Die " + die.name;
-    const unsigned int  number  = find_interface_law(die.friction_law, section + "/friction law");
-    const InterfaceLaw &law     = interface_law(number);
-    if (const NumberInfo info = law.coefficient(); die.friction > info.largest)
-      throw Error(section + "/friction",
-                  "is " + as_text(die.friction) + ", and the law is " + die.friction_law,
-                  "its coefficient " + info.name + " is at most " + as_text(info.largest),
-                  "use a smaller one, or another law");
-    DieState<double> state{die.velocity, Vec3(), die.friction, {}, number};
-    if (law.limit())
-      state.shear_limit = die.shear_limit;
+    const ZoneFriction<double> own = friction_of(die);
+    DieState<double>           state{die.velocity, Vec3(), own.friction, {}, own.interface_law};
+    state.shear_limit = own.shear_limit;
+    for (const DieZoneParameters &zone : die.zones)
+      state.zones.push_back(friction_of(zone));
     return state;
   }
 
@@ -60,12 +72,14 @@ namespace retroforge
       const ContactLaw<double>   sharp;
       const SlidingPoint<double> point;
 
-      TypicalSliding(const DieState<double> &die, const TypicalContact &at, const MaterialLaw<double> &metal)
+      TypicalSliding(const ZoneFriction<double> &friction,
+                     const TypicalContact       &at,
+                     const MaterialLaw<double>  &metal)
           : point{1.,
-                  die.friction,
+                  friction.friction,
                   at.slip * at.slip,
                   at.pressure,
-                  die.shear_limit,
+                  friction.shear_limit,
                   at.rate * at.rate,
                   metal,
                   sharp}
@@ -75,26 +89,28 @@ namespace retroforge
     };
   } // namespace
 
-  double
-  friction_traction(const DieState<double> &die, const TypicalContact &at, const MaterialLaw<double> &metal)
+  double friction_traction(const ZoneFriction<double> &friction,
+                           const TypicalContact       &at,
+                           const MaterialLaw<double>  &metal)
   {
-    return interface_law(die.interface_law).factor(TypicalSliding(die, at, metal).point) * at.slip;
+    return interface_law(friction.interface_law).factor(TypicalSliding(friction, at, metal).point) * at.slip;
   }
 
   bool needs_regularisation(const DieState<double> &die, const MaterialLaw<double> &metal)
   {
-    return die.friction > 0. &&
-           !std::isfinite(
-             interface_law(die.interface_law).factor(TypicalSliding(die, {0., 1., 1.}, metal).point));
+    return die.any_friction([&](const ZoneFriction<double> &friction) {
+      return !std::isfinite(
+        interface_law(friction.interface_law).factor(TypicalSliding(friction, {0., 1., 1.}, metal).point));
+    });
   }
 
-  double linear_friction(const DieState<double>    &die,
-                         const TypicalContact      &at,
-                         const MaterialLaw<double> &metal,
-                         const MaterialLaw<double> &linear_metal)
+  double linear_friction(const ZoneFriction<double> &friction,
+                         const TypicalContact       &at,
+                         const MaterialLaw<double>  &metal,
+                         const MaterialLaw<double>  &linear_metal)
   {
-    return interface_law(die.interface_law)
-      .linear_coefficient(TypicalSliding(die, at, metal).point, linear_metal);
+    return interface_law(friction.interface_law)
+      .linear_coefficient(TypicalSliding(friction, at, metal).point, linear_metal);
   }
 
   double InterfaceLaw::potential_ratio(const SlidingPoint<double> &) const
@@ -105,32 +121,33 @@ namespace retroforge
 
   namespace
   {
-    template <typename Number>
-    bool has_friction(const ContactNode<Number> &node)
-    {
-      return value_of(node.Sf) * value_of(node.alpha) != 0.;
-    }
-
-    /// Friction at a point, with what it depends on.
+    /// Friction of one law at a point, with what it depends on.
     template <typename Number>
     struct Friction
     {
       const InterfaceLaw        &law;
+      const unsigned int         zone;   ///< invalid_index: the die's own
+      const Number               weight; ///< part of the area
       const Vector3<Number>      dv;
       const SlidingPoint<Number> point;
       const Number               factor;
 
-      Friction(const ContactNode<Number> &node,
-               const MaterialLaw<Number> &metal,
-               const ContactLaw<Number>  &contact)
-          : law(interface_law(node.interface_law))
+      Friction(const ContactNode<Number>  &node,
+               const unsigned int          zone,
+               const Number               &weight,
+               const ZoneFriction<Number> &friction,
+               const MaterialLaw<Number>  &metal,
+               const ContactLaw<Number>   &contact)
+          : law(interface_law(friction.interface_law))
+          , zone(zone)
+          , weight(weight)
           , dv(slip(node))
-          , point{node.Sf,
-                  node.alpha,
+          , point{node.zones.empty() ? node.Sf : Number(node.Sf * weight),
+                  friction.friction,
                   Number(dv * dv),
                   node.active && !law.has_potential() ? Number(contact.rho * approach_excess(node))
                                                       : Number(0.),
-                  node.shear_limit,
+                  friction.shear_limit,
                   node.rate2,
                   metal,
                   contact}
@@ -138,6 +155,29 @@ namespace retroforge
       {
       }
     };
+
+    /// use(friction) of the die's own friction and those of its zones, where they act.
+    template <typename Number, typename Use>
+    void for_each_friction(const ContactNode<Number> &node,
+                           const MaterialLaw<Number> &metal,
+                           const ContactLaw<Number>  &contact,
+                           const Use                 &use)
+    {
+      const auto add =
+        [&](const unsigned int zone, const Number &weight, const ZoneFriction<Number> &friction) {
+          if (value_of(node.Sf) * value_of(weight) * value_of(friction.friction) != 0.)
+            use(Friction<Number>(node, zone, weight, friction, metal, contact));
+        };
+      Number own(1.);
+      for (const ZonePart<Number> &part : node.zones)
+        own -= part.weight;
+      // Weights that add up to 1 do so but for rounding.
+      constexpr double rounding = 1e-14;
+      if (node.zones.empty() || value_of(own) > rounding)
+        add(invalid_index, own, {node.alpha, node.shear_limit, node.interface_law});
+      for (unsigned int z = 0; z < node.zones.size(); ++z)
+        add(z, node.zones[z].weight, node.zones[z].law);
+    }
 
     /// Adds the derivatives, in all but the slip, of a scalar whose derivative in the factor is `factor_bar`,
     /// and factor times that in its logarithm.
@@ -151,8 +191,21 @@ namespace retroforge
       SlidingBar numbers;
       friction.law.reverse(friction.point, log_bar, numbers);
       bar.Sf += log_bar / node.Sf;
-      bar.alpha += numbers.coefficient;
-      bar.shear_limit += numbers.limit;
+      bar.zones.resize(node.zones.size());
+      if (friction.zone == invalid_index)
+      {
+        bar.alpha += numbers.coefficient;
+        bar.shear_limit += numbers.limit;
+        for (ZonePart<double> &part : bar.zones)
+          part.weight -= log_bar / friction.weight;
+      }
+      else
+      {
+        ZonePart<double> &part = bar.zones[friction.zone];
+        part.weight += log_bar / friction.weight;
+        part.law.friction += numbers.coefficient;
+        part.law.shear_limit += numbers.limit;
+      }
       bar.rate2 += numbers.rate2;
       add_numbers(numbers.metal, bar.law);
       add_numbers(numbers.contact, bar.contact);
@@ -173,11 +226,8 @@ namespace retroforge
     Vector3<Number> force;
     if (node.active)
       force += node.n * normal_force(node, contact);
-    if (has_friction(node))
-    {
-      const Friction<Number> friction(node, law, contact);
-      force += friction.dv * friction.factor;
-    }
+    for_each_friction(
+      node, law, contact, [&](const Friction<Number> &friction) { force += friction.dv * friction.factor; });
     return force;
   }
 
@@ -186,10 +236,11 @@ namespace retroforge
                         const MaterialLaw<Number> &law,
                         const ContactLaw<Number>  &contact)
   {
-    if (!has_friction(node))
-      return Number(0.);
-    const Friction<Number> friction(node, law, contact);
-    return friction.factor * friction.point.slip2;
+    Number power(0.);
+    for_each_friction(node, law, contact, [&](const Friction<Number> &friction) {
+      power += friction.factor * friction.point.slip2;
+    });
+    return power;
   }
 
   template <typename Number>
@@ -204,11 +255,9 @@ namespace retroforge
                            const ContactLaw<double>  &contact)
   {
     double potential = 0.5 * normal_force(node, contact) * approach_excess(node);
-    if (has_friction(node))
-    {
-      const Friction<double> friction(node, law, contact);
+    for_each_friction(node, law, contact, [&](const Friction<double> &friction) {
       potential += friction.factor * friction.law.potential_ratio(friction.point);
-    }
+    });
     return potential;
   }
 
@@ -219,9 +268,7 @@ namespace retroforge
     dealii::Tensor<2, 3> tangent;
     if (node.active)
       tangent += contact.rho * node.S * outer_product(node.n, node.n);
-    if (has_friction(node))
-    {
-      const Friction<double> friction(node, law, contact);
+    for_each_friction(node, law, contact, [&](const Friction<double> &friction) {
       tangent -= friction.factor * outer_product(node.n, node.n);
       for (unsigned int i = 0; i < 3; ++i)
         tangent[i][i] += friction.factor;
@@ -229,7 +276,7 @@ namespace retroforge
         tangent += friction.factor * slope * outer_product(friction.dv, friction.dv);
       if (const double slope = node.active ? friction.law.pressure_slope(friction.point) : 0.; slope != 0.)
         tangent += slope * contact.rho * outer_product(friction.dv, node.n);
-    }
+    });
     return tangent;
   }
 
@@ -286,13 +333,11 @@ namespace retroforge
       bar.n = normal_force(node, contact) * lambda;
     }
     Vec3 dv_bar;
-    if (has_friction(node))
-    {
-      const Friction<double> friction(node, law, contact);
-      const double           product = lambda * friction.dv;
+    for_each_friction(node, law, contact, [&](const Friction<double> &friction) {
+      const double product = lambda * friction.dv;
       reverse_factor(friction, node, product, friction.factor * product, h_bar, bar);
-      dv_bar = friction.factor * (lambda + friction.law.slip_slope(friction.point) * product * friction.dv);
-    }
+      dv_bar += friction.factor * (lambda + friction.law.slip_slope(friction.point) * product * friction.dv);
+    });
     reverse_kinematics(node, dv_bar, h_bar, bar);
     return bar;
   }
@@ -303,14 +348,17 @@ namespace retroforge
                                         const double               weight)
   {
     ContactNodeBar bar;
-    if (!has_friction(node))
-      return bar;
-    const Friction<double> friction(node, law, contact);
-    const double           dv2 = friction.point.slip2, factor = weight * friction.factor;
-    double                 h_bar = 0.;
-    reverse_factor(friction, node, weight * dv2, factor * dv2, h_bar, bar);
-    reverse_kinematics(
-      node, factor * (2. + friction.law.slip_slope(friction.point) * dv2) * friction.dv, h_bar, bar);
+    double         h_bar = 0.;
+    Vec3           dv_bar;
+    bool           acts = false;
+    for_each_friction(node, law, contact, [&](const Friction<double> &friction) {
+      const double dv2 = friction.point.slip2, factor = weight * friction.factor;
+      reverse_factor(friction, node, weight * dv2, factor * dv2, h_bar, bar);
+      dv_bar += factor * (2. + friction.law.slip_slope(friction.point) * dv2) * friction.dv;
+      acts = true;
+    });
+    if (acts)
+      reverse_kinematics(node, dv_bar, h_bar, bar);
     return bar;
   }
 

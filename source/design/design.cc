@@ -215,6 +215,12 @@ namespace retroforge
         case Kind::shear_limit:
           process.dies[parameter.die].shear_limit = mu[j];
           break;
+        case Kind::zone_friction:
+          process.dies[parameter.die].zones[parameter.number].friction = mu[j];
+          break;
+        case Kind::zone_limit:
+          process.dies[parameter.die].zones[parameter.number].shear_limit = mu[j];
+          break;
         case Kind::speed:
           for (unsigned int i = 0; i < 3; ++i)
             process.dies[parameter.die].velocity[i] =

@@ -38,7 +38,8 @@ namespace retroforge
       "parameters",
       names,
       "Parameters whose gradient is wanted: material/K, material/m, material/e0, contact/rho, contact/v0, "
-      "dies/friction, `die NAME/friction`, `die NAME/shear limit`, `die NAME/speed`, `die NAME/offset`, and "
+      "dies/friction, `die NAME/friction`, `die NAME/shear limit`, `die NAME/zone ZONE/friction`, `die "
+      "NAME/speed`, `die NAME/offset`, and "
       "of the billet's "
       "shape: of a box billet/stretch, billet/height, of a cylinder billet/radius, billet/height, of a ring "
       "billet/mu1 to billet/mu4, of a profile `billet/control point I r', `billet/control point I z'; modes "

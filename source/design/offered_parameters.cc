@@ -13,6 +13,11 @@ namespace retroforge
   namespace
   {
     using Kind = DesignParameter::Kind;
+
+    std::string zone_prefix(const DieParameters &die, const DieZoneParameters &zone)
+    {
+      return "die " + die.name + "/zone " + zone.name + "/";
+    }
   } // namespace
 
   std::vector<std::string> Design::expanded(const std::vector<std::string> &names) const
@@ -43,17 +48,22 @@ namespace retroforge
                                                      const Material<double>           &material)
   {
     std::map<std::string, std::string> idle;
-    bool                               friction = false, by_rate = false;
+    bool                               own_friction = false, friction = false, by_rate = false;
     for (const DieParameters &die : dies)
     {
-      friction |= die.friction > 0.;
-      by_rate |= follows_rate(initial_state(die));
+      const DieState<double> state = initial_state(die);
+      own_friction |= die.friction > 0.;
+      friction |= state.rubs();
+      by_rate |= follows_rate(state);
       if (die.friction == 0.)
         idle["die " + die.name + "/friction"] = "the friction of die " + die.name + " is 0";
+      for (const DieZoneParameters &zone : die.zones)
+        if (zone.friction == 0.)
+          idle[zone_prefix(die, zone) + "friction"] = "the friction of this zone is 0";
       if (die.velocity.norm() == 0.)
         idle["die " + die.name + "/speed"] = "the velocity of die " + die.name + " is 0";
     }
-    if (!friction)
+    if (!own_friction)
       idle["dies/friction"] = "the friction of all dies is 0";
     for (const NumberInfo &number : ContactLaw<double>::info())
       if (!ContactLaw<double>::depends_on(number.name, friction))
@@ -101,37 +111,57 @@ namespace retroforge
         }
     }
 
+    /// Coefficient and bound of the friction of a die or a zone.
+    void add_friction_of(const ZoneFriction<double>                  &given,
+                         const std::string                           &prefix,
+                         const std::pair<Kind, Kind>                 &kinds,
+                         const std::pair<unsigned int, unsigned int> &die_and_zone,
+                         std::vector<DesignParameter>                &all)
+    {
+      if (!(given.friction > 0.))
+        return;
+      const auto &[d, z]           = die_and_zone;
+      const InterfaceLaw &law      = interface_law(given.interface_law);
+      const NumberInfo    friction = law.coefficient();
+      all.push_back({prefix + "friction",
+                     friction.unit,
+                     kinds.first,
+                     given.friction,
+                     given.friction,
+                     d,
+                     z,
+                     {},
+                     friction.may_vanish,
+                     friction.largest});
+      if (const auto limit = law.limit())
+        all.push_back({prefix + "shear limit",
+                       limit->unit,
+                       kinds.second,
+                       given.shear_limit,
+                       given.shear_limit,
+                       d,
+                       z,
+                       {},
+                       limit->may_vanish,
+                       limit->largest});
+    }
+
     void add_numbers_of(const DieParameters          &die,
                         const DieFreeForm            &form,
-                        const InterfaceLaw           &law,
+                        const DieState<double>       &state,
                         const unsigned int            d,
                         const double                  width,
                         std::vector<DesignParameter> &all)
     {
       const std::string prefix = "die " + die.name + "/";
       const double      speed  = die.velocity.norm();
-      if (const NumberInfo friction = law.coefficient(); die.friction > 0.)
-        all.push_back({prefix + "friction",
-                       friction.unit,
-                       Kind::friction,
-                       die.friction,
-                       die.friction,
-                       d,
-                       0,
-                       {},
-                       friction.may_vanish,
-                       friction.largest});
-      if (const auto limit = law.limit(); limit && die.friction > 0.)
-        all.push_back({prefix + "shear limit",
-                       limit->unit,
-                       Kind::shear_limit,
-                       die.shear_limit,
-                       die.shear_limit,
-                       d,
-                       0,
-                       {},
-                       limit->may_vanish,
-                       limit->largest});
+      add_friction_of(state.own_friction(), prefix, {Kind::friction, Kind::shear_limit}, {d, 0}, all);
+      for (unsigned int z = 0; z < die.zones.size(); ++z)
+        add_friction_of(state.zones[z],
+                        zone_prefix(die, die.zones[z]),
+                        {Kind::zone_friction, Kind::zone_limit},
+                        {d, z},
+                        all);
       if (speed > 0.)
         all.push_back({prefix + "speed", "mm/s", Kind::speed, speed, speed, d});
       all.push_back({prefix + "offset", "mm", Kind::offset, 0., width, d});
@@ -152,8 +182,9 @@ namespace retroforge
   {
     const auto with_friction =
       std::find_if(dies_.begin(), dies_.end(), [](const DieParameters &die) { return die.friction > 0.; });
-    const bool friction = with_friction != dies_.end();
-    const bool by_rate  = std::any_of(process_.dies.begin(), process_.dies.end(), follows_rate<double>);
+    const bool friction =
+      std::any_of(process_.dies.begin(), process_.dies.end(), [](const auto &die) { return die.rubs(); });
+    const bool by_rate = std::any_of(process_.dies.begin(), process_.dies.end(), follows_rate<double>);
     std::vector<DesignParameter> all;
     add_numbers_of(
       process_.material,
@@ -189,8 +220,8 @@ namespace retroforge
         {"billet/" + shape.name, shape.unit, Kind::billet, shape.nominal, shape.scale, invalid_index, j});
     }
     for (unsigned int d = 0; d < dies_.size(); ++d)
-      add_numbers_of(dies_[d], die_forms_[d], interface_law(process_.dies[d].interface_law), d, width_, all);
-    if (friction)
+      add_numbers_of(dies_[d], die_forms_[d], process_.dies[d], d, width_, all);
+    if (with_friction != dies_.end())
     {
       const NumberInfo coefficient = friction_of(with_friction - dies_.begin());
       all.push_back({"dies/friction",

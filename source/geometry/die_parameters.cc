@@ -26,25 +26,22 @@ namespace retroforge
       "Normal of the working face, pointing from the die to the workpiece; of any length. `die "
       "NAME/offset' moves the die along it. Units: none.");
     prm.add_parameter("velocity", velocity, "Velocity of the die, constant. Units: mm/s.");
+    add_friction(prm, friction_law, friction, shear_limit);
+    prm.declare_entry(
+      "zones",
+      "",
+      dealii::Patterns::Anything(),
+      "Names of zones of the die in which other friction holds; each has a section `Zone NAME' in "
+      "this one, with a box, `from' and `to', and `friction law', `friction' and `shear limit' as "
+      "here. Units: none.");
     prm.add_parameter(
-      "friction law",
-      friction_law,
-      "Law of the friction on the die. Norton: tau = alpha K |dv|^m, with the metal's K and m. Tresca: tau = "
-      "friction k, k = sigma_0/sqrt3 the shear flow stress of the metal at the die. Coulomb: tau = friction "
-      "p, p "
-      "the pressure of the die, and at most `shear limit' k, by a smooth minimum. Units: none.");
-    prm.add_parameter(
-      "friction",
-      friction,
-      "Coefficient of the law of friction: alpha of Norton's, the shear factor of Tresca's, at most 1, mu of "
-      "Coulomb's; 0 is a frictionless die. Units: those of the law, of Norton's mm^(-m), else none.",
-      dealii::Patterns::Double(0.));
-    prm.add_parameter(
-      "shear limit",
-      shear_limit,
-      "Part of the metal's shear flow stress that the friction of Coulomb's law cannot exceed; other "
-      "laws do not read it. Units: none.",
-      dealii::Patterns::Double(1e-6, 1.));
+      "zone edge",
+      zone_edge,
+      "Width over which friction changes at the faces of zones, half of it on each side; with "
+      "elements longer than this, nodes that pass a face jump. Units: mm.",
+      dealii::Patterns::Double(1e-300));
+    for (DieZoneParameters &zone : zones)
+      zone.add_parameters(prm);
     prm.add_parameter("follows billet",
                       follows_billet,
                       "Where the design makes the billet higher or lower, the die starts as far from it as "
@@ -76,5 +73,16 @@ namespace retroforge
                   "correct the velocity or the facing, or leave it out");
     for (const auto &kind : shape.kinds())
       kind->check(section(), shape.name);
+    for (const DieZoneParameters &zone : zones)
+      zone.check();
+    check_apart(zones);
+  }
+
+  Die DieParameters::die() const
+  {
+    Die made = shape->make(place());
+    if (!zones.empty())
+      made.zones = zones_of(made, zones, zone_edge);
+    return made;
   }
 } // namespace retroforge

@@ -75,6 +75,14 @@ namespace retroforge
         json["friction_law"] = die.friction_law;
       if (die.shear_limit)
         json["shear_limit"] = *die.shear_limit;
+      for (const SceneSummary::Die::Zone &zone : die.zones)
+      {
+        SceneJson of_zone = {
+          {"name", zone.name}, {"friction_law", zone.friction_law}, {"friction", zone.friction}};
+        if (zone.shear_limit)
+          of_zone["shear_limit"] = *zone.shear_limit;
+        json["zones"].push_back(of_zone);
+      }
       if (die.touches)
         json["contact_area"] = die.contact_area;
       if (die.overlap)
@@ -220,6 +228,14 @@ namespace retroforge
       if (die.shear_limit)
         out << ", shear limit " << as_text(*die.shear_limit);
       out << '\n';
+      for (const SceneSummary::Die::Zone &zone : die.zones)
+      {
+        out << "    zone " << zone.name << ", friction after " << zone.friction_law << ", "
+            << zone.friction_name << " = " << as_text(zone.friction);
+        if (zone.shear_limit)
+          out << ", shear limit " << as_text(*zone.shear_limit);
+        out << '\n';
+      }
       if (die.extents)
         out << "    " << range(*die.extents) << ", " << die.n_facets << " facets\n";
       else

@@ -73,9 +73,10 @@ namespace retroforge
       , X_0(billet->X)
       , model{parameters.discretization.choice, std::move(dies), {}, {}, {}, MPI_COMM_WORLD}
       , process(std::move(at_process))
-      , segments({{{}, parameters}})
+      , segments(1)
       , objectives(given.empty() ? parameters.make_objectives(model.dies, *billet) : std::move(given))
   {
+    segments.front().parameters = parameters;
     set_numerics(parameters, model);
   }
 

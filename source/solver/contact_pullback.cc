@@ -26,6 +26,15 @@ namespace retroforge
     die.friction += node_bar.alpha;
     die.shear_limit += node_bar.shear_limit;
     bar_.contact.rates[p] += node_bar.rate2;
+    if (node_bar.zones.empty())
+      return;
+    bar_.contact.zones.resize(areas_bar_.S.size());
+    bar_.contact.zones[p].resize(node_bar.zones.size(), 0.);
+    for (unsigned int z = 0; z < node_bar.zones.size(); ++z)
+    {
+      bar_.contact.zones[p][z] += node_bar.zones[z].weight;
+      add_numbers(node_bar.zones[z].law, die.zones[z]);
+    }
   }
 
   void ContactPullback::add(const unsigned int p, const ContactNodeBar &node_bar)

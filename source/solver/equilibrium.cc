@@ -11,7 +11,10 @@ namespace retroforge
   {
     std::vector<DieState<double>> states(dies.size());
     for (std::size_t d = 0; d < dies.size(); ++d)
+    {
       states[d].vertices.resize(dies[d].surface() ? dies[d].surface()->vertices().size() : 0);
+      states[d].zones.resize(dies[d].zones.boxes.size());
+    }
     return states;
   }
 
@@ -63,6 +66,9 @@ namespace retroforge
     node.shear_limit   = die.shear_limit;
     if (!contact.rates.empty())
       node.rate2 = contact.rates[p];
+    if (!contact.zones.empty())
+      for (unsigned int z = 0; z < die.zones.size(); ++z)
+        node.zones.push_back({contact.zones[p][z], die.zones[z]});
     node.active = active.is_given() ? (*active)[p] != 0 : value_of(approach_excess(node)) > 0.;
     return node;
   }
@@ -71,7 +77,9 @@ namespace retroforge
   bool Equilibrium<Number>::has_potential() const
   {
     return std::all_of(physics.dies.begin(), physics.dies.end(), [](const DieState<Number> &die) {
-      return value_of(die.friction) == 0. || interface_law(die.interface_law).has_potential();
+      return !die.any_friction([](const ZoneFriction<Number> &friction) {
+        return !interface_law(friction.interface_law).has_potential();
+      });
     });
   }
 
@@ -81,7 +89,9 @@ namespace retroforge
     const auto law = converted<double>(initial_law_);
     return law.is_linear() &&
            std::all_of(physics.dies.begin(), physics.dies.end(), [&](const DieState<Number> &die) {
-             return value_of(die.friction) == 0. || interface_law(die.interface_law).is_linear(law);
+             return !die.any_friction([&](const ZoneFriction<Number> &friction) {
+               return !interface_law(friction.interface_law).is_linear(law);
+             });
            });
   }
 
@@ -267,7 +277,7 @@ namespace retroforge
       reverse_initial_law(stage.physics.material, law_bar, bar.material);
       return;
     }
-    if (stage.physics.dies[stage.contact.pairs[p].die].friction == 0.)
+    if (!stage.physics.dies[stage.contact.pairs[p].die].rubs())
       return;
     const auto [mean, cells] = stage.surface_state(p);
     PointState<double> mean_bar;

@@ -246,11 +246,16 @@ namespace retroforge
     newtonian.material         = stage.physics.material.initial_law().newtonian(typical_rate(volume, speed));
     const double slip = 0.1 * speed, rate = typical_rate(volume, speed),
                  pressure = 1.5 * rate * newtonian.material.law(1.5 * rate * rate);
+    const auto linearise  = [&](const ZoneFriction<double> &friction) {
+      return linear_friction(
+        friction, {slip, pressure, rate}, stage.physics.material.initial_law(), newtonian.material.law);
+    };
     for (auto &die : newtonian.dies)
     {
-      die.friction = linear_friction(
-        die, {slip, pressure, rate}, stage.physics.material.initial_law(), newtonian.material.law);
+      die.friction      = linearise(die.own_friction());
       die.interface_law = 0;
+      for (ZoneFriction<double> &zone : die.zones)
+        zone = {linearise(zone), 0., 0};
     }
     const Equilibrium<double> linear(scene_, newtonian, stage.contact, stage.X);
     // Nodes at rest against a die at rest must feel it: all that touch count as active in the first matrix.

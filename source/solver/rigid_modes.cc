@@ -225,7 +225,7 @@ namespace retroforge
           if (projection.delta > reach)
             continue;
           resistance.resist(k, projection.n);
-          if (physics.dies[d].friction > 0.)
+          if (physics.dies[d].rubs())
             for (unsigned int i = 0; i < 3; ++i)
             {
               Vec3 unit;

@@ -116,12 +116,14 @@ namespace retroforge
     /// Squares of strain rates at the pairs that laws of friction follow (surface_rates.h) [1/s^2]; empty: none
     /// does.
     std::vector<Number> rates;
-    bool                quadratic = false;
-    Number              tau       = 1.; ///< approach time [s]
-    ApproachLaw         approach;
-    double              edge_stiffness = 1.;   ///< penalty of edges over that of nodes, dimensionless
-    bool                counts_closing = true; ///< as ContactNumerics::counts_closing
-    RigidHold           hold;                  ///< of what pairs leave loose
+    /// For each pair, the weights of its die's zones (geometry/friction_zones.h); empty: no die has any.
+    std::vector<std::vector<Number>> zones;
+    bool                             quadratic = false;
+    Number                           tau       = 1.; ///< approach time [s]
+    ApproachLaw                      approach;
+    double    edge_stiffness = 1.;   ///< penalty of edges over that of nodes, dimensionless
+    bool      counts_closing = true; ///< as ContactNumerics::counts_closing
+    RigidHold hold;                  ///< of what pairs leave loose
   };
 
   /// w(gap/s) of pair p.
@@ -152,8 +154,9 @@ namespace retroforge
   /// reverse_contact_set.
   struct ContactSetBar
   {
-    std::vector<double> delta, ramp, rates;
-    std::vector<Vec3>   n;
+    std::vector<double>              delta, ramp, rates;
+    std::vector<Vec3>                n;
+    std::vector<std::vector<double>> zones; ///< empty: none
 
     explicit ContactSetBar(const std::size_t n_pairs)
         : delta(n_pairs, 0.), ramp(n_pairs, 0.), rates(n_pairs, 0.), n(n_pairs)
@@ -189,6 +192,14 @@ namespace retroforge
                            NodalVectors<double>          &velocity_bar,
                            std::vector<DieState<double>> &dies_bar);
 
+  /// The part of a zone of the die in the friction at a point.
+  template <typename Number>
+  struct ZonePart
+  {
+    Number               weight = Number(0.);
+    ZoneFriction<Number> law;
+  };
+
   /// A contact point with everything that its force depends on.
   template <typename Number>
   struct ContactNode
@@ -202,6 +213,8 @@ namespace retroforge
     unsigned int    interface_law = 0; ///< number of the die's law (interface_law.h)
     Number          shear_limit   = Number(0.);
     Number          rate2         = Number(0.); ///< square of the metal's strain rate, frozen [1/s^2]
+
+    std::vector<ZonePart<Number>> zones = {}; ///< what zones have of its friction; the rest is the die's own
   };
 
   /// Speed at which a gap may close: delta/tau, so that what is in reach arrives within tau; with a layer l
@@ -265,6 +278,8 @@ namespace retroforge
 
     MaterialLaw<double> law;
     ContactLaw<double>  contact;
+
+    std::vector<ZonePart<double>> zones = {}; ///< empty: none
   };
 
   /// Adds the derivatives in u, n, delta and tau of a scalar whose derivatives in dv and h are given.

@@ -9,10 +9,12 @@
 
 /// @file
 /// What acts between metal and die at a point of contact: unilateral contact by a penalty, and friction by
-/// the law that the die's section in the parameter file names. The force on the residual is
+/// the law that the die's section in the parameter file names, or that of a zone of the die. The force on the residual is
 ///   N n + f dv,   N = rho S [h]^+,   f = factor(S^f, coefficient, |dv|^2, N/S, numbers of the metal there, its
 ///   strain rate, and numbers of contact).
-/// It acts on the residual, so that f is not negative: the traction on the metal is -f dv / S^f.
+/// It acts on the residual, so that f is not negative: the traction on the metal is -f dv / S^f. At a point that is part of
+/// zones each law has the part of S^f that the weight of its zone says, the die's own the rest: forces, powers and
+/// potentials are the sums.
 namespace retroforge
 {
   /// Arguments of the friction law at a point.
@@ -132,25 +134,28 @@ namespace retroforge
     double rate;     ///< equivalent strain rate [1/s]
   };
 
-  /// Returns the traction of a die's friction without regularisation [MPa].
-  double
-  friction_traction(const DieState<double> &die, const TypicalContact &at, const MaterialLaw<double> &metal);
+  /// Returns the traction of friction on a die or in a zone of it, without regularisation [MPa].
+  double friction_traction(const ZoneFriction<double> &friction,
+                           const TypicalContact       &at,
+                           const MaterialLaw<double>  &metal);
 
   /// Tells whether a die's friction on a point that sticks is infinitely stiff without regularisation.
   bool needs_regularisation(const DieState<double> &die, const MaterialLaw<double> &metal);
 
-  /// Tells whether a die's friction follows the strain rate of the metal.
+  /// Tells whether friction on a die follows the strain rate of the metal, anywhere.
   template <typename Number>
   bool follows_rate(const DieState<Number> &die)
   {
-    return value_of(die.friction) != 0. && interface_law(die.interface_law).follows_rate();
+    return die.any_friction([](const ZoneFriction<Number> &friction) {
+      return interface_law(friction.interface_law).follows_rate();
+    });
   }
 
-  /// Returns that die's coefficient in Norton's law beside a linear metal, for the same traction.
-  double linear_friction(const DieState<double>    &die,
-                         const TypicalContact      &at,
-                         const MaterialLaw<double> &metal,
-                         const MaterialLaw<double> &linear_metal);
+  /// Returns that friction's coefficient in Norton's law beside a linear metal, for the same traction.
+  double linear_friction(const ZoneFriction<double> &friction,
+                         const TypicalContact       &at,
+                         const MaterialLaw<double>  &metal,
+                         const MaterialLaw<double>  &linear_metal);
 
   /// Returns N  [N]: the die's force on the residual of a point, along its normal. A vertex of quadratic
   /// velocities that is pressed because the middles around it are may pull a little: were that cut off,

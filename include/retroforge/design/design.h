@@ -19,6 +19,8 @@ namespace retroforge
       heat,          ///< a number of the metal's heat
       friction,      ///< friction coefficient of one die, or of all that have friction
       shear_limit,   ///< bound of one die's friction, where its law has one
+      zone_friction, ///< friction coefficient of one zone of a die
+      zone_limit,    ///< bound of its friction, where its law has one
       speed,         ///< speed of one die along its velocity
       offset,        ///< offset of one die along its facing direction
       die_shape,     ///< a measure of one tripod or bell
@@ -32,7 +34,7 @@ namespace retroforge
     double       nominal    = 0.;
     double       scale      = 1.;            ///< a length or size that steps are relative to
     unsigned int die        = invalid_index; ///< invalid_index: all
-    unsigned int number     = 0;             ///< in the law, among the modes, or in BilletMap
+    unsigned int number     = 0;             ///< in the law, among the modes or zones, or in BilletMap
     std::string  measure    = {};            ///< measure of a die's shape
     bool         may_vanish = false;         ///< else it is positive, unless it is free
     double       largest    = std::numeric_limits<double>::infinity();

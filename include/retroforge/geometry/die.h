@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/core/numbers.h>
+#include <retroforge/geometry/friction_zones.h>
 #include <retroforge/geometry/smooth_projection.h>
 
 #include <memory>
@@ -26,12 +27,34 @@ namespace retroforge
     /// Part of the metal's shear flow stress that bounds friction, where its law has a bound of its own
     /// (InterfaceLaw::limit).
     Number shear_limit = Number(0.);
+    /// Friction in the zones of the die (Die::zones).
+    std::vector<ZoneFriction<Number>> zones = {};
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[velocity, displacement, friction, vertices, interface_law, in_press, shear_limit] = self;
-      return std::tie(velocity, displacement, friction, vertices, interface_law, in_press, shear_limit);
+      auto &[velocity, displacement, friction, vertices, interface_law, in_press, shear_limit, zones] = self;
+      return std::tie(
+        velocity, displacement, friction, vertices, interface_law, in_press, shear_limit, zones);
+    }
+
+    /// Friction outside of the zones.
+    ZoneFriction<Number> own_friction() const { return {friction, shear_limit, interface_law}; }
+
+    /// Whether any friction that is not 0, the die's own or that of a zone, fulfils a condition.
+    template <typename Condition>
+    bool any_friction(const Condition &condition) const
+    {
+      bool any = value_of(friction) != 0. && condition(own_friction());
+      for (const ZoneFriction<Number> &zone : zones)
+        any = any || (value_of(zone.friction) != 0. && condition(zone));
+      return any;
+    }
+
+    /// Whether there is friction anywhere on it.
+    bool rubs() const
+    {
+      return any_friction([](const ZoneFriction<Number> &) { return true; });
     }
   };
 
@@ -134,7 +157,8 @@ namespace retroforge
     /// Number of facets; 1 for a plane.
     unsigned int n_facets() const { return surface_ ? surface_->shape.n_facets() : 1; }
 
-    std::string name;
+    std::string   name;
+    FrictionZones zones; ///< where friction is another than its own
 
   private:
     struct Surface

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/geometry/die_kind.h>
+#include <retroforge/geometry/die_zone_parameters.h>
 
 namespace retroforge
 {
@@ -20,6 +21,9 @@ namespace retroforge
     double          shear_limit    = 1.;
     bool            follows_billet = false;
 
+    std::vector<DieZoneParameters> zones; ///< where other friction holds
+    double                         zone_edge = 1.;
+
     explicit DieParameters(std::string name) : name(std::move(name)) {}
 
     void add_parameters(dealii::ParameterHandler &prm);
@@ -28,10 +32,9 @@ namespace retroforge
 
     DiePlace place() const { return {name, section(), point, facing}; }
 
-    /// @throws Error  for a file or measures that make no surface
-    Die die() const { return shape->make(place()); }
+    /// @throws Error  for a file or measures that make no surface, or a zone where there is none
+    Die die() const;
 
-  private:
     std::string section() const { return "Die " + name; }
   };
 } // namespace retroforge

@@ -58,8 +58,15 @@ namespace retroforge
       std::string            friction_name = "alpha"; ///< name of the coefficient in its law
       std::string            friction_law;            ///< empty: Norton's
       std::optional<double>  shear_limit;             ///< where the law has one
-      bool                   leads         = false;
-      double                 smallest_size = unknown; ///< smallest length of the edges wanted near it [mm]
+      struct Zone
+      {
+        std::string           name, friction_law, friction_name;
+        double                friction = 0.;
+        std::optional<double> shear_limit;
+      };
+      std::vector<Zone> zones; ///< where other friction holds
+      bool              leads         = false;
+      double            smallest_size = unknown; ///< smallest length of the edges wanted near it [mm]
 
       struct Place
       {

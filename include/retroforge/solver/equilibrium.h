@@ -259,9 +259,9 @@ namespace retroforge
     }
     if (physics.material.depends_on_state())
       for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-        surface_laws_.push_back(value_of(physics.dies[contact.pairs[p].die].friction) == 0.
-                                  ? initial_law_
-                                  : physics.material.at(surface_state(p).first));
+        surface_laws_.push_back(physics.dies[contact.pairs[p].die].rubs()
+                                  ? physics.material.at(surface_state(p).first)
+                                  : initial_law_);
   }
 
   template <typename Number>

@@ -21,6 +21,9 @@ from whole_runs import PROGRAM, ROOT, contents, judge, judge_message, prm, setti
 CASE = prm(whole_runs.cube(10, 4, 1, 3))
 
 
+ZONE = ("Die upper/Zone flash/from=-1, -1, -1", "Die upper/Zone flash/to=11, 11, 100")
+
+
 def msh(nodes, cells, kind=4):
     return block_meshes.msh(nodes, [(kind, 1, cell) for cell in cells])
 
@@ -137,6 +140,16 @@ MISTAKES = {
     "no die": (settings("Dies/names="), r"Die"),
     "unknown law of friction": (settings("Die upper/friction law=Nortan"),
                                 r"Die upper/friction law.*'Nortan' is no law of friction.*Norton.*did you mean 'Norton'\?"),
+    "unknown law of friction in a zone": (settings("Die upper/zones=flash", *ZONE, "Die upper/Zone flash/friction law=Nortan"),
+                                          r"Die upper/Zone flash/friction law.*'Nortan' is no law of friction.*did you mean 'Norton'\?"),
+    "too much friction in a zone": (settings("Die upper/zones=flash", *ZONE, "Die upper/Zone flash/friction law=Tresca",
+                                             "Die upper/Zone flash/friction=2"), r"Die upper/Zone flash/friction is 2.*at most 1"),
+    "a zone off the die": (settings("Die upper/zones=flash", *ZONE, "Die upper/Zone flash/to=10, 10, 1"),
+                           r"Die upper/Zone flash/from.*no part of die upper is in this zone"),
+    "a zone of no size": (settings("Die upper/zones=flash", *ZONE, "Die upper/Zone flash/to=-1, 10, 100"),
+                          r"Die upper/Zone flash/from is not below `to'"),
+    "zones that overlap": (settings("Die upper/zones=flash, land", *ZONE, *(text.replace("flash", "land") for text in ZONE)),
+                           r"Die upper/Zone land/from.*overlaps zone flash"),
     "no die moves": (settings("Die upper/velocity=0, 0, 0"), r"move"),
     "unknown leading die": (settings("Press/leading die=middle"), r"Press/leading die.*middle"),
     "unknown design parameter": (settings("Design/parameters=material/L"), r"material/L"),

@@ -7,7 +7,8 @@
 // sweep that leaves out any one term does not. The sweep with omissions is the test's own, built from the
 // library's kernels: complete, it agrees with adjoint_sweep. The times of an increment depend on the speed
 // alone, so their terms must show along that direction, all others along the two that move nodes. The same under friction
-// after Tresca, for the strain rate that it follows.
+// after Tresca, for the strain rate that it follows, and with zones of friction on the dies, for the weight of a zone by
+// the place on the die.
 
 #include <deal.II/base/mpi.h>
 
@@ -38,6 +39,8 @@ namespace
   const Terms terms_of_tresca = {{Term::rate, "d(e^2)"},
                                  {Term::rate_position, "d(e^2)/dX"},
                                  {Term::rate_velocity, "d(e^2)/d(velocity before)"}};
+
+  const Terms terms_of_zones = {{Term::zone, "d w/dX of zones"}};
 
   std::vector<Direction> directions(const RecordedRun &run)
   {
@@ -101,4 +104,17 @@ int main(int argc, char **argv)
   RecordedRun tresca(parameters);
   std::cout << "friction after Tresca\n";
   check(tresca, terms_of_tresca);
+  parameters = tilted_block();
+  for (DieParameters &die : parameters.dies)
+  {
+    die.zone_edge           = 12.;
+    DieZoneParameters &zone = die.zones.emplace_back("flash", die.section());
+    zone.from               = Vec3({2., -3., -20.});
+    zone.to                 = Vec3({40., 40., 50.});
+    zone.friction_law       = "Tresca";
+    zone.friction           = 0.9;
+  }
+  RecordedRun zones(parameters);
+  std::cout << "zones of friction\n";
+  check(zones, terms_of_zones);
 }

@@ -38,7 +38,8 @@ namespace retroforge
     coming,        // width of the ramp by the metal's velocity in the increment before
     rate,          // strain rate that friction follows
     rate_position, // the same by the nodes' positions
-    rate_velocity  // the same by their velocity in the increment before
+    rate_velocity, // the same by their velocity in the increment before
+    zone           // weight of a zone of friction by the place on the die
   };
 
   /// A facet of a smooth die and a point, as project_smoothly() has them: 21 numbers.
@@ -219,6 +220,14 @@ namespace retroforge
       }
       Vec3 &displacement = dies_bar[pair.die].displacement;
       Vec3  at_point;
+      if (omitted != Term::zone)
+        for (unsigned int z = 0; z < bar.zones[p].size(); ++z)
+        {
+          const Vec3 on_die = pair.point.position(X) - states[pair.die].displacement,
+                     by_x   = bar.zones[p][z] * die.zones.gradient(z, on_die);
+          pair.point.add_to_position(by_x, X_bar);
+          displacement -= by_x;
+        }
       if (die.surface() && pair.feature.kind == 0)
       {
         reverse_smooth(die,
@@ -254,7 +263,8 @@ namespace retroforge
                        ContactSetBar             &contact_bar,
                        PhysicsBar                &bar)
   {
-    const std::size_t    n = stage.contact.pairs.size();
+    const std::size_t n = stage.contact.pairs.size();
+    contact_bar.zones.resize(n);
     ContactAreas<double> areas_bar{std::vector<double>(n, 0.), std::vector<double>(n, 0.)};
     for (unsigned int p = 0; p < n; ++p)
     {
@@ -265,6 +275,9 @@ namespace retroforge
       contact_bar.delta[p] += node.delta;
       contact_bar.n[p] += node.n;
       contact_bar.rates[p] += omitted == Term::rate ? 0. : node.rate2;
+      contact_bar.zones[p].resize(node.zones.size(), 0.);
+      for (unsigned int z = 0; z < node.zones.size(); ++z)
+        contact_bar.zones[p][z] += node.zones[z].weight;
       bar.tau += node.tau;
       bar.dies[stage.contact.pairs[p].die].velocity -= node.u;
     }
