@@ -235,23 +235,25 @@ class Result:
         return self.misfit > self.freedom + 3 * np.sqrt(2 * max(self.freedom, 1)) + 4
 
 
-def evaluate(jacobian, misfits, change, finer):
+def evaluate(jacobian, misfits, change, sources, finer):
     """Parameters by one step of Gauss and Newton from those of the search, for data less what finer numerics change.
 
-    jacobian, misfits and change are of each datum, in its deviations; returns (step, deviations, part of numerics, half widths,
-    correlations, sum of squares). With elements `finer` times as large an error of first order falls to that part, so that finer/(1 - finer)
-    times its change is left.  @throws Refused  where the data do not tell parameters apart
+    jacobian, misfits and change are of each datum, in its deviations, `sources` says which have their numerics in common: a force curve, a
+    bore. Returns (step, deviations, part of numerics, half widths, correlations, sum of squares). With elements `finer` times as large an
+    error of first order falls to that part, so that finer/(1 - finer) times its change is left; what the sources leave adds up, so
+    that two of them do not cancel by chance.  @throws Refused  where the data do not tell parameters apart
     """
     scales = np.linalg.norm(jacobian, axis=0)
     if not np.all(scales > 0) or np.linalg.cond(jacobian / scales) > 1e6:
         raise Refused("the data do not tell the parameters apart; look for fewer, or add a test: two speeds for m, a ring for friction")
     inverse = np.linalg.pinv(jacobian / scales) / scales[:, None]
     covariance = inverse @ inverse.T
-    numerics = -inverse @ change
+    by_source = np.array([-inverse @ np.where(sources == source, change, 0) for source in np.unique(sources)])
+    numerics = by_source.sum(axis=0)
     step = -inverse @ misfits + numerics
     deviations = np.sqrt(np.diag(covariance))
     misfit = float(np.sum((misfits + change + jacobian @ step)**2))
-    left = finer / (1 - finer) * numerics
+    left = finer / (1 - finer) * np.abs(by_source).sum(axis=0)
     return step, deviations, numerics, np.hypot(WIDTH_95 * deviations, left), covariance / np.outer(deviations, deviations), misfit
 
 
@@ -274,14 +276,15 @@ def evaluate_at(tests, found, forgings, finest, finer):
     if not free:
         raise Refused("all parameters are at their bounds")
     names = [parameter["name"] for parameter in free]
-    rows, misfits, change = [], [], []
+    rows, misfits, change, sources = [], [], [], []
     for test, forging, fine in zip(tests, forgings, finest):
         for datum in test.data:
             value, by = forging.objectives[datum.objective], forging.gradients[datum.objective]
             rows.append([by.get(parameter, 0.0) / datum.deviation for parameter in names])
             misfits.append((value - datum.value) / datum.deviation)
+            sources.append(f"{test.name} {'' if datum.window else datum.objective}")
             change.append((fine.objectives[datum.objective] - value) / datum.deviation if fine else 0.0)
-    step, deviations, numerics, widths, correlations, misfit = evaluate(*map(np.array, (rows, misfits, change)), finer)
+    step, deviations, numerics, widths, correlations, misfit = evaluate(*map(np.array, (rows, misfits, change, sources)), finer)
     best = np.array([parameter["best"] for parameter in free])
     return Result(names, [parameter["unit"] for parameter in free], best, best + step, deviations, numerics, widths, correlations, misfit,
                   len(rows) - len(free), [parameter for parameter in found["parameters"] if parameter["at"]])

@@ -60,7 +60,7 @@ def identified(truth, seed):
 
 
 def main():
-    n_seeds = int(sys.argv[2]) if len(sys.argv) > 2 else 20
+    n_seeds = int(sys.argv[2]) if len(sys.argv) > 2 else 12
     truth = {name: made.forge(name) for name in made.SIZES}
     results = []
     print("| seed | " + " | ".join(made.TRUTH) + " | sum of squares |\n" + "| --- " * (len(made.TRUTH) + 2) + "|")

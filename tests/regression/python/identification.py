@@ -56,15 +56,20 @@ class Curves(unittest.TestCase):
         """A straight line through points of deviation 1: closed form of least squares."""
         x = np.arange(5.0)
         jacobian = np.column_stack((np.ones(5), x))
-        step, deviations, numerics, widths, correlations, misfit = identify.evaluate(jacobian, 3 - 2 * x, np.full(5, 0.7), 0.5)
+        step, deviations, numerics, widths, correlations, misfit = identify.evaluate(jacobian, 3 - 2 * x, np.full(5, 0.7), np.zeros(5), 0.5)
         np.testing.assert_allclose(step, [-3.7, 2], atol=1e-12)
         np.testing.assert_allclose(numerics, [-0.7, 0], atol=1e-12)
         np.testing.assert_allclose(deviations, np.sqrt([0.6, 0.1]))
         np.testing.assert_allclose(widths, [np.hypot(1.959964 * np.sqrt(0.6), 0.7), 1.959964 * np.sqrt(0.1)], rtol=1e-6)
         self.assertAlmostEqual(correlations[0, 1], -0.2 / np.sqrt(0.06))
         self.assertAlmostEqual(misfit, 0)
+        # Two sources whose errors cancel leave them nevertheless.
+        mean = np.ones((4, 1))
+        _, _, numerics, widths, _, _ = identify.evaluate(mean, np.zeros(4), np.array([0.4, 0.4, -0.4, -0.4]), np.array([0, 0, 1, 1]), 0.75)
+        self.assertAlmostEqual(numerics[0], 0)
+        self.assertAlmostEqual(widths[0], np.hypot(1.959963984540054 * 0.5, 3 * 0.4))
         with self.assertRaisesRegex(identify.Refused, "do not tell the parameters apart"):
-            identify.evaluate(np.column_stack((x + 1, 2 * x + 2)), x, 0 * x, 0.5)
+            identify.evaluate(np.column_stack((x + 1, 2 * x + 2)), x, 0 * x, 0 * x, 0.5)
 
 
 class Tests(unittest.TestCase):
@@ -89,7 +94,7 @@ class Tests(unittest.TestCase):
         for parameter in found["parameters"]:
             truth, value, width = make_measurements.TRUTH[parameter["name"]], parameter["value"], parameter["half_width_95"]
             self.assertLessEqual(abs(value - truth), width, parameter)
-            self.assertLess(width, 0.1 * truth, parameter)
+            self.assertLess(width, 0.15 * truth, parameter)
             self.assertGreater(parameter["deviation"], 0)
 
     def test_refusals(self):
