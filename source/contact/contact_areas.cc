@@ -2,35 +2,10 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/contact/contact_areas.h>
 #include <retroforge/element/mini_element.templates.h>
+#include <retroforge/mesh/surface_areas.h>
 
 namespace retroforge
 {
-  namespace
-  {
-    template <typename Number>
-    Number face_area(const BoundaryFace &face, const NodalVectors<Number> &X)
-    {
-      using std::sqrt;
-      const Vector3<Number> a = X[face.nodes[1]] - X[face.nodes[0]], b = X[face.nodes[2]] - X[face.nodes[0]];
-      const Vector3<Number> c = cross(a, b);
-      return 0.5 * sqrt(Number(c * c));
-    }
-
-    void reverse_face_area(const BoundaryFace         &face,
-                           const NodalVectors<double> &X,
-                           const double                area_bar,
-                           NodalVectors<double>       &X_bar)
-    {
-      const Vec3 a = X[face.nodes[1]] - X[face.nodes[0]], b = X[face.nodes[2]] - X[face.nodes[0]];
-      const Vec3 c      = cross(a, b);
-      const Vec3 normal = c / c.norm();
-      const Vec3 d1 = 0.5 * area_bar * cross(b, normal), d2 = 0.5 * area_bar * cross(normal, a);
-      X_bar[face.nodes[1]] += d1;
-      X_bar[face.nodes[2]] += d2;
-      X_bar[face.nodes[0]] -= d1 + d2;
-    }
-  } // namespace
-
   namespace
   {
     /// Returns the share of a face's area that belongs to a point of it.
@@ -63,11 +38,11 @@ namespace retroforge
     areas.Sf.assign(contact.pairs.size(), Number(0.));
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       contact.pairs[p].point.for_each_face(mesh, topology, [&](const unsigned int f) {
-        areas.S[p] += part_of_face(contact, p) * face_area(mesh.faces[f], X);
+        areas.S[p] += part_of_face(contact, p) * triangle_area(mesh.faces[f].nodes, X);
       });
     for (const auto &face : contact.friction_faces)
     {
-      const Number part = corner_part(contact) * face.weight * face_area(mesh.faces[face.face], X);
+      const Number part = corner_part(contact) * face.weight * triangle_area(mesh.faces[face.face].nodes, X);
       for (const unsigned int p : face.points)
         areas.Sf[p] += part;
     }
@@ -90,15 +65,15 @@ namespace retroforge
     for (unsigned int p = 0; p < contact.pairs.size(); ++p)
       if (areas_bar.S[p] != 0.)
         contact.pairs[p].point.for_each_face(mesh, topology, [&](const unsigned int f) {
-          reverse_face_area(mesh.faces[f], X, areas_bar.S[p] * part_of_face(contact, p), X_bar);
+          reverse_triangle_area(mesh.faces[f].nodes, X, areas_bar.S[p] * part_of_face(contact, p), X_bar);
         });
     for (const auto &face : contact.friction_faces)
     {
       const double part_bar =
         (areas_bar.Sf[face.points[0]] + areas_bar.Sf[face.points[1]] + areas_bar.Sf[face.points[2]]) *
         corner_part(contact);
-      reverse_face_area(mesh.faces[face.face], X, part_bar * face.weight, X_bar);
-      const double weight_bar = part_bar * face_area(mesh.faces[face.face], X);
+      reverse_triangle_area(mesh.faces[face.face].nodes, X, part_bar * face.weight, X_bar);
+      const double weight_bar = part_bar * triangle_area(mesh.faces[face.face].nodes, X);
       for (unsigned int c = 0; c < 3; ++c)
         bar.ramp[face.points[c]] +=
           weight_bar * contact.ramps[face.points[(c + 1) % 3]] * contact.ramps[face.points[(c + 2) % 3]];

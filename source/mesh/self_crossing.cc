@@ -12,16 +12,16 @@ namespace retroforge
 {
   namespace
   {
-    using Triangle = std::array<Vec3, 3>;
+    using Corners = std::array<Vec3, 3>;
 
-    Triangle triangle(const BoundaryFace &face, const NodalVectors<double> &X)
+    Corners triangle(const BoundaryFace &face, const NodalVectors<double> &X)
     {
       return {{X[face.nodes[0]], X[face.nodes[1]], X[face.nodes[2]]}};
     }
 
     // Whether the segment passes through the inside of the triangle: its ends lie on either side, and the
     // volumes it spans with the three edges have one sign.
-    bool crosses(const Vec3 &a, const Vec3 &b, const Triangle &x)
+    bool crosses(const Vec3 &a, const Vec3 &b, const Corners &x)
     {
       const double at_a = tet_volume({{x[0], x[1], x[2], a}}), at_b = tet_volume({{x[0], x[1], x[2], b}});
       // In one plane (a patch of symmetry) all these volumes are rounding.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/shares.h>
+#include <retroforge/mesh/surface_areas.h>
 #include <retroforge/objective/facet_gaps.h>
 #include <retroforge/objective/local_derivatives.h>
-#include <retroforge/objective/surface_areas.h>
 
 #include <map>
 

@@ -4,10 +4,10 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/shares.h>
 #include <retroforge/core/text.h>
+#include <retroforge/mesh/surface_areas.h>
 #include <retroforge/objective/filling.h>
 #include <retroforge/objective/objective_settings.h>
 #include <retroforge/objective/sector.h>
-#include <retroforge/objective/surface_areas.h>
 
 namespace retroforge
 {

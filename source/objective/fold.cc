@@ -4,9 +4,9 @@
 #include <retroforge/core/text.h>
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/element/cell_geometry.templates.h>
+#include <retroforge/mesh/surface_areas.h>
 #include <retroforge/objective/fold.h>
 #include <retroforge/objective/objective_settings.h>
-#include <retroforge/objective/surface_areas.h>
 
 #include <sstream>
 

@@ -3,8 +3,8 @@
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/core/text.h>
+#include <retroforge/mesh/surface_areas.h>
 #include <retroforge/objective/radius.h>
-#include <retroforge/objective/surface_areas.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/mesh/surface_areas.h>
 #include <retroforge/objective/objective_settings.h>
 #include <retroforge/objective/shape_distance.h>
-#include <retroforge/objective/surface_areas.h>
 
 namespace retroforge
 {

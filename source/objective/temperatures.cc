@@ -148,7 +148,7 @@ namespace retroforge
           throw Error(where,
                       "follows the temperatures of the workpiece",
                       "Heat/heating is none, and the metal keeps that before the stroke",
-                      "set Heat/heating = adiabatic, or leave the objective out");
+                      "set Heat/heating = adiabatic or conduction, or leave the objective out");
         objective.at_end = std::make_unique<TemperatureObjective>(extreme, smoothing);
       }
     };
