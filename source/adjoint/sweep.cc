@@ -37,6 +37,7 @@ namespace retroforge
                                     {zero_costate<3>(end.workpiece.X.size(),
                                                      end.workpiece.strain.size(),
                                                      run.process.heat.warms(),
+                                                     run.process.heat.conducts(),
                                                      run.process.material.is_damaged()),
                                      {no_process_derivatives(run.process, run.model.dies), run.model.comm}});
       for (std::size_t o = 0; o < run.objectives.size(); ++o)
@@ -138,6 +139,8 @@ namespace retroforge
     std::vector<unsigned int>  remeshed = end.remeshed;
     std::shared_ptr<MeshEpoch> epoch    = end.epoch;
     AdjointSweep               sweep;
+
+    const WorkpieceState<3, double> no_history;
     epoch->increment.mechanics.forget();
     for (unsigned int i = end.increments; i-- > 0;)
     {
@@ -155,14 +158,18 @@ namespace retroforge
         velocity.clear();
       const unsigned int         before = epoch->system.n_solves;
       const NodalVectors<double> X      = epoch->increment.mechanics.retreat(run.process, state.X, record);
-      if (!end.starts.empty())
-        state = end.starts[i];
+      if (!end.remembered.empty())
+        state = end.remembered[i].start;
       state.X        = X;
       state.velocity = velocity;
       if (record.remesh && !velocity.empty())
         state.velocity = record.remesh->transfer.apply<Vec3>(velocity);
-      epoch->increment.reverse(
-        run.process, state, record, source_of(run, rows_bar, combinations, i), costates);
+      epoch->increment.reverse(run.process,
+                               state,
+                               end.remembered.empty() ? no_history : end.remembered[i].worked,
+                               record,
+                               source_of(run, rows_bar, combinations, i),
+                               costates);
       for (std::size_t j = 0; j < costates.size(); ++j)
         reverse_times(run, rows_bar, combinations[j], i, record, costates[j]);
       sweep.linear_solves += epoch->system.n_solves - before;

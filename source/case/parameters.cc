@@ -5,6 +5,8 @@
 #include <retroforge/core/nearest_name.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 namespace retroforge
 {
@@ -93,6 +95,19 @@ end
     print_parameters(prm, out);
   }
 
+  namespace
+  {
+    /// Settings that are read where heat flows.
+    bool is_of_conduction(const std::string &path)
+    {
+      constexpr std::array<std::string_view, 3> others{
+        {"Heat/heating", "Heat/heat capacity", "Heat/fraction of work"}};
+      const bool of_die = path.rfind("Die ", 0) == 0 && path.substr(path.find('/')) == "/temperature";
+      return of_die ||
+             (path.rfind("Heat/", 0) == 0 && std::find(others.begin(), others.end(), path) == others.end());
+    }
+  } // namespace
+
   void Parameters::find_without_effect(const std::vector<ParameterEntry> &entries)
   {
     for (const ParameterEntry &entry : entries)
@@ -112,6 +127,11 @@ end
       for (const DieZoneParameters &zone : die.zones)
         find_limits(zone.section(), zone.friction_law);
     }
+    if (heat.heating != Heating::conduction)
+      for (const ParameterEntry &entry : entries)
+        if (entry.value != entry.default_value && is_of_conduction(entry.path()))
+          without_effect.push_back(entry.path() + " = " + entry.value +
+                                   " has no effect: Heat/heating is not conduction");
     if (!objectives.combined)
       for (const ParameterEntry &entry : entries)
         if (entry.name == "weight" && entry.value != entry.default_value)
@@ -148,6 +168,52 @@ end
                     "use 1e-2, or 1e-3 for a sharper law");
     }
     leading_die();
+    resting_die();
+    check_heat();
+  }
+
+  void Parameters::check_heat() const
+  {
+    constexpr double absolute_zero = -273.15;
+    if (heat.heating != Heating::conduction)
+      return;
+    if (material.temperature.empty())
+      throw Error("Material/temperature",
+                  "is not given",
+                  "heat flows from a billet whose temperature is known",
+                  "set that before transfer, dwell and stroke, in C");
+    for (const DieParameters &die : dies)
+      if (!(die.temperature > absolute_zero))
+        throw Error("Die " + die.name + "/temperature",
+                    "is " + as_text(die.temperature),
+                    "temperatures are in C, above absolute zero",
+                    "use for instance 200 for preheated dies");
+    if (heat.dwell > 0. && heat.dwell_film == 0.)
+      throw Error("Heat/dwell time",
+                  "is " + as_text(heat.dwell) + ", with dwell film = 0",
+                  "a workpiece that waits on a die gives it heat",
+                  "use transfer time, or a dwell film of 1 to 2");
+  }
+
+  unsigned int Parameters::resting_die() const
+  {
+    unsigned int resting = 0;
+    for (unsigned int d = dies.size(); d-- > 0;)
+      if (dies[d].velocity.norm() == 0.)
+        resting = d;
+    if (heat.resting_die.empty())
+      return resting;
+    std::vector<std::string> names;
+    for (unsigned int d = 0; d < dies.size(); ++d)
+    {
+      if (dies[d].name == heat.resting_die)
+        return d;
+      names.push_back(dies[d].name);
+    }
+    throw Error("Heat/resting die",
+                "there is no die '" + heat.resting_die + "'",
+                "the dies are: " + join(names),
+                "name one of them, or leave it empty for the first that stands still");
   }
 
   unsigned int Parameters::leading_die() const

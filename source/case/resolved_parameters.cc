@@ -142,7 +142,7 @@ namespace retroforge
       operation.dies.push_back(d);
     const double speed = closing_speed(process.dies);
     process.material   = material.metal(speed / size.height);
-    process.heat       = heat.law();
+    process.heat       = heat.law(resting_die());
     process.contact    = open_contact(size).law(process.material.initial_law(), speed);
     return process;
   }
@@ -158,7 +158,7 @@ namespace retroforge
                                      material.metal(1.).initial_law().K,
                                      made_billet,
                                      FrictionRamp{touching_gap_, step_model().contact.ramp.sharp},
-                                     heat.law().warms(),
+                                     heat.heating != Heating::none,
                                      material.damage != Damage::none}));
     return made;
   }

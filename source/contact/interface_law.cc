@@ -61,6 +61,7 @@ namespace retroforge
     state.shear_limit = own.shear_limit;
     for (const DieZoneParameters &zone : die.zones)
       state.zones.push_back(friction_of(zone));
+    state.temperature = die.temperature;
     return state;
   }
 

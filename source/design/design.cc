@@ -215,6 +215,9 @@ namespace retroforge
         case Kind::shear_limit:
           process.dies[parameter.die].shear_limit = mu[j];
           break;
+        case Kind::die_temperature:
+          process.dies[parameter.die].temperature = mu[j];
+          break;
         case Kind::zone_friction:
           process.dies[parameter.die].zones[parameter.number].friction = mu[j];
           break;

@@ -206,7 +206,19 @@ namespace retroforge
     }
     if (process_.heat.warms())
       add_numbers_of(
-        process_.heat, "heat", Kind::heat, [](const std::string &) { return true; }, all);
+        process_.heat,
+        "heat",
+        Kind::heat,
+        [&](const std::string &name) { return process_.heat.reads(name); },
+        all);
+    if (process_.heat.conducts())
+      for (unsigned int d = 0; d < dies_.size(); ++d)
+      {
+        DesignParameter temperature{
+          "die " + dies_[d].name + "/temperature", "C", Kind::die_temperature, dies_[d].temperature, 100., d};
+        temperature.any_sign = true;
+        all.push_back(temperature);
+      }
     add_numbers_of(
       process_.contact,
       "contact",

@@ -42,6 +42,9 @@ namespace retroforge
       dealii::Patterns::Double(1e-300));
     for (DieZoneParameters &zone : zones)
       zone.add_parameters(prm);
+    prm.add_parameter("temperature",
+                      temperature,
+                      "Of the die before it touches metal, read where Heat/heating is conduction. Units: C.");
     prm.add_parameter("follows billet",
                       follows_billet,
                       "Where the design makes the billet higher or lower, the die starts as far from it as "

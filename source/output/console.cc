@@ -95,6 +95,29 @@ namespace retroforge
   namespace
   {
     /// "energy 20 mJ (deformation 15, friction 5); of the whole part 80 mJ"
+    /// What heat did, and what of it was left out.
+    void print_heat(const Summary::Heat &heat)
+    {
+      if (!std::isfinite(heat.warming))
+        return;
+      const char *work =
+        heat.warms ? "the work warmed the metal by" : "heat is left out: the work would warm the metal by";
+      std::printf("  %s %.3g K on the mean", work, heat.warming);
+      if (std::isfinite(heat.mean_temperature))
+        std::printf(", which ends at %.5g C", heat.mean_temperature);
+      if (heat.conducts)
+        std::printf("; in %.3g s dies chilled a skin of %.2g mm, %.2g elements",
+                    heat.seconds,
+                    heat.chilled,
+                    heat.elements);
+      else
+        std::printf("%s in %.3g s dies chill a skin of %.2g mm",
+                    heat.warms ? "; left out:" : ", and",
+                    heat.seconds,
+                    heat.chilled);
+      std::printf("\n");
+    }
+
     void print_objective(const Summary::Objective &objective, const bool is_model)
     {
       const char *unit = objective.unit.c_str();
@@ -125,16 +148,7 @@ namespace retroforge
         "  the surface crossed itself, or cells at it stayed flat, in places thinner than an element: "
         "%.3g mm^3 were taken away there, and put back elsewhere\n",
         summary.volume_repaired);
-    if (std::isfinite(summary.heat.warming))
-      std::printf(
-        summary.heat.warms
-          ? "  the work warmed the metal by %.3g K on the mean; left out: in %.3g s dies chill a skin of "
-            "%.2g mm\n"
-          : "  heat is left out: the work would warm the metal by %.3g K on the mean, and in %.3g s dies "
-            "chill a skin of %.2g mm\n",
-        summary.heat.warming,
-        summary.heat.seconds,
-        summary.heat.chilled);
+    print_heat(summary.heat);
     for (const std::string &warning : summary.warnings)
       std::printf("  warning: %s\n", warning.c_str());
     const auto total = summary.wall_seconds.find("total");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/objective/surface_areas.h>
+#include <retroforge/mesh/surface_areas.h>
 #include <retroforge/output/contact_fields.h>
 
 namespace retroforge

@@ -6,6 +6,7 @@
 #include <retroforge/output/die_pictures.h>
 #include <retroforge/output/field_file.h>
 #include <retroforge/output/field_writer.h>
+#include <retroforge/steps/heating.h>
 
 #include <cstdio>
 
@@ -21,10 +22,12 @@ namespace retroforge
     const std::vector<double>  &P;
     const CellFields           &cells; ///< where V and P are an equilibrium
     const std::vector<double>  &strain;
-    const std::vector<double>  &temperature;  ///< empty: not followed
-    const std::vector<double>  &damage;       ///< empty: not followed
-    const NodalVectors<double> *displacement; ///< null: unknown
-    const ContactFields        *contact;      ///< null: unknown
+    const std::vector<double>  &temperature; ///< empty: not followed
+    /// Of the metal above its skins, and of the dies where they touch; empty: heat does not flow.
+    std::array<std::vector<double>, 2> surface_temperatures;
+    const std::vector<double>         &damage;       ///< empty: not followed
+    const NodalVectors<double>        *displacement; ///< null: unknown
+    const ContactFields               *contact;      ///< null: unknown
   };
 
   namespace
@@ -98,6 +101,11 @@ namespace retroforge
     picture.add_constant("equivalent_strain", "", workpiece.strain);
     if (!workpiece.temperature.empty())
       picture.add_linear("temperature", "C", workpiece.temperature);
+    if (const auto &[metal, die] = workpiece.surface_temperatures; !metal.empty())
+    {
+      picture.add_linear("surface_temperature", "C", metal);
+      picture.add_linear("die_temperature", "C", die);
+    }
     if (!workpiece.damage.empty())
       picture.add_constant("damage", "", workpiece.damage);
     picture.add_constant("strain_rate", "1/s", cells.strain_rate);
@@ -146,6 +154,10 @@ namespace retroforge
     const auto                 before = workpiece_before(process_, X_0_, billet_.n_cells());
     const NodalVectors<double> still(billet_.n_nodes()), at_rest(discretization.condensed_nodes()->n());
     const ContactFields        contact{zero, zero, still};
+    // Before anything touches; none where heat does not flow.
+    std::array<std::vector<double>, 2> at_surface;
+    if (!before.skin.empty())
+      at_surface = {{before.temperature, zero}};
     const CellFields cells = cell_fields(discretization, X_0_, Field<double>(discretization), [&](CellIndex) {
       return process_.material.initial_law();
     });
@@ -158,6 +170,7 @@ namespace retroforge
            cells,
            strain,
            before.temperature,
+           at_surface,
            before.damage,
            &still,
            &contact});
@@ -198,6 +211,7 @@ namespace retroforge
              cells,
              run.workpiece.strain,
              run.workpiece.temperature,
+             surface_temperatures(scene, process_, place(event.record), run.workpiece),
              run.workpiece.damage,
              &displacement_,
              &contact});
@@ -236,6 +250,7 @@ namespace retroforge
            cells,
            state.workpiece.strain,
            state.workpiece.temperature,
+           {},
            state.workpiece.damage,
            displacement,
            nullptr});

@@ -139,10 +139,16 @@ namespace retroforge
                                {"largest", json_number(balance.largest)},
                                {"stroke", json_number(balance.stroke)}};
     if (std::isfinite(heat.warming))
+    {
       json["heat"] = {{"warms", heat.warms},
+                      {"conducts", heat.conducts},
                       {"mean_warming", json_number(heat.warming)},
                       {"seconds", json_number(heat.seconds)},
-                      {"chilled_depth", json_number(heat.chilled)}};
+                      {"chilled_depth", json_number(heat.chilled)},
+                      {"chilled_elements", json_number(heat.elements)}};
+      if (std::isfinite(heat.mean_temperature))
+        json["heat"]["mean_temperature"] = json_number(heat.mean_temperature);
+    }
     if (!deepest.die.empty())
       json["deepest"] = {
         {"depth", json_number(deepest.depth)},

@@ -36,20 +36,43 @@ namespace retroforge
 
   namespace
   {
-    /// k/(rho c) of hot steel [mm^2/s].
+    /// k/(rho c) of hot steel [mm^2/s], where heat does not flow.
     constexpr double diffusivity = 5.6;
 
-    /// Warming by the work of deformation,  chi E/(rho c |Omega|),  and the depth  sqrt(a t)  of a chill.
-    Summary::LeftOut
-    left_out_of_heat(const Process<double> &process, const ForgingState &forged, const double volume)
+    double mean_temperature(const TetMesh &mesh, const WorkpieceState<3, double> &workpiece)
     {
-      Summary::LeftOut heat;
+      double sum = 0., whole = 0.;
+      for (const auto &cell : mesh.cells)
+      {
+        const double part = tet_volume(corners(cell, workpiece.X));
+        whole += part;
+        for (const NodeIndex k : cell)
+          sum += 0.25 * part * workpiece.temperature[k];
+      }
+      return sum / whole;
+    }
+
+    /// Warming by the work of deformation,  chi E/(rho c |Omega|),  and the depth  sqrt(a t)  of a chill.
+    Summary::Heat summarise_heat(const Process<double> &process,
+                                 const ForgingState    &forged,
+                                 const double           volume,
+                                 const double           edge_length)
+    {
+      Summary::Heat heat;
       if (forged.increments == 0)
         return heat;
-      heat.warms   = process.heat.warms();
-      heat.warming = process.heat.fraction * forged.energy.deformation / (process.heat.capacity * volume);
-      heat.seconds = process.whole_time(forged.stroke, forged.operation);
-      heat.chilled = std::sqrt(diffusivity * heat.seconds);
+      const HeatLaw<double> &law = process.heat;
+      heat.warms                 = law.warms();
+      heat.conducts              = law.conducts();
+      heat.warming               = law.fraction * forged.energy.deformation / (law.capacity * volume);
+      heat.seconds               = process.whole_time(forged.stroke, forged.operation);
+      if (heat.conducts)
+        heat.seconds += law.dwell;
+      heat.chilled =
+        std::sqrt((heat.conducts ? law.conductivity / law.capacity : diffusivity) * heat.seconds);
+      heat.elements = heat.chilled / edge_length;
+      if (!forged.workpiece.temperature.empty())
+        heat.mean_temperature = mean_temperature(forged.epoch->scene.mesh, forged.workpiece);
       return heat;
     }
   } // namespace
@@ -81,7 +104,10 @@ namespace retroforge
     summary.volume_initial        = volume(forging_case.billet.cells, forging_case.X_0);
     summary.volume_final          = volume(forged.epoch->scene.mesh.cells, forged.workpiece.X);
     summary.volume_repaired       = forged.removed_volume;
-    summary.heat                  = left_out_of_heat(forging_case.process, forged, summary.volume_final);
+    summary.heat                  = summarise_heat(forging_case.process,
+                                  forged,
+                                  summary.volume_final,
+                                  forging_case.parameters.edge_length(forging_case.nominal_billet));
     summarise_restarts(forging_case.segments, summary);
   }
 

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/discretization/strain_history.h>
 #include <retroforge/steps/damage.h>
+#include <retroforge/steps/friction_heat.h>
 #include <retroforge/steps/history.h>
 #include <retroforge/steps/warming.h>
 
@@ -16,6 +17,8 @@ namespace retroforge
     complete_entries(discretization.cells(), state.strain.data(), 1);
     if (!state.temperature.empty())
       add_warming(view, dt, state.temperature);
+    if (view.stage.physics.heat.conducts())
+      add_friction_heat(view, dt, state.temperature);
     if (!state.damage.empty())
       add_damage(view, dt, state.damage);
   }
@@ -29,7 +32,11 @@ namespace retroforge
                        EquilibriumBar                  &bar)
   {
     if (!is_zero(costate.temperature))
+    {
       reverse_add_warming(view, dt, costate.temperature, bar);
+      if (view.stage.physics.heat.conducts())
+        reverse_add_friction_heat(view, dt, costate.temperature, bar);
+    }
     if (!is_zero(costate.damage))
       reverse_add_damage(view, dt, costate.damage, bar);
     if (is_zero(costate.strain))

@@ -7,15 +7,71 @@ namespace retroforge
 {
   bool Increment::reads_history(const Process<double> &process)
   {
-    return process.material.depends_on_state();
+    return process.material.depends_on_state() || process.heat.conducts();
   }
 
-  void Increment::advance(const SolvedIncrement &solved, WorkpieceState<3, double> &state) const
+  const MeshEdges &Increment::edges() const
   {
+    if (!edges_)
+      edges_.emplace(scene_.mesh, scene_.topology);
+    return *edges_;
+  }
+
+  std::optional<WorkpieceState<3, double>> Increment::conducted(const Process<double>           &process,
+                                                                const WorkpieceState<3, double> &state,
+                                                                const IncrementRecord           &record) const
+  {
+    if (!process.heat.conducts())
+      return {};
+    const auto timing = timings_.scope("heat");
+    auto       half   = state;
+    conduct_over(HalfOfIncrement::first, scene_, edges(), process, place(record), state.X, half);
+    return half;
+  }
+
+  SolvedIncrement Increment::forward(const Process<double>           &process,
+                                     const WorkpieceState<3, double> &state,
+                                     const bool                       replay,
+                                     const InitialGuess              &guess,
+                                     IncrementRecord                 &record)
+  {
+    auto            half   = conducted(process, state, record);
+    SolvedIncrement solved = mechanics.forward(process, half ? *half : state, replay, guess, record);
+    if (half)
+      solved.before = without_motion(std::move(*half));
+    return solved;
+  }
+
+  SolvedIncrement Increment::recorded(const Process<double>           &process,
+                                      const WorkpieceState<3, double> &state,
+                                      const IncrementRecord           &record) const
+  {
+    auto            half   = conducted(process, state, record);
+    SolvedIncrement solved = mechanics.recorded(process, half ? *half : state, record);
+    if (half)
+      solved.before = without_motion(std::move(*half));
+    return solved;
+  }
+
+  WorkpieceState<3, double> Increment::advance(const Process<double>     &process,
+                                               const SolvedIncrement     &solved,
+                                               const IncrementRecord     &record,
+                                               WorkpieceState<3, double> &state) const
+  {
+    if (solved.before)
+      state = *solved.before;
     for (const auto &stage : solved.stages)
       add_history(stage->view(), solved.start->dt, state);
+    WorkpieceState<3, double> worked;
+    if (process.heat.conducts())
+    {
+      const auto timing = timings_.scope("heat");
+      worked            = without_motion(state);
+      conduct_over(HalfOfIncrement::second, scene_, edges(), process, place(record), solved.X, state);
+    }
     state.X        = solved.X;
     state.velocity = solved.velocity;
+    return worked;
   }
 
   void Increment::tangent(const Process<Dual>     &process,
@@ -23,6 +79,8 @@ namespace retroforge
                           const TangentObserver   &observer,
                           WorkpieceState<3, Dual> &state)
   {
+    if (process.heat.conducts())
+      conduct_over(HalfOfIncrement::first, scene_, edges(), process, place(record), state.X, state);
     WorkpieceState<3, Dual> next = state;
     next.X =
       mechanics.tangent(process, state, record, [&](const EquilibriumView<Dual> &view, const Dual &dt) {
@@ -33,24 +91,44 @@ namespace retroforge
     next.velocity.resize(next.X.size());
     for (std::size_t k = 0; k < next.X.size(); ++k)
       next.velocity[k] = (next.X[k] - state.X[k]) / dt;
+    if (process.heat.conducts())
+      conduct_over(HalfOfIncrement::second, scene_, edges(), process, place(record), next.X, next);
     state = std::move(next);
   }
 
   void Increment::reverse(const Process<double>           &process,
                           const WorkpieceState<3, double> &state,
+                          const WorkpieceState<3, double> &worked,
                           const IncrementRecord           &record,
                           const AdjointSource             &source,
                           std::vector<Costate>            &costates)
   {
     const double dt = process.duration(place(record));
+    if (process.heat.conducts())
+    {
+      const auto                 timing = timings_.scope("heat");
+      NodalVectors<double>       X      = state.X;
+      const NodalVectors<double> v      = mechanics.mean_velocity(record);
+      for (std::size_t k = 0; k < X.size(); ++k)
+        X[k] += dt * v[k];
+      reverse_conduct_over(
+        HalfOfIncrement::second, scene_, edges(), process, place(record), X, worked, costates);
+    }
+    const auto half = conducted(process, state, record);
     mechanics.reverse(
       process,
-      state,
+      half ? *half : state,
       record,
       [&](const std::size_t j, const EquilibriumView<double> &view, EquilibriumBar &bar) {
         source(j, view, bar);
         reverse_history(view, dt, costates[j].workpiece, bar);
       },
       costates);
+    if (process.heat.conducts())
+    {
+      const auto timing = timings_.scope("heat");
+      reverse_conduct_over(
+        HalfOfIncrement::first, scene_, edges(), process, place(record), state.X, state, costates);
+    }
   }
 } // namespace retroforge

@@ -16,25 +16,37 @@ namespace retroforge
         x[a] = X[mesh.cells[c][a]];
       return cell_geometry(x);
     }
+  } // namespace
 
-    /// Volumes of all cells and, of each node, the sum over the cells at it.
-    template <typename Number>
-    struct NodeVolumes
+  template <typename Number>
+  NodeVolumes<Number>::NodeVolumes(const TetMesh &mesh, const NodalVectors<Number> &X)
+      : of_cell(mesh.n_cells()), of_node(mesh.n_nodes(), Number(0.))
+  {
+    for (CellIndex c = 0; c < mesh.n_cells(); ++c)
     {
-      std::vector<Number> of_cell, of_node;
+      of_cell[c] = geometry_of(mesh, X, c).volume;
+      for (const NodeIndex k : mesh.cells[c])
+        of_node[k] += of_cell[c];
+    }
+  }
 
-      NodeVolumes(const TetMesh &mesh, const NodalVectors<Number> &X)
-          : of_cell(mesh.n_cells()), of_node(mesh.n_nodes(), Number(0.))
-      {
-        for (CellIndex c = 0; c < mesh.n_cells(); ++c)
-        {
-          of_cell[c] = geometry_of(mesh, X, c).volume;
-          for (const NodeIndex k : mesh.cells[c])
-            of_node[k] += of_cell[c];
-        }
-      }
-    };
+  template struct NodeVolumes<double>;
+  template struct NodeVolumes<Dual>;
 
+  void reverse_cell_volume(const TetMesh              &mesh,
+                           const NodalVectors<double> &X,
+                           const CellIndex             c,
+                           const double                volume_bar,
+                           NodalVectors<double>       &X_bar)
+  {
+    Four<Vec3> x_bar = {};
+    reverse_cell_geometry(geometry_of(mesh, X, c), volume_bar, Four<Vec3>(), x_bar);
+    for (unsigned int a = 0; a < 4; ++a)
+      X_bar[mesh.cells[c][a]] += x_bar[a];
+  }
+
+  namespace
+  {
     /// D_c of all cells [mJ/s]. Collective.
     template <typename Number>
     std::vector<Number> dissipation(const EquilibriumView<Number> &view)
@@ -118,10 +130,7 @@ namespace retroforge
         add_to_positions(discretization, s.X, c, bar.X);
         pair.add(discretization, w_bar, c, bar.W);
         reverse_law(stage, c, s.law, bar.physics);
-        Four<Vec3> X_bar = {};
-        reverse_cell_geometry(geometry_of(mesh, stage.X, c), factor * volume_bar, Four<Vec3>(), X_bar);
-        for (unsigned int a = 0; a < 4; ++a)
-          bar.X[mesh.cells[c][a]] += X_bar[a];
+        reverse_cell_volume(mesh, stage.X, c, factor * volume_bar, bar.X);
       }
     });
     bar.physics.dt += per_work * work_bar;

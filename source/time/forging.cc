@@ -76,7 +76,7 @@ namespace retroforge
   {
     try
     {
-      solved = state.epoch->increment.mechanics.forward(process, state.workpiece, false, guess, record);
+      solved = state.epoch->increment.forward(process, state.workpiece, false, guess, record);
     }
     catch (const NoEquilibrium &failure)
     {
@@ -179,10 +179,12 @@ namespace retroforge
     const NodalVectors<double> X_before      = state.workpiece.X;
     const CellField<double>    strain_before = state.workpiece.strain;
     if (Increment::reads_history(process))
-      state.starts.push_back(without_motion(state.workpiece));
+      state.remembered.push_back({without_motion(state.workpiece), {}});
     {
       const auto timing = timings_.scope("checks");
-      state.epoch->increment.advance(solved, state.workpiece);
+      auto       worked = state.epoch->increment.advance(process, solved, record, state.workpiece);
+      if (Increment::reads_history(process))
+        state.remembered.back().worked = std::move(worked);
     }
     state.next                 = state.epoch->increment.mechanics.guess_after(solved, record);
     const auto &discretization = state.epoch->scene.discretization;
@@ -205,14 +207,16 @@ namespace retroforge
       observer({record, X_before, solved, state, process.whole_time(state.stroke, state.operation)});
   }
 
-  std::optional<StepRejection> Forging::too_strained(const ForgingState    &state,
-                                                     const SolvedIncrement &solved) const
+  std::optional<StepRejection> Forging::too_strained(const Process<double> &process,
+                                                     const ForgingState    &state,
+                                                     const SolvedIncrement &solved,
+                                                     const IncrementRecord &record) const
   {
     if (state.strain_rate > 0. || !limits_.choose_steps())
       return {};
     const auto timing = timings_.scope("checks");
     auto       after  = state.workpiece;
-    state.epoch->increment.advance(solved, after);
+    state.epoch->increment.advance(process, solved, record, after);
     return limits_.strain_rejection(mean_flow_strain(state.epoch->scene.mesh, after, state.workpiece.strain));
   }
 
@@ -357,7 +361,7 @@ namespace retroforge
       {
         auto rejection = attempt(process, state, guess, record, solved);
         if (is_good(rejection))
-          if (const auto strained = too_strained(state, solved))
+          if (const auto strained = too_strained(process, state, solved, record))
             rejection = strained;
         const bool remeshes =
           rejection && rejection->of_mesh && remesher_.enabled() && !record.remesh && since_remeshing() > 0;
@@ -412,11 +416,8 @@ namespace retroforge
       {
         change_mesh(process, *record.remesh, state);
       }
-      finish_increment(process,
-                       record,
-                       state.epoch->increment.mechanics.recorded(process, state.workpiece, record),
-                       state,
-                       observer);
+      finish_increment(
+        process, record, state.epoch->increment.recorded(process, state.workpiece, record), state, observer);
     }
   }
 
@@ -435,7 +436,7 @@ namespace retroforge
         change_mesh(process, *record.remesh, state);
       const InitialGuess    guess = state.epoch->increment.mechanics.recorded_guess(record);
       const SolvedIncrement solved =
-        state.epoch->increment.mechanics.forward(process, state.workpiece, true, guess, record);
+        state.epoch->increment.forward(process, state.workpiece, true, guess, record);
       finish_increment(process, record, solved, state, observer);
     }
   }

@@ -128,7 +128,10 @@ namespace retroforge
     double       mean_pressure(const BilletSize &size) const;
     void         check_all();
     void         find_without_effect(const std::vector<ParameterEntry> &entries);
+    void         check_heat() const;
     void         check_derived(const BilletSize &size) const;
     unsigned int leading_die() const;
+    /// @throws Error  where Heat/resting die names none
+    unsigned int resting_die() const;
   };
 } // namespace retroforge

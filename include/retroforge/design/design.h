@@ -14,18 +14,19 @@ namespace retroforge
   {
     enum class Kind
     {
-      material,      ///< a number of the material law
-      contact,       ///< a number of the contact law
-      heat,          ///< a number of the metal's heat
-      friction,      ///< friction coefficient of one die, or of all that have friction
-      shear_limit,   ///< bound of one die's friction, where its law has one
-      zone_friction, ///< friction coefficient of one zone of a die
-      zone_limit,    ///< bound of its friction, where its law has one
-      speed,         ///< speed of one die along its velocity
-      offset,        ///< offset of one die along its facing direction
-      die_shape,     ///< a measure of one tripod or bell
-      die_free_form, ///< a mode of one die's surface
-      billet         ///< a parameter of the billet's shape, see BilletMap
+      material,        ///< a number of the material law
+      contact,         ///< a number of the contact law
+      heat,            ///< a number of the metal's heat
+      friction,        ///< friction coefficient of one die, or of all that have friction
+      shear_limit,     ///< bound of one die's friction, where its law has one
+      zone_friction,   ///< friction coefficient of one zone of a die
+      zone_limit,      ///< bound of its friction, where its law has one
+      die_temperature, ///< of one die before it touches metal
+      speed,           ///< speed of one die along its velocity
+      offset,          ///< offset of one die along its facing direction
+      die_shape,       ///< a measure of one tripod or bell
+      die_free_form,   ///< a mode of one die's surface
+      billet           ///< a parameter of the billet's shape, see BilletMap
     };
 
     std::string  name;

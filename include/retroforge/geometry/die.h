@@ -27,15 +27,24 @@ namespace retroforge
     /// Part of the metal's shear flow stress that bounds friction, where its law has a bound of its own
     /// (InterfaceLaw::limit).
     Number shear_limit = Number(0.);
+    Number temperature = Number(0.); ///< before it touches metal [C]
     /// Friction in the zones of the die (Die::zones).
-    std::vector<ZoneFriction<Number>> zones = {};
+    std::vector<ZoneFriction<Number>> zones;
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[velocity, displacement, friction, vertices, interface_law, in_press, shear_limit, zones] = self;
+      auto &[velocity,
+             displacement,
+             friction,
+             vertices,
+             interface_law,
+             in_press,
+             shear_limit,
+             temperature,
+             zones] = self;
       return std::tie(
-        velocity, displacement, friction, vertices, interface_law, in_press, shear_limit, zones);
+        velocity, displacement, friction, vertices, interface_law, in_press, shear_limit, temperature, zones);
     }
 
     /// Friction outside of the zones.

@@ -19,6 +19,7 @@ namespace retroforge
     std::string     friction_law   = "Norton";
     double          friction       = 0.;
     double          shear_limit    = 1.;
+    double          temperature    = 200.;
     bool            follows_billet = false;
 
     std::vector<DieZoneParameters> zones; ///< where other friction holds

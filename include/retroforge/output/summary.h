@@ -110,15 +110,18 @@ namespace retroforge
     };
     PowerBalance balance;
 
-    /// What a run without heat, or without conduction, leaves out, to tell when it matters.
-    struct LeftOut
+    /// What heat did, and what of it a run without heat, or without conduction, leaves out, to tell when it matters.
+    struct Heat
     {
-      bool   warms   = false;   ///< the metal warms by its work, so that only the chill is left out
-      double warming = unknown; ///< of the metal by its work, mean over the volume, K
-      double seconds = unknown; ///< time under the press
-      double chilled = unknown; ///< depth that a chill by the dies reaches, mm
+      bool   warms            = false;   ///< the metal warms by its work
+      bool   conducts         = false;   ///< and heat flows
+      double warming          = unknown; ///< of the metal by its work, mean over the volume, K
+      double seconds          = unknown; ///< on the dies, under the press and before
+      double chilled          = unknown; ///< depth that a chill by the dies reaches, mm
+      double elements         = unknown; ///< the same in elements
+      double mean_temperature = unknown; ///< of the metal at the end where it is followed, C
     };
-    LeftOut heat;
+    Heat heat;
 
     /// Quadratic velocities: where most surface edges, of those that touched, spanned a corner of a die.
     struct Spanned

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <retroforge/record/increment_record.h>
+#include <retroforge/steps/kept_heat.h>
 #include <retroforge/steps/workpiece_state.h>
 
 /// @file
 /// The step that takes the workpiece from one mesh to the next. What happens to a member of the state follows
 /// from its kind: positions by the tape of what remeshing did to them (PositionTape), one number or vector per
-/// node q' = J q, one number per cell transfer_cells().
+/// node q' = J q, one number per cell transfer_cells(). Temperatures are then corrected so that heat is kept
+/// (steps/kept_heat.h).
 namespace retroforge
 {
   /// Takes a member of the state to the new mesh, each kind by its overload; on dual numbers its tangent.
@@ -65,6 +67,9 @@ namespace retroforge
     WorkpieceState<3, Number> after;
     internal::for_each_member(
       MemberTransfer<Number>{old_mesh, remesh, before.X, dies, states}, before, after);
+    if (!before.temperature.empty())
+      after.temperature = keep_heat<Number>({old_mesh, before.X, before.temperature},
+                                            {remesh.mesh, after.X, after.temperature});
     return after;
   }
 
@@ -81,12 +86,32 @@ namespace retroforge
   {
     AssertDimension(before.X.size(), old_mesh.n_nodes());
     AssertDimension(costate.X.size(), remesh.mesh.n_nodes());
-    WorkpieceState<3, double> there;
+    WorkpieceState<3, double> there, of_transfer = costate; // before heat is kept
+    NodalVectors<double>      X_bar(before.X.size());
+    NodeField<double>         T_bar(before.temperature.size(), 0.);
+    if (!is_zero(costate.temperature))
+    {
+      const MemberTransfer<double> transfer{old_mesh, remesh, before.X, dies, states};
+      NodalVectors<double>         X;
+      NodeField<double>            T;
+      transfer(before.X, X);
+      transfer(before.temperature, T);
+      of_transfer.temperature = reverse_keep_heat({old_mesh, before.X, before.temperature},
+                                                  {remesh.mesh, X, T},
+                                                  costate.temperature,
+                                                  X_bar,
+                                                  T_bar,
+                                                  of_transfer.X);
+    }
     internal::for_each_member(
       ReverseMemberTransfer{old_mesh, remesh, before.X, dies, states, there.X, dies_bar},
       before,
-      costate,
+      of_transfer,
       there);
+    for (std::size_t k = 0; k < X_bar.size(); ++k)
+      there.X[k] += X_bar[k];
+    for (std::size_t k = 0; k < std::min(T_bar.size(), there.temperature.size()); ++k)
+      there.temperature[k] += T_bar[k];
     return there;
   }
 } // namespace retroforge

@@ -25,6 +25,8 @@ namespace retroforge
     auto state = initial_state<3>(std::move(X), n_cells);
     if (process.heat.warms())
       state.temperature.assign(state.X.size(), process.material.initial.temperature);
+    if (process.heat.conducts())
+      state.skin.assign(state.X.size(), Number(0.));
     if (process.material.is_damaged())
       state.damage.assign(n_cells, Number(0.));
     return state;

@@ -2,13 +2,23 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/steps/mechanics.h>
+#include <retroforge/steps/heating.h>
+
+#include <optional>
 
 namespace retroforge
 {
-  /// One increment of time as the list of its steps: mechanics, which is solved, and history, which follows
-  /// from its stages. Each step has its forward, tangent and reverse in files of its own; a step that comes
-  /// to them, as heat, is called here.
+  /// What the way back needs of an increment's history and does not find in its record, without motion.
+  struct IncrementMemory
+  {
+    WorkpieceState<3, double> start; ///< the state at its start
+    WorkpieceState<3, double>
+      worked; ///< where heat flows: after mechanics and history, before the second half
+  };
+
+  /// One increment of time as the list of its steps: heat that flows for half of it (steps/heating.h); mechanics,
+  /// which is solved; history, which follows from its stages; and heat for the other half. Each step has its forward,
+  /// tangent and reverse in files of its own.
   class Increment
   {
   public:
@@ -17,15 +27,31 @@ namespace retroforge
               const NewtonParameters &newton,
               LinearSystem           &system,
               Timings                &timings)
-        : mechanics(scene, model, newton, system, timings), scene_(scene)
+        : mechanics(scene, model, newton, system, timings), scene_(scene), timings_(timings)
     {
     }
 
     /// Tells whether reverse() reads more of the state at the start than its positions and velocity.
     static bool reads_history(const Process<double> &process);
 
-    /// Takes the state to the end of an increment whose mechanics is solved.
-    void advance(const SolvedIncrement &solved, WorkpieceState<3, double> &state) const;
+    /// Solves the increment from a state: as Mechanics::forward().
+    SolvedIncrement forward(const Process<double>           &process,
+                            const WorkpieceState<3, double> &state,
+                            bool                             replay,
+                            const InitialGuess              &guess,
+                            IncrementRecord                 &record);
+
+    /// Returns the same from what was recorded, to the bit: no equilibrium is solved.
+    SolvedIncrement recorded(const Process<double>           &process,
+                             const WorkpieceState<3, double> &state,
+                             const IncrementRecord           &record) const;
+
+    /// Takes the state to the end of a solved increment.
+    /// @return IncrementMemory::worked
+    WorkpieceState<3, double> advance(const Process<double>     &process,
+                                      const SolvedIncrement     &solved,
+                                      const IncrementRecord     &record,
+                                      WorkpieceState<3, double> &state) const;
 
     /// Takes the derivative of the state along (state, process) to the end of a recorded increment.
     /// @param observer  is called after each stage
@@ -35,17 +61,29 @@ namespace retroforge
                  WorkpieceState<3, Dual> &state);
 
     /// Takes costates from the end of a recorded increment to its start.
-    /// @param state   at the start; all but these may be missing unless reads_history()
+    /// @param state   at the start; all but motion may be missing unless reads_history()
+    /// @param worked  IncrementMemory::worked
     /// @param source  what objectives take from each stage
     void reverse(const Process<double>           &process,
                  const WorkpieceState<3, double> &state,
+                 const WorkpieceState<3, double> &worked,
                  const IncrementRecord           &record,
                  const AdjointSource             &source,
                  std::vector<Costate>            &costates);
 
-    Mechanics mechanics; ///< forward(), recorded() and replays are its own
+    Mechanics mechanics; ///< what it shares with replays and restarts is its own
 
   private:
-    const Scene &scene_;
+    /// Of the mesh, found when heat first flows.
+    const MeshEdges &edges() const;
+
+    /// The state as the stages of mechanics find it, where heat flows.
+    std::optional<WorkpieceState<3, double>> conducted(const Process<double>           &process,
+                                                       const WorkpieceState<3, double> &state,
+                                                       const IncrementRecord           &record) const;
+
+    const Scene                     &scene_;
+    Timings                         &timings_;
+    mutable std::optional<MeshEdges> edges_;
   };
 } // namespace retroforge

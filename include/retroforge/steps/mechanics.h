@@ -84,6 +84,8 @@ namespace retroforge
     std::vector<std::shared_ptr<const SolvedStage>> stages;
     NodalVectors<double>                            X;
     NodalVectors<double>                            velocity; ///< of the nodes, its mean [mm/s]
+    /// The state as its stages found it, without motion, where that is not the one at its start.
+    std::optional<WorkpieceState<3, double>> before = {};
 
     const SolvedStage &last() const { return *stages.back(); }
   };

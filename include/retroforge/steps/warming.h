@@ -11,6 +11,22 @@
 /// Nodes move with the metal, so that nothing is averaged twice: heat does not spread from increment to increment.
 namespace retroforge
 {
+  /// Volumes of all cells and, of each node, the sum over the cells at it [mm^3].
+  template <typename Number>
+  struct NodeVolumes
+  {
+    std::vector<Number> of_cell, of_node;
+
+    NodeVolumes(const TetMesh &mesh, const NodalVectors<Number> &X);
+  };
+
+  /// Adds the derivatives of  volume_bar * of_cell[c].
+  void reverse_cell_volume(const TetMesh              &mesh,
+                           const NodalVectors<double> &X,
+                           CellIndex                   c,
+                           double                      volume_bar,
+                           NodalVectors<double>       &X_bar);
+
   /// Adds it to the temperatures of all nodes, for the part view.weight of the time dt [s], on every rank.
   /// Collective.
   template <typename Number>

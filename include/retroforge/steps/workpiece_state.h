@@ -53,13 +53,15 @@ namespace retroforge
     /// before the first increment of an operation.
     NodeVectorField<dim, Number> velocity;
     NodeField<Number>            temperature; ///< [C]; none where the metal keeps that before the stroke
-    CellField<Number>            damage;      ///< dimensionless; none where it is not followed
+    /// Of the layers that contacts have chilled (heat/skin.h) [mJ/(mm^2 K)]; none where heat does not flow.
+    NodeField<Number> skin;
+    CellField<Number> damage; ///< dimensionless; none where it is not followed
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[X, strain, velocity, temperature, damage] = self;
-      return std::tie(X, strain, velocity, temperature, damage);
+      auto &[X, strain, velocity, temperature, skin, damage] = self;
+      return std::tie(X, strain, velocity, temperature, skin, damage);
     }
   };
 
@@ -67,21 +69,25 @@ namespace retroforge
   template <int dim, typename Number>
   WorkpieceState<dim, Number> initial_state(NodalPositions<dim, Number> X, const std::size_t n_cells)
   {
-    return {std::move(X), CellField<Number>(n_cells, Number(0.)), {}, {}, {}};
+    return {std::move(X), CellField<Number>(n_cells, Number(0.)), {}, {}, {}, {}};
   }
 
   /// Returns zero derivatives in the state of a mesh.
-  /// @param warms    whether it has temperatures   @param damages  whether its damage is followed
+  /// @param warms     whether it has temperatures
+  /// @param conducts  and skins
+  /// @param damages   whether its damage is followed
   template <int dim>
   WorkpieceState<dim, double> zero_costate(const std::size_t n_nodes,
                                            const std::size_t n_cells,
-                                           const bool        warms   = false,
-                                           const bool        damages = false)
+                                           const bool        warms    = false,
+                                           const bool        conducts = false,
+                                           const bool        damages  = false)
   {
     return {NodalPositions<dim, double>(n_nodes),
             CellField<double>(n_cells, 0.),
             NodeVectorField<dim, double>(n_nodes),
             NodeField<double>(warms ? n_nodes : 0, 0.),
+            NodeField<double>(conducts ? n_nodes : 0, 0.),
             CellField<double>(damages ? n_cells : 0, 0.)};
   }
 

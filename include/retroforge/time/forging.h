@@ -105,7 +105,10 @@ namespace retroforge
     /// @param left  stroke to the end of the operation [mm]
     void choose_depth(double last_step, double left, ForgingState &state) const;
     /// Returns whether a first increment, of which nothing was known, strains the metal too much.
-    std::optional<StepRejection> too_strained(const ForgingState &state, const SolvedIncrement &solved) const;
+    std::optional<StepRejection> too_strained(const Process<double> &process,
+                                              const ForgingState    &state,
+                                              const SolvedIncrement &solved,
+                                              const IncrementRecord &record) const;
 
     /// Stroke of an increment that is not cut [mm].
     double nominal_step() const { return model_.step.contact.step; }

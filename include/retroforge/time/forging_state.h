@@ -40,7 +40,8 @@ namespace retroforge
     std::vector<unsigned int> remeshed; ///< the increments, from 0, that began on a new mesh
 
     /// What the way back needs of the workpiece and does not find in the record, without its motion: at each
-    /// change of mesh, on the mesh it left; and at the start of each increment where laws depend on it.
-    std::vector<WorkpieceState<3, double>> left_behind, starts;
+    /// change of mesh, on the mesh it left; and of each increment, where its steps read it.
+    std::vector<WorkpieceState<3, double>> left_behind;
+    std::vector<IncrementMemory>           remembered;
   };
 } // namespace retroforge

@@ -16,12 +16,12 @@
 
 #include <retroforge/core/error.h>
 #include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/mesh/surface_areas.h>
 #include <retroforge/objective/damage_statistics.h>
 #include <retroforge/objective/filling.h>
 #include <retroforge/objective/radius.h>
 #include <retroforge/objective/shape_distance.h>
 #include <retroforge/objective/strain_statistics.h>
-#include <retroforge/objective/surface_areas.h>
 #include <retroforge/objective/unfilled_volume.h>
 #include <retroforge/objective/volume.h>
 

@@ -10,7 +10,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <retroforge/objective/surface_areas.h>
+#include <retroforge/mesh/surface_areas.h>
 #include <retroforge/output/contact_fields.h>
 
 #include "../adjoint/recorded_run.h"

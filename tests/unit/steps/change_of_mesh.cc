@@ -121,10 +121,10 @@ namespace
   double defect_of_state(const Meshes &meshes)
   {
     const TetMesh &old_mesh = meshes.old_mesh, &new_mesh = meshes.remesh.mesh;
-    auto           at = randomised(zero_costate<3>(old_mesh.n_nodes(), old_mesh.n_cells(), true, true));
+    auto           at = randomised(zero_costate<3>(old_mesh.n_nodes(), old_mesh.n_cells(), true, true, true));
     at.X              = meshes.X;
     const auto dir    = randomised(at),
-               y      = randomised(zero_costate<3>(new_mesh.n_nodes(), new_mesh.n_cells(), true, true));
+               y      = randomised(zero_costate<3>(new_mesh.n_nodes(), new_mesh.n_cells(), true, true, true));
     const auto after  = change_mesh<Dual>(old_mesh, meshes.remesh, along<State>(at, dir), no_dies, {});
     std::vector<DieState<double>> no_bar;
     return defect(dots(after, y),

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/heat/conduction_network.h>
+#include <retroforge/heat/thermal_surface.h>
+#include <retroforge/material/heat_law.h>
+
+#include <array>
+
+/// @file
+/// Heat that flows for a time in a workpiece at rest, to dies that it touches and to its surroundings.
+///
+/// The film between a node and a die has the conductance  A h_c/(1 + R),  A the area there that touches, and R the
+/// drops of temperature in the skins of metal and die over that across the film (skin.h); of the metal's, as thick as
+/// delta, only the part  (1 - delta/(8 d))²  that elements do not resolve, d = V/A the depth that the node stands for behind
+/// what touches.
+/// A free surface has  h_a + eps sigma (T² + T_a²)(T + T_a),  temperatures absolute.
+namespace retroforge
+{
+  /// What heat flows in.
+  template <typename Number>
+  struct HeatFlow
+  {
+    const MeshEdges                     &edges;
+    const ConductionNetwork<Number>     &network;
+    const ThermalSurface<Number>        &surface;
+    const HeatLaw<Number>               &law;
+    const Number                        &contact_film; ///< h_c [mW/(mm^2 K)]
+    const std::vector<DieState<Number>> &dies;
+  };
+
+  /// Takes temperatures [C] and skins [mJ/(mm^2 K)] of all nodes over a time.
+  /// @return heat that came in through the surface [mJ]
+  template <typename Number>
+  Number
+  conduct(const HeatFlow<Number> &flow, const Number &dt, std::vector<Number> &T, std::vector<Number> &skin);
+
+  /// Derivatives of a scalar in what heat flows in.
+  struct HeatFlowBar
+  {
+    ConductionNetwork<double>     &network;
+    ThermalSurfaceBar             &surface;
+    HeatLaw<double>               &law;
+    double                        &contact_film;
+    std::vector<DieState<double>> &dies;
+    double                        &dt;
+  };
+
+  /// Reverse of conduct().
+  /// @param T, skin          before
+  /// @param T_bar, skin_bar  derivatives in those after on entry, in those before on exit
+  void reverse_conduct(const HeatFlow<double>    &flow,
+                       double                     dt,
+                       const std::vector<double> &T,
+                       const std::vector<double> &skin,
+                       std::vector<double>       &T_bar,
+                       std::vector<double>       &skin_bar,
+                       HeatFlowBar               &bar);
+
+  /// Returns the temperatures of the metal, at its surface those above the skin, and of the dies' surfaces, 0 where
+  /// none touches; each at every node [C].
+  std::array<std::vector<double>, 2> surface_temperatures(const HeatFlow<double>    &flow,
+                                                          const std::vector<double> &T,
+                                                          const std::vector<double> &skin);
+} // namespace retroforge

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/contact/contact_search.h>
+
+/// @file
+/// Which part of the surface at each node touches which die, and which is free. A node touches a die as far as
+///   w(delta/gap),  1 - 10t³ + 15t⁴ - 6t⁵,
+/// says of its gap delta; a face as the product of its nodes. A third of a face's area is a node's.
+namespace retroforge
+{
+  /// A node in reach of a die.
+  template <typename Number>
+  struct TouchingNode
+  {
+    NodeIndex    node;
+    unsigned int die;
+    DieFeature   feature;           ///< of the die, closest to the node
+    Number       weight;            ///< w
+    Number       area = Number(0.); ///< of its part of the surface that touches the die [mm^2]
+  };
+
+  template <typename Number>
+  struct ThermalSurface
+  {
+    std::vector<TouchingNode<Number>> touching; ///< by die, then by node, ascending
+    std::vector<Number>               free; ///< part of the surface at each node that touches no die [mm^2]
+  };
+
+  /// Derivatives of a scalar in it.
+  struct ThermalSurfaceBar
+  {
+    std::vector<double> weight, touching_area; ///< of each entry of `touching`
+    std::vector<double> free;
+
+    explicit ThermalSurfaceBar(const ThermalSurface<double> &surface)
+        : weight(surface.touching.size(), 0.)
+        , touching_area(surface.touching.size(), 0.)
+        , free(surface.free.size(), 0.)
+    {
+    }
+  };
+
+  /// @param touch  whether each die is there to be touched
+  /// @param gap    across which contact fades [mm]
+  template <typename Number>
+  ThermalSurface<Number>
+  thermal_surface(const ContactView<Number> &view, const std::vector<bool> &touch, double gap);
+
+  /// Pull-back of thermal_surface: adds to X_bar, and to the dies' displacements and vertices.
+  void reverse_thermal_surface(const ContactView<double>     &view,
+                               const ThermalSurface<double>  &surface,
+                               double                         gap,
+                               const ThermalSurfaceBar       &bar,
+                               NodalVectors<double>          &X_bar,
+                               std::vector<DieState<double>> &dies_bar);
+} // namespace retroforge

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/heat/conduction_step.h>
+#include <retroforge/heat/heat_flow.h>
+#include <retroforge/heat/skin.h>
+
+namespace retroforge
+{
+  namespace
+  {
+    constexpr double stefan_boltzmann = 5.670374419e-11; // [mW/(mm² K⁴)]
+    constexpr double absolute_zero    = -273.15;         // [C]
+
+    /// What the skin beneath a node's contacts depends on.
+    template <typename Number>
+    struct SkinArguments
+    {
+      Number e, h, k, capacity, die_effusivity, depth, dt;
+
+      template <typename Self>
+      static auto members(Self &self)
+      {
+        auto &[e, h, k, capacity, die_effusivity, depth, dt] = self;
+        return std::tie(e, h, k, capacity, die_effusivity, depth, dt);
+      }
+    };
+
+    /// Effusivity of metal and die together, and the metal's part of the drop in the skins.
+    template <typename Number>
+    std::pair<Number, Number> together(const SkinArguments<Number> &of)
+    {
+      using std::sqrt;
+      const Number metal = sqrt(Number(of.k * of.capacity)),
+                   both  = 1. / (1. / metal + 1. / of.die_effusivity);
+      return {both, both / metal};
+    }
+
+    /// R for skins with the Biot number y.
+    template <typename Number>
+    Number skin_resistance(const SkinArguments<Number> &of, const Number &metals_part, const Number &y)
+    {
+      const Number thickness = 3. * of.k * y * metals_part / of.h;
+      const Number rest      = 1. - thickness / (8. * of.depth);
+      const Number resolved  = value_of(rest) > 0. ? Number(rest * rest) : Number(0.);
+      return y * (metals_part * resolved + (1. - metals_part));
+    }
+
+    /// The skin after the time, and the mean of 1/(1 + R).
+    template <typename Number>
+    SkinStep<Number> beneath_contacts(const SkinArguments<Number> &of)
+    {
+      const auto [effusivity, metals_part] = together(of);
+      const SkinStep<Number> step          = skin_step(of.e, of.h, Number(effusivity * effusivity), of.dt);
+      const Number           y             = 1. / step.mean - 1.;
+      return {step.e, 1. / (1. + skin_resistance(of, metals_part, y))};
+    }
+
+    /// What of each node touches dies: sums over them of w and of areas.
+    template <typename Number>
+    struct Touching
+    {
+      std::vector<Number> weight, area;
+
+      explicit Touching(const HeatFlow<Number> &flow)
+          : weight(flow.network.volumes.size(), Number(0.)), area(weight)
+      {
+        for (const auto &at : flow.surface.touching)
+        {
+          weight[at.node] += at.weight;
+          area[at.node] += at.area;
+        }
+      }
+
+      /// Whether a node has a film to a die.
+      bool has_film(const HeatFlow<Number> &flow, const NodeIndex k) const
+      {
+        return value_of(weight[k]) > 0. && value_of(area[k]) > 0. && value_of(flow.contact_film) > 0.;
+      }
+    };
+
+    template <typename Number>
+    SkinArguments<Number> arguments_at(const HeatFlow<Number> &flow,
+                                       const NodeIndex         k,
+                                       const Touching<Number> &touching,
+                                       const Number           &e,
+                                       const Number           &dt)
+    {
+      const HeatLaw<Number> &law = flow.law;
+      return {e,
+              flow.contact_film * touching.weight[k],
+              law.conductivity,
+              law.capacity,
+              law.die_effusivity,
+              flow.network.volumes[k] / touching.area[k],
+              dt};
+    }
+
+    /// Film of a free surface by convection and radiation.
+    template <typename Number>
+    Number air_film(const HeatLaw<Number> &law, const Number &T)
+    {
+      const Number t = T - absolute_zero, a = law.surroundings - absolute_zero;
+      return law.air_film + law.emissivity * stefan_boltzmann * (t * t + a * a) * (t + a);
+    }
+
+    template <typename Number>
+    std::vector<Number> scaled(const Number &factor, std::vector<Number> x)
+    {
+      for (Number &value : x)
+        value *= factor;
+      return x;
+    }
+
+    /// Films to the dies.
+    template <typename Number>
+    NodeFilms<Number> contact_films(const HeatFlow<Number> &flow, const std::vector<Number> &parts)
+    {
+      NodeFilms<Number> films(flow.network.volumes.size());
+      for (const auto &at : flow.surface.touching)
+      {
+        const Number phi = at.area * flow.contact_film * parts[at.node];
+        films.conductance[at.node] += phi;
+        films.source[at.node] += phi * flow.dies[at.die].temperature;
+      }
+      return films;
+    }
+
+    template <typename Number>
+    FilmsAt<Number> films_at(const HeatFlow<Number> &flow, const NodeFilms<Number> &contact)
+    {
+      return [&flow, &contact](const std::vector<Number> &T) {
+        NodeFilms<Number> films = contact;
+        for (NodeIndex k = 0; k < T.size(); ++k)
+          if (value_of(flow.surface.free[k]) > 0.)
+          {
+            const Number phi = flow.surface.free[k] * air_film(flow.law, T[k]);
+            films.conductance[k] += phi;
+            films.source[k] += phi * flow.law.surroundings;
+          }
+        return films;
+      };
+    }
+
+    /// The parts 1/(1 + R) of films to dies; skins go on.
+    template <typename Number>
+    std::vector<Number>
+    follow_skins(const HeatFlow<Number> &flow, const Number &dt, std::vector<Number> &skin)
+    {
+      const Touching<Number> touching(flow);
+      std::vector<Number>    parts(skin.size(), Number(1.));
+      for (NodeIndex k = 0; k < skin.size(); ++k)
+        if (touching.has_film(flow, k))
+        {
+          const auto step = beneath_contacts(arguments_at(flow, k, touching, skin[k], dt));
+          skin[k]         = step.e;
+          parts[k]        = step.mean;
+        }
+      return parts;
+    }
+  } // namespace
+
+  template <typename Number>
+  Number
+  conduct(const HeatFlow<Number> &flow, const Number &dt, std::vector<Number> &T, std::vector<Number> &skin)
+  {
+    AssertDimension(T.size(), flow.network.volumes.size());
+    AssertDimension(skin.size(), T.size());
+    const NodeFilms<Number>   contact = contact_films(flow, follow_skins(flow, dt, skin));
+    const std::vector<Number> C       = scaled(flow.law.capacity, flow.network.volumes),
+                              g       = scaled(flow.law.conductivity, flow.network.conductances),
+                              bounded = scaled(flow.law.conductivity, flow.network.bounded);
+    auto   result = conduction_step<Number>({flow.edges, C, g, bounded, dt}, T, films_at(flow, contact));
+    Number heat(0.);
+    for (const Number &of_node : result.film_heat)
+      heat += of_node;
+    T = std::move(result.T);
+    return heat;
+  }
+
+  template double
+  conduct(const HeatFlow<double> &, const double &, std::vector<double> &, std::vector<double> &);
+  template Dual conduct(const HeatFlow<Dual> &, const Dual &, std::vector<Dual> &, std::vector<Dual> &);
+
+  void reverse_conduct(const HeatFlow<double>    &flow,
+                       const double               dt,
+                       const std::vector<double> &T,
+                       const std::vector<double> &skin,
+                       std::vector<double>       &T_bar,
+                       std::vector<double>       &skin_bar,
+                       HeatFlowBar               &bar)
+  {
+    const std::size_t         n       = T.size();
+    std::vector<double>       after   = skin;
+    const std::vector<double> parts   = follow_skins(flow, dt, after);
+    const NodeFilms<double>   contact = contact_films(flow, parts);
+    const std::vector<double> C       = scaled(flow.law.capacity, flow.network.volumes),
+                              g       = scaled(flow.law.conductivity, flow.network.conductances),
+                              bounded = scaled(flow.law.conductivity, flow.network.bounded);
+    std::vector<double> C_bar(n, 0.), g_bar(g.size(), 0.), bounded_bar(g_bar);
+    NodeFilms<double>   contact_bar(n);
+    ConductionStepBar   step_bar{C_bar, g_bar, bounded_bar};
+
+    const auto reverse_films =
+      [&](const std::vector<double> &at, const NodeFilms<double> &films_bar, std::vector<double> &at_bar) {
+        for (NodeIndex k = 0; k < n; ++k)
+        {
+          contact_bar.conductance[k] += films_bar.conductance[k];
+          contact_bar.source[k] += films_bar.source[k];
+          if (!(flow.surface.free[k] > 0.))
+            continue;
+          const double film = air_film(flow.law, at[k]), free = flow.surface.free[k];
+          const double phi_bar = films_bar.conductance[k] + films_bar.source[k] * flow.law.surroundings;
+          bar.law.surroundings += films_bar.source[k] * free * film;
+          bar.surface.free[k] += phi_bar * film;
+          const double film_bar = phi_bar * free;
+          const double t = at[k] - absolute_zero, a = flow.law.surroundings - absolute_zero;
+          const double radiated = stefan_boltzmann * (t * t + a * a) * (t + a);
+          const double scale    = flow.law.emissivity * stefan_boltzmann * film_bar;
+          bar.law.air_film += film_bar;
+          bar.law.emissivity += film_bar * radiated;
+          at_bar[k] += scale * (3. * t * t + 2. * t * a + a * a);
+          bar.law.surroundings += scale * (3. * a * a + 2. * t * a + t * t);
+        }
+      };
+    T_bar = reverse_conduction_step(
+      {flow.edges, C, g, bounded, dt}, T, films_at(flow, contact), T_bar, reverse_films, step_bar);
+    bar.dt += step_bar.dt;
+    for (NodeIndex k = 0; k < n; ++k)
+    {
+      bar.law.capacity += C_bar[k] * flow.network.volumes[k];
+      bar.network.volumes[k] += C_bar[k] * flow.law.capacity;
+    }
+    for (std::size_t e = 0; e < g.size(); ++e)
+    {
+      bar.law.conductivity +=
+        g_bar[e] * flow.network.conductances[e] + bounded_bar[e] * flow.network.bounded[e];
+      bar.network.bounded[e] += bounded_bar[e] * flow.law.conductivity;
+      bar.network.conductances[e] += g_bar[e] * flow.law.conductivity;
+    }
+
+    // Films to the dies.
+    std::vector<double> parts_bar(n, 0.), weights_bar(n, 0.);
+    for (std::size_t i = 0; i < flow.surface.touching.size(); ++i)
+    {
+      const auto  &at = flow.surface.touching[i];
+      const double t = flow.dies[at.die].temperature, film = flow.contact_film;
+      const double phi_bar = contact_bar.conductance[at.node] + contact_bar.source[at.node] * t;
+      bar.dies[at.die].temperature += contact_bar.source[at.node] * at.area * film * parts[at.node];
+      bar.surface.touching_area[i] += phi_bar * film * parts[at.node];
+      bar.contact_film += phi_bar * at.area * parts[at.node];
+      parts_bar[at.node] += phi_bar * at.area * film;
+    }
+
+    // Skins.
+    const Touching<double> touching(flow);
+    std::vector<double>    areas_bar(n, 0.);
+    for (NodeIndex k = 0; k < n; ++k)
+      if (touching.has_film(flow, k))
+      {
+        using Partial                 = Sacado::Fad::SFad<double, 7>;
+        const auto             values = arguments_at<double>(flow, k, touching, skin[k], dt);
+        SkinArguments<Partial> x;
+        int                    i = 0;
+        for_each_number([&](const double value, Partial &to) { to = Partial(7, i++, value); }, values, x);
+        const auto          step = beneath_contacts(x);
+        std::vector<double> x_bar;
+        for (int j = 0; j < 7; ++j)
+          x_bar.push_back(skin_bar[k] * step.e.dx(j) + parts_bar[k] * step.mean.dx(j));
+        skin_bar[k] = x_bar[0];
+        bar.contact_film += x_bar[1] * touching.weight[k];
+        weights_bar[k] = x_bar[1] * flow.contact_film;
+        bar.law.conductivity += x_bar[2];
+        bar.law.capacity += x_bar[3];
+        bar.law.die_effusivity += x_bar[4];
+        const double area = touching.area[k];
+        bar.network.volumes[k] += x_bar[5] / area;
+        areas_bar[k] = -x_bar[5] * flow.network.volumes[k] / (area * area);
+        bar.dt += x_bar[6];
+      }
+    for (std::size_t i = 0; i < flow.surface.touching.size(); ++i)
+    {
+      bar.surface.weight[i] += weights_bar[flow.surface.touching[i].node];
+      bar.surface.touching_area[i] += areas_bar[flow.surface.touching[i].node];
+    }
+  }
+
+  std::array<std::vector<double>, 2> surface_temperatures(const HeatFlow<double>    &flow,
+                                                          const std::vector<double> &T,
+                                                          const std::vector<double> &skin)
+  {
+    const Touching<double>     touching(flow);
+    const std::vector<double> &volumes = flow.network.volumes;
+    std::vector<double>        metal   = T, die(T.size(), 0.), partner(T.size(), 0.);
+    for (const auto &at : flow.surface.touching)
+      if (at.weight > 0.)
+        partner[at.node] += at.weight / touching.weight[at.node] * flow.dies[at.die].temperature;
+    for (NodeIndex k = 0; k < volumes.size(); ++k)
+    {
+      if (!touching.has_film(flow, k))
+        continue;
+      const auto of                        = arguments_at<double>(flow, k, touching, skin[k], 1.);
+      const auto [effusivity, metals_part] = together(of);
+      const double y                       = skin_biot(skin[k], of.h, effusivity * effusivity);
+      const double resistance              = skin_resistance(of, metals_part, y);
+      const double flux                    = (T[k] - partner[k]) / (1. + resistance); // over the film
+      die[k]                               = partner[k] + flux * y * (1. - metals_part);
+      metal[k]                             = die[k] + flux;
+    }
+    return {{metal, die}};
+  }
+} // namespace retroforge
