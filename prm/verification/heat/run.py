@@ -1,0 +1,91 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright (C) 2026 The Retroforge authors
+"""Conduction in whole runs: the heat of a closed body, temperatures that stay within what they are made of on twenty
+random scenes, and the order in time. run.py BUILD balance | bounds | order"""
+import csv
+import math
+import os
+import random
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+PRM = os.path.join(HERE, "..", "..")
+sys.path.insert(0, PRM)
+import case_tools  # noqa: E402
+
+BUILD = sys.argv[1]
+UPSETTING = os.path.join(HERE, "upsetting.prm")
+HUB = os.path.join(PRM, "tutorial", "hub", "hub.prm")
+CLOSED = {"Heat/contact film": 0, "Heat/air film": 0, "Heat/emissivity": 0}
+
+
+def values(summary):
+    return {objective["name"]: objective for objective in summary["objectives"]}
+
+
+def balance():
+    """Work and friction are all the heat there is; mean temperatures are over the volume."""
+    summary, _ = case_tools.run(BUILD, "simulate", UPSETTING, {**CLOSED, "Heat/friction part": 1}, "closed")
+    spent = values(summary)["energy"]["parts"]
+    came = (0.9 * spent["deformation"] + spent["friction"]) / (5 * summary["volume_final"])
+    ends = summary["heat"]["mean_temperature"]
+    print(f"{summary['remeshings']} remeshings: rise {ends - 1100:.4f} K, by work and friction {came:.4f} K, "
+          f"{(ends - 1100) / came - 1:.1e} of it")
+    case_tools.figure("heat_of_closed_body", abs(ends - 1100 - came) / (ends + 273.15))
+
+
+def scene(number):
+    """File, settings and the range of temperatures of a scene: no heat is made in it."""
+    chance = random.Random(number)
+    lower, upper, air, metal = (chance.uniform(*between) for between in ((20, 400), (20, 400), (0, 60), (800, 1250)))
+    if number % 5 == 4:
+        upper = metal + 100  # a die that warms the metal
+    settings = {"Heat/heating": "conduction", "Heat/fraction of work": 0, "Heat/friction part": 0,
+                "Heat/contact film": chance.uniform(2, 20), "Heat/air film": chance.uniform(0, 0.1),
+                "Heat/emissivity": chance.uniform(0, 1), "Heat/transfer time": chance.choice([0, chance.uniform(0.1, 20)]),
+                "Heat/dwell time": chance.choice([0, chance.uniform(0.1, 10)]), "Heat/waiting steps": chance.randint(3, 30),
+                "Heat/surroundings": air, "Die lower/temperature": lower, "Die upper/temperature": upper,
+                "Material/temperature": metal, "Objectives/names": "energy, largest temperature, least temperature",
+                "Design/parameters": "billet/temperature"}
+    if number % 2 == 0:
+        settings.update({"Billet/element size": chance.uniform(4, 7), "Press/stroke": chance.uniform(8, 20),
+                         "Press/increments": chance.randint(8, 20), "Remeshing/every": chance.randint(2, 5)})
+        return UPSETTING, settings, (lower, upper, air, metal)
+    settings.update({"Billet/element size": chance.uniform(4.5, 6), "Press/stroke": chance.uniform(8, 16),
+                     "Billet/radius": chance.uniform(13, 17)})
+    return HUB, settings, (lower, upper, air, metal)
+
+
+def bounds():
+    worst, remeshed = 0.0, 0
+    for number in range(20):
+        file, settings, within = scene(number)
+        name = f"bounds_{number}"
+        summary, _ = case_tools.run(BUILD, "simulate", file, settings, name)
+        with open(os.path.join(name, "objectives.csv"), encoding="utf-8") as table:
+            rows = list(csv.DictReader(table))
+        highest = max(float(row["largest temperature: true maximum [C]"]) for row in rows)
+        lowest = min(float(row["least temperature: true minimum [C]"]) for row in rows)
+        over = max(highest - max(within), min(within) - lowest)
+        worst, remeshed = max(worst, over), remeshed + (summary["remeshings"] > 0)
+        print(f"{number}: {summary['remeshings']} remeshings, {lowest:.1f} to {highest:.7f} C, over by {over:.1e} K", flush=True)
+    print(f"{remeshed} of 20 scenes are remeshed")
+    case_tools.figure("overshoot", max(worst, 0.0))
+
+
+def order():
+    found = []
+    for n in (10, 20, 40):
+        summary, _ = case_tools.run(BUILD, "simulate", UPSETTING,
+                                    {"Billet/element size": 6, "Press/stroke": 10, "Press/increments": n,
+                                     "Remeshing/when": "never", "Newton/tolerance": 1e-11, "Heat/dwell time": 1,
+                                     "Die lower/friction": 0, "Die upper/friction": 0}, f"order_{n}")
+        found.append((values(summary)["energy"]["value"], summary["heat"]["mean_temperature"]))
+    orders = [math.log2(abs((found[0][i] - found[1][i]) / (found[1][i] - found[2][i]))) for i in (0, 1)]
+    print(f"orders of energy and mean temperature: {orders[0]:.2f}, {orders[1]:.2f}")
+    case_tools.figure("conduction_order", min(orders))
+
+
+if __name__ == "__main__":
+    {"balance": balance, "bounds": bounds, "order": order}[sys.argv[2]]()
