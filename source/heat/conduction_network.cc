@@ -8,7 +8,7 @@
 
 namespace retroforge
 {
-  MeshEdges::MeshEdges(const TetMesh &mesh, const Topology &topology)
+  NetworkEdges::NetworkEdges(const TetMesh &mesh, const Topology &topology)
   {
     std::vector<unsigned int> first(mesh.n_nodes()); // edge to the first neighbour with a larger index
     for (NodeIndex a = 0; a < mesh.n_nodes(); ++a)
@@ -76,7 +76,7 @@ namespace retroforge
 
   template <typename Number>
   ConductionNetwork<Number>
-  conduction_network(const TetMesh &mesh, const MeshEdges &edges, const NodalVectors<Number> &X)
+  conduction_network(const TetMesh &mesh, const NetworkEdges &edges, const NodalVectors<Number> &X)
   {
     ConductionNetwork<Number> network{std::vector<Number>(mesh.n_nodes(), Number(0.)),
                                       std::vector<Number>(edges.nodes.size(), Number(0.)),
@@ -97,12 +97,12 @@ namespace retroforge
   }
 
   template ConductionNetwork<double>
-  conduction_network(const TetMesh &, const MeshEdges &, const NodalVectors<double> &);
+  conduction_network(const TetMesh &, const NetworkEdges &, const NodalVectors<double> &);
   template ConductionNetwork<Dual>
-  conduction_network(const TetMesh &, const MeshEdges &, const NodalVectors<Dual> &);
+  conduction_network(const TetMesh &, const NetworkEdges &, const NodalVectors<Dual> &);
 
   void reverse_conduction_network(const TetMesh                   &mesh,
-                                  const MeshEdges                 &edges,
+                                  const NetworkEdges              &edges,
                                   const NodalVectors<double>      &X,
                                   const ConductionNetwork<double> &network_bar,
                                   NodalVectors<double>            &X_bar)

@@ -38,7 +38,7 @@ namespace retroforge
 
     /// Heat that flows to each node [mW]:  S - (L + Phi) T.
     template <typename Number>
-    std::vector<Number> inflow(const MeshEdges           &edges,
+    std::vector<Number> inflow(const NetworkEdges        &edges,
                                const std::vector<Number> &g,
                                const NodeFilms<Number>   &films,
                                const std::vector<Number> &T)
@@ -164,7 +164,7 @@ namespace retroforge
 
     template <typename Number>
     std::array<std::vector<Bound>, 2>
-    find_bounds(const MeshEdges &edges, const Trace<Number> &trace, const std::vector<Number> &T)
+    find_bounds(const NetworkEdges &edges, const Trace<Number> &trace, const std::vector<Number> &T)
     {
       // Of a node itself, then of its neighbours: the largest and the least.
       std::array<std::vector<Bound>, 2> own, all;
@@ -215,7 +215,7 @@ namespace retroforge
     Trace<Number>
     trace_of(const ConductionStep<Number> &step, const std::vector<Number> &T, const FilmsAt<Number> &films)
     {
-      const MeshEdges           &edges = step.edges;
+      const NetworkEdges        &edges = step.edges;
       const std::vector<Number> &g     = step.conductances;
       AssertDimension(g.size(), edges.nodes.size());
       AssertDimension(step.capacities.size(), T.size());

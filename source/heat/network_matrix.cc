@@ -6,7 +6,7 @@
 
 namespace retroforge
 {
-  NetworkMatrix::NetworkMatrix(const MeshEdges    &edges,
+  NetworkMatrix::NetworkMatrix(const NetworkEdges &edges,
                                std::vector<double> diagonal,
                                std::vector<double> couplings)
       : edges_(edges), D_(std::move(diagonal)), g_(std::move(couplings))

@@ -78,7 +78,7 @@ namespace retroforge
   template <typename Number>
   Number conduct_over(const HalfOfIncrement       half,
                       const Scene                &scene,
-                      const MeshEdges            &edges,
+                      const NetworkEdges         &edges,
                       const Process<Number>      &process,
                       const StrokeStep           &at,
                       const NodalVectors<Number> &X,
@@ -104,14 +104,14 @@ namespace retroforge
 
   template double conduct_over(HalfOfIncrement,
                                const Scene &,
-                               const MeshEdges &,
+                               const NetworkEdges &,
                                const Process<double> &,
                                const StrokeStep &,
                                const NodalVectors<double> &,
                                WorkpieceState<3, double> &);
   template Dual   conduct_over(HalfOfIncrement,
                                const Scene &,
-                               const MeshEdges &,
+                               const NetworkEdges &,
                                const Process<Dual> &,
                                const StrokeStep &,
                                const NodalVectors<Dual> &,
@@ -124,9 +124,9 @@ namespace retroforge
   {
     if (!process.heat.conducts())
       return {};
-    const MeshEdges edges(scene.mesh, scene.topology);
-    const auto      dies    = process.over(place_of(HalfOfIncrement::second, at)).dies;
-    const auto      network = conduction_network(scene.mesh, edges, state.X);
+    const NetworkEdges edges(scene.mesh, scene.topology);
+    const auto         dies    = process.over(place_of(HalfOfIncrement::second, at)).dies;
+    const auto         network = conduction_network(scene.mesh, edges, state.X);
     const auto surface = thermal_surface(scene.view(dies, state.X), dies_in(process, at), process.heat.gap);
     return surface_temperatures({edges, network, surface, process.heat, process.heat.contact_film, dies},
                                 state.temperature,
@@ -135,7 +135,7 @@ namespace retroforge
 
   void reverse_conduct_over(const HalfOfIncrement            half,
                             const Scene                     &scene,
-                            const MeshEdges                 &edges,
+                            const NetworkEdges              &edges,
                             const Process<double>           &process,
                             const StrokeStep                &at,
                             const NodalVectors<double>      &X,

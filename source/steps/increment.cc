@@ -10,7 +10,7 @@ namespace retroforge
     return process.material.depends_on_state() || process.heat.conducts();
   }
 
-  const MeshEdges &Increment::edges() const
+  const NetworkEdges &Increment::edges() const
   {
     if (!edges_)
       edges_.emplace(scene_.mesh, scene_.topology);

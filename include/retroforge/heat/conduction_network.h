@@ -15,18 +15,18 @@
 /// where angles are right.
 namespace retroforge
 {
-  /// The edges of a mesh.
-  struct MeshEdges
+  /// The edges of the network: pairs of nodes that share a cell.
+  struct NetworkEdges
   {
     std::vector<std::array<NodeIndex, 2>>    nodes;    ///< of each, the smaller one first, ascending
     std::vector<std::array<unsigned int, 6>> of_cells; ///< of each cell, in the order of tet_edge_corners
 
-    MeshEdges(const TetMesh &mesh, const Topology &topology);
+    NetworkEdges(const TetMesh &mesh, const Topology &topology);
   };
 
   /// `use(edge, first node, second node)` for each edge.
   template <typename Use>
-  void for_each_edge(const MeshEdges &edges, const Use &use)
+  void for_each_edge(const NetworkEdges &edges, const Use &use)
   {
     for (unsigned int e = 0; e < edges.nodes.size(); ++e)
       use(e, edges.nodes[e][0], edges.nodes[e][1]);
@@ -45,11 +45,11 @@ namespace retroforge
 
   template <typename Number>
   ConductionNetwork<Number>
-  conduction_network(const TetMesh &mesh, const MeshEdges &edges, const NodalVectors<Number> &X);
+  conduction_network(const TetMesh &mesh, const NetworkEdges &edges, const NodalVectors<Number> &X);
 
   /// Adds the pull-back of conduction_network to X_bar.
   void reverse_conduction_network(const TetMesh                   &mesh,
-                                  const MeshEdges                 &edges,
+                                  const NetworkEdges              &edges,
                                   const NodalVectors<double>      &X,
                                   const ConductionNetwork<double> &bar,
                                   NodalVectors<double>            &X_bar);

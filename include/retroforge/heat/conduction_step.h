@@ -30,7 +30,7 @@ namespace retroforge
   template <typename Number>
   struct ConductionStep
   {
-    const MeshEdges           &edges;
+    const NetworkEdges        &edges;
     const std::vector<Number> &capacities;   ///< of nodes [mJ/K]
     const std::vector<Number> &conductances; ///< of edges [mW/K]
     const std::vector<Number> &bounded;      ///< those of the bounded solution, none negative [mW/K]

@@ -22,7 +22,7 @@ namespace retroforge
   template <typename Number>
   struct HeatFlow
   {
-    const MeshEdges                     &edges;
+    const NetworkEdges                  &edges;
     const ConductionNetwork<Number>     &network;
     const ThermalSurface<Number>        &surface;
     const HeatLaw<Number>               &law;

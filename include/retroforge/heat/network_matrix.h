@@ -15,7 +15,7 @@ namespace retroforge
   public:
     /// @param diagonal   D of each node, > 0
     /// @param couplings  g of each edge
-    NetworkMatrix(const MeshEdges &edges, std::vector<double> diagonal, std::vector<double> couplings);
+    NetworkMatrix(const NetworkEdges &edges, std::vector<double> diagonal, std::vector<double> couplings);
 
     /// y = A x, for deal.II's solvers.
     void vmult(dealii::Vector<double> &y, const dealii::Vector<double> &x) const;
@@ -24,7 +24,7 @@ namespace retroforge
     std::vector<double> solve(const std::vector<double> &b, const std::vector<double> &start) const;
 
   private:
-    const MeshEdges                               &edges_;
+    const NetworkEdges                            &edges_;
     std::vector<double>                            D_, g_;
     dealii::DiagonalMatrix<dealii::Vector<double>> preconditioner_;
   };

@@ -26,7 +26,7 @@ namespace retroforge
   template <typename Number>
   Number conduct_over(HalfOfIncrement             half,
                       const Scene                &scene,
-                      const MeshEdges            &edges,
+                      const NetworkEdges         &edges,
                       const Process<Number>      &process,
                       const StrokeStep           &at,
                       const NodalVectors<Number> &X,
@@ -44,7 +44,7 @@ namespace retroforge
   /// @param costates  of those after on entry, of those before on exit; to positions and process theirs are added
   void reverse_conduct_over(HalfOfIncrement                  half,
                             const Scene                     &scene,
-                            const MeshEdges                 &edges,
+                            const NetworkEdges              &edges,
                             const Process<double>           &process,
                             const StrokeStep                &at,
                             const NodalVectors<double>      &X,

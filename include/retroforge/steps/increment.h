@@ -75,15 +75,15 @@ namespace retroforge
 
   private:
     /// Of the mesh, found when heat first flows.
-    const MeshEdges &edges() const;
+    const NetworkEdges &edges() const;
 
     /// The state as the stages of mechanics find it, where heat flows.
     std::optional<WorkpieceState<3, double>> conducted(const Process<double>           &process,
                                                        const WorkpieceState<3, double> &state,
                                                        const IncrementRecord           &record) const;
 
-    const Scene                     &scene_;
-    Timings                         &timings_;
-    mutable std::optional<MeshEdges> edges_;
+    const Scene                        &scene_;
+    Timings                            &timings_;
+    mutable std::optional<NetworkEdges> edges_;
   };
 } // namespace retroforge

@@ -44,7 +44,7 @@ namespace retroforge
   {
     TetMesh                       mesh;
     Topology                      topology;
-    MeshEdges                     edges;
+    NetworkEdges                  edges;
     std::vector<Die>              dies;
     std::vector<DieState<double>> states;
 
