@@ -14,6 +14,10 @@ namespace retroforge
   /// Of the billet's extent along the way: a step that is fine for all but what is filled or nearly closed.
   constexpr double fine_step = 2.5e-3;
 
+  /// Edges that sank into a die come out of it within this part of a whole increment, or in one that is longer.
+  /// Energies lack the force times the depth to which edges are sunk at the end, which grows with it.
+  constexpr double recovery = 0.25;
+
   BilletSize Parameters::size_of(const TetMesh &mesh) const
   {
     const double side     = std::cbrt(volume(mesh.cells, mesh.X));
@@ -185,6 +189,7 @@ namespace retroforge
     const double layer           = model.contact.ramp.sharp ? 0. : contact.layer;
     model.contact.layer          = layer * contact.approach * closing;
     model.contact.step           = step;
+    model.contact.recovery       = recovery * step;
     // Where a node meets the approach speed that closes at that of the dies.
     const double arrival = layer == 0. ? 1. : layer * std::sinh(1. / layer);
     model.reach = std::max({3., 1.5 * contact.ramp_width, 1.5 * arrival}) * contact.approach * closing;

@@ -188,7 +188,7 @@ namespace retroforge
     if (feature.kind > 0)
     {
       const double s = side(surface, feature, value_of(Number(d * projection.n)));
-      projection.n   = unit(Vector3<Number>(d * Number(s) + projection.n * Number(surface.rounding())));
+      projection.n   = unit(Vector3<Number>(d * Number(s) + projection.n * Number(surface.edge_radius())));
     }
     projection.delta = d * projection.n;
     return projection;
@@ -211,11 +211,11 @@ namespace retroforge
     if (feature.kind > 0)
     {
       const double s     = side(surface, feature, d * N);
-      const Vec3   w     = s * d + surface.rounding() * N;
+      const Vec3   w     = s * d + surface.edge_radius() * N;
       const Vec3   w_bar = reverse_unit(w, N_bar);
       n                  = unit(w);
       d_bar              = s * w_bar;
-      N_bar              = surface.rounding() * w_bar;
+      N_bar              = surface.edge_radius() * w_bar;
     }
     d_bar += delta_bar * n;
     // d = p - X: p depends on X only along an edge, and there d only across it.

@@ -13,8 +13,7 @@ namespace retroforge
 {
   namespace
   {
-    constexpr double crack_width    = 1e-4; ///< of the diagonal
-    constexpr double rounding_width = 1e-5; ///< of the diagonal
+    constexpr double crack_width = 1e-4; ///< of the diagonal
 
     Vec3 facet_vector_of(const TriangleSurface &surface, const unsigned int f)
     {
@@ -57,8 +56,8 @@ namespace retroforge
     if (triangles_.empty())
       throw Error(where, "has no facets", "a surface needs at least one", "export the part's surface anew");
     check_facets(where);
-    box_      = bounding_box(vertices_);
-    rounding_ = rounding_width * diagonal();
+    box_           = bounding_box(vertices_);
+    made_diagonal_ = diagonal();
     connect(where);
     check_folds(where);
     check_cracks(where);

@@ -18,7 +18,7 @@ namespace retroforge
 {
   namespace
   {
-    constexpr unsigned int format = 11;
+    constexpr unsigned int format = 12;
 
     static_assert(sizeof(Vec3) == 3 * sizeof(double),
                   "nodal vectors are read and written as arrays of numbers");

@@ -58,7 +58,7 @@ namespace retroforge
     node.n             = contact.projections[p].n;
     node.delta         = contact.projections[p].delta;
     node.tau           = contact.tau;
-    node.approach      = contact.approach;
+    node.approach      = contact.approach.of(pair.point);
     node.S             = areas.S[p];
     node.Sf            = areas.Sf[p];
     node.alpha         = die.friction;

@@ -27,10 +27,20 @@ namespace retroforge
   /// The speed at which a gap closes, besides its approach time tau: see approach_speed().
   struct ApproachLaw
   {
-    double layer = 0.; ///< layer l of the approach speed [mm]; 0: none
-    double part  = 1.; ///< part of a whole increment, 1 unless it was cut
+    double layer    = 0.; ///< layer l of the approach speed [mm]; 0: none
+    double part     = 1.; ///< part of a whole increment, 1 unless it was cut
+    double recovery = 1.; ///< part of tau over the time in which edges that sank into a die come out of it
 
-    ApproachLaw(const double layer = 0., const double part = 1.) : layer(layer), part(part) {}
+    ApproachLaw(const double layer = 0., const double part = 1., const double recovery = 1.)
+        : layer(layer), part(part), recovery(recovery)
+    {
+    }
+
+    /// Returns that of a point: nodes and middles with a velocity of their own hardly sink, and come out at once.
+    ApproachLaw of(const ContactPoint &point) const
+    {
+      return {layer, part, point.has_own_velocity() ? 1. : recovery};
+    }
   };
 
   /// Numerical settings that stand in an increment's equations of contact. They are recorded with the
@@ -45,9 +55,16 @@ namespace retroforge
     double       edge_stiffness = 1.; ///< penalty of edges over that of nodes, dimensionless
     /// Whether energies and forces have their part of the work on gaps that close (spent_power.h).
     bool counts_closing = true;
+    /// Stroke within which edges that sank into a die come out of it, or that of the increment where that is
+    /// longer [mm]. Pressed edges sink by the part edge_sinking of it. Were it that of the increment, edges
+    /// would be thrown out wherever increments become shorter, and the metal pressed with them.
+    double recovery = 0.;
 
     /// Returns the approach law of an increment with the given stroke [mm].
-    ApproachLaw approach_law(const double stroke) const { return {layer, part_of(stroke)}; }
+    ApproachLaw approach_law(const double stroke) const
+    {
+      return {layer, part_of(stroke), recovery > stroke ? stroke / recovery : 1.};
+    }
 
     /// Returns the ramp in an increment with the given stroke [mm].
     FrictionRamp ramp_in(const double stroke) const
@@ -225,26 +242,29 @@ namespace retroforge
   /// What is inside a die comes out of it at no more than 2 l in a whole increment, and that part of it in
   /// one that was cut:  A -> A (1 + (A / (2 part))^2)^(-1/2)  for delta < 0. Without that bound a shorter
   /// increment would throw it out so much faster, and however short it is, elements would be turned over.
+  /// Edges come out more slowly, by the factor `recovery`.
   template <typename Number>
   Number approach_speed(const Number &delta, const Number &tau, const ApproachLaw &law)
   {
     using std::log;
     using std::sqrt;
+    const double recovery = value_of(delta) < 0. ? law.recovery : 1.;
     if (law.layer == 0.)
-      return delta / tau;
+      return recovery * delta / tau;
     const Number s = delta / law.layer;
     if (value_of(s) >= 0.)
       return law.layer / tau * log(Number(sqrt(Number(1. + s * s)) + s));
     const Number A = log(Number(sqrt(Number(1. + s * s)) - s)), a = A * (1. / (2. * law.part));
-    return -law.layer / tau * A / sqrt(Number(1. + a * a));
+    return -recovery * law.layer / tau * A / sqrt(Number(1. + a * a));
   }
 
   /// Returns the derivative of approach_speed() in delta [1/s].
   inline double approach_slope(const double delta, const double tau, const ApproachLaw &law)
   {
+    const double recovery = delta < 0. ? law.recovery : 1.;
     if (law.layer == 0.)
-      return 1. / tau;
-    const double s = delta / law.layer, slope = 1. / (tau * std::sqrt(1. + s * s));
+      return recovery / tau;
+    const double s = delta / law.layer, slope = recovery / (tau * std::sqrt(1. + s * s));
     if (s >= 0.)
       return slope;
     const double a = std::asinh(-s) / (2. * law.part);

@@ -25,7 +25,7 @@ namespace retroforge
   ///   face:          n = N
   ///   edge, vertex:  n = unit vector of  s d + r N,    s = sign(d·N), always 1 on the rim
   ///   delta = d·n
-  /// r is TriangleSurface::rounding(): n turns from N to d/|d| while the point leaves the edge by r, so that
+  /// r is TriangleSurface::edge_radius(): n turns from N to d/|d| while the point leaves the edge by r, so that
   /// n, delta and their derivatives stay bounded (|dn/dX| <= 1/r) for a point on the edge, where d/|d| means
   /// nothing. The price: |delta - s|d|| < 0.3 r, less than 0.08 r at edges up to 90 degrees. The sign is
   /// that of the pseudonormal, exact on closed surfaces.

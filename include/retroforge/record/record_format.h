@@ -22,8 +22,8 @@
 ///     /increment_000000 ...   attributes: run, n_nodes, n_velocity_nodes, operation, stroke, step, cuts,
 ///                             deformation_energy, friction_energy, closing_energy, closing_work, newton, krylov,
 ///                             linear_solves, sharp (the ramp is), counts_closing (energies do),
-///                             contact [6] double: approach, layer, step, width of the ramp, edge_stiffness, part of
-///                             the ramp's width at walls,
+///                             contact [7] double: approach, layer, step, width of the ramp, edge_stiffness, part of
+///                             the ramp's width at walls, recovery,
 ///                             n_held_motions and, where there are some,
 ///                             hold [7 + 6 n_held_motions] double: drag, force and moment that it bears, slide and
 ///                             turn of each motion

@@ -742,6 +742,21 @@ void check_layer()
     errors.compare(
       "slope", approach_slope(delta, tau, cut), approach_speed(Dual(1, 0, delta), Dual(tau), cut).dx(0));
   errors.compare("asinh", approach_speed(0.7, tau, layer), layer / tau * std::asinh(0.7 / layer));
+  for (const double l : {0., layer})
+  {
+    const ApproachLaw at_once(l, 0.1), slow(l, 0.1, 0.3);
+    errors.compare("sunk edges come out slowly",
+                   approach_speed(-0.7, tau, slow),
+                   0.3 * approach_speed(-0.7, tau, at_once));
+    errors.compare("and arrive as all", approach_speed(0.7, tau, slow), approach_speed(0.7, tau, at_once));
+    for (const double delta : {-2., -0.3, 0.4})
+      errors.compare("slope of edges",
+                     approach_slope(delta, tau, slow),
+                     approach_speed(Dual(1, 0, delta), Dual(tau), slow).dx(0));
+    errors.compare("those of nodes",
+                   approach_speed(-0.7, tau, slow.of(ContactPoint::node(0))),
+                   approach_speed(-0.7, tau, at_once));
+  }
   std::cout << "layer" << std::endl;
   errors.print(1e-12);
 }

@@ -103,8 +103,9 @@ void check_cube()
     const double exact = inside > 0. ? out.norm() : inside;
     error              = std::max(error, std::abs(signed_distance(surface, closest(X), X) - exact));
   }
-  std::cout << "cube, error of the signed distance < 0.3 rounding: " << yes(error < 0.3 * surface.rounding())
-            << ", of some point > 1e-9: " << yes(error > 1e-9) << "\n";
+  std::cout << "cube, error of the signed distance < 0.3 rounding: "
+            << yes(error < 0.3 * surface.edge_radius()) << ", of some point > 1e-9: " << yes(error > 1e-9)
+            << "\n";
 }
 
 void check_sphere()

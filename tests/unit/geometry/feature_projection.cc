@@ -100,7 +100,7 @@ std::pair<double, double> slopes(const TriangleSurface &surface, const Sample &s
   a /= a.norm();
   reverse_project_on_feature(surface, sample.feature, sample.X, sample.displacement, 1., Vec3(), of_delta, u);
   reverse_project_on_feature(surface, sample.feature, sample.X, sample.displacement, 0., a, of_n, u);
-  return {of_delta.norm(), of_n.norm() * surface.rounding()};
+  return {of_delta.norm(), of_n.norm() * surface.edge_radius()};
 }
 
 /// Points whose closest feature is of each kind: by searching around the surface.

@@ -211,7 +211,8 @@ namespace retroforge
   {
     return same_bits(a.approach, b.approach) && same_bits(a.layer, b.layer) && same_bits(a.step, b.step) &&
            same_bits(a.ramp.width, b.ramp.width) && a.ramp.sharp == b.ramp.sharp &&
-           same_bits(a.edge_stiffness, b.edge_stiffness) && a.counts_closing == b.counts_closing;
+           same_bits(a.edge_stiffness, b.edge_stiffness) && same_bits(a.recovery, b.recovery) &&
+           a.counts_closing == b.counts_closing;
   }
 
   inline bool same(const RigidHold &a, const RigidHold &b)
