@@ -244,11 +244,35 @@ namespace retroforge
     return power;
   }
 
-  template <typename Number>
-  std::array<Number, 3> closing_moments(const ContactNode<Number> &node, const ContactLaw<Number> &contact)
+  namespace
   {
-    const Number N = normal_force(node, contact), u_n = node.u * node.n;
-    return {{N, Number(N * u_n), Number(N * u_n * u_n)}};
+    /// phi of closing_moments() by t = a/u_r: it falls slowly with a gap, and fast with a depth, since pressed edges
+    /// are sunk in.
+    template <typename Number>
+    Number standing_part(const Number &t)
+    {
+      const Number q = 1. / (1. + t * t);
+      return value_of(t) >= 0. ? q : Number(q * q * q * q);
+    }
+
+    double standing_slope(const double t)
+    {
+      const double q = 1. / (1. + t * t);
+      return -2. * t * q * q * (t >= 0. ? 1. : 4. * q * q * q);
+    }
+  } // namespace
+
+  template <typename Number>
+  ClosingMoments<Number> closing_moments(const ContactNode<Number> &node,
+                                         const ContactLaw<Number>  &contact,
+                                         const Number              &rest_speed)
+  {
+    const Number N = normal_force(node, contact), u = node.u * node.n;
+    const Number a = approach_speed(node.delta, node.tau, node.approach);
+    Number       standing(0.);
+    if (value_of(rest_speed) > 0.)
+      standing = N * standing_part(Number(a / rest_speed));
+    return {{N, Number(N * u), Number(N * u * u), standing, Number(standing * a)}};
   }
 
   double contact_potential(const ContactNode<double> &node,
@@ -306,18 +330,31 @@ namespace retroforge
     return bar;
   }
 
-  ContactNodeBar reverse_closing_moments(const ContactNode<double>   &node,
-                                         const ContactLaw<double>    &contact,
-                                         const std::array<double, 3> &weights)
+  ContactNodeBar reverse_closing_moments(const ContactNode<double>    &node,
+                                         const ContactLaw<double>     &contact,
+                                         const double                  rest_speed,
+                                         const ClosingMoments<double> &weights,
+                                         double                       &rest_speed_bar)
   {
     if (!node.active)
       return {};
-    const double   u_n = node.u * node.n;
-    ContactNodeBar bar =
-      reverse_normal_force(node, contact, weights[0] + u_n * (weights[1] + u_n * weights[2]));
-    const double u_n_bar = normal_force(node, contact) * (weights[1] + 2. * u_n * weights[2]);
-    bar.u += u_n_bar * node.n;
-    bar.n += u_n_bar * node.u;
+    const double N = normal_force(node, contact), u = node.u * node.n;
+    double       of_N = weights[0] + u * (weights[1] + u * weights[2]), a_bar = 0.;
+    const double u_bar = N * (weights[1] + 2. * u * weights[2]);
+    const double a     = approach_speed(node.delta, node.tau, node.approach);
+    if (rest_speed > 0.)
+    {
+      const double t = a / rest_speed, phi = standing_part(t), of_phi = weights[3] + a * weights[4],
+                   slope = standing_slope(t) / rest_speed;
+      of_N += phi * of_phi;
+      a_bar = N * (phi * weights[4] + of_phi * slope);
+      rest_speed_bar -= N * of_phi * slope * t;
+    }
+    ContactNodeBar bar = reverse_normal_force(node, contact, of_N);
+    bar.delta += a_bar * approach_slope(node.delta, node.tau, node.approach);
+    bar.tau -= a_bar * a / node.tau;
+    bar.u += u_bar * node.n;
+    bar.n += u_bar * node.u;
     return bar;
   }
 
@@ -368,7 +405,8 @@ namespace retroforge
     const ContactNode<Number> &, const MaterialLaw<Number> &, const ContactLaw<Number> &); \
   template Number friction_power(                                                          \
     const ContactNode<Number> &, const MaterialLaw<Number> &, const ContactLaw<Number> &); \
-  template std::array<Number, 3> closing_moments(const ContactNode<Number> &, const ContactLaw<Number> &);
+  template ClosingMoments<Number> closing_moments(                                         \
+    const ContactNode<Number> &, const ContactLaw<Number> &, const Number &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE

@@ -1,18 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/dual.h>
+#include <retroforge/geometry/closing_speed.h>
 #include <retroforge/solver/contact_pullback.h>
 #include <retroforge/solver/spent_power.h>
+
+#include <algorithm>
 
 namespace retroforge
 {
   namespace
   {
-    // Order of the terms: deformation, friction, m, then three moments of each die.
-    constexpr std::size_t of_friction = 1, of_m = 2, of_dies = 3;
+    // Order of the terms: deformation, friction, m, then the moments of each die.
+    constexpr std::size_t of_friction = 1, of_m = 2, of_dies = 3, n_moments = n_closing_moments;
 
-    /// Speed of closing, as a part of the die's, below which points rest: there kappa would follow the last digits.
+    /// Speed of closing, as a part of that of the dies, below which points rest: there kappa would follow the last
+    /// digits.
     constexpr double at_rest = 0.025;
+
+    /// The same for gaps, of points by which one sees how far the die is off: pressed edges are sunk by more.
+    constexpr double standing = 0.005;
+
+    /// Where points that stand bear less than this part of the force, they do not tell.
+    constexpr double least_standing = 0.02;
 
     /// Part of an increment that a die presses after it arrived, below which it does not count.
     constexpr double just_touching = 1e-12;
@@ -32,6 +42,26 @@ namespace retroforge
   } // namespace
 
   template <typename Number>
+  Number rest_speed(const std::vector<DieState<Number>> &dies)
+  {
+    return standing * closing_speed(dies);
+  }
+
+  void reverse_rest_speed(const std::vector<DieState<double>> &dies,
+                          const double                         speed_bar,
+                          std::vector<DieState<double>>       &dies_bar)
+  {
+    const ClosingDies closing = closing_dies(dies);
+    const Vec3        v       = closing.velocity(dies);
+    if (!(v.norm() > 0.))
+      return;
+    const Vec3 v_bar = standing * speed_bar / v.norm() * v;
+    dies_bar[closing.die].velocity += v_bar;
+    if (closing.other != invalid_index)
+      dies_bar[closing.other].velocity -= v_bar;
+  }
+
+  template <typename Number>
   std::vector<Number> power_terms(const EquilibriumView<Number> &view)
   {
     const Equilibrium<Number> &stage = view.stage;
@@ -39,13 +69,15 @@ namespace retroforge
     std::tie(terms[0], terms[of_friction]) = stage.power(view.W, view.active);
     if (has_number_of_metal(stage.scene))
       terms[of_m] = stage.physics.material.initial_law().m;
+    const Number at_most = rest_speed(stage.physics.dies);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_counted(stage, p))
       {
-        const auto moments =
-          closing_moments(stage.contact_node(p, view.W, view.active), stage.physics.contact);
-        for (unsigned int i = 0; i < 3; ++i)
-          terms[of_dies + 3 * stage.contact.pairs[p].die + i] += moments[i];
+        const auto moments = closing_moments(stage.contact_node(p, view.W, view.active),
+                                             stage.physics.contact,
+                                             at_most);
+        for (unsigned int i = 0; i < n_moments; ++i)
+          terms[of_dies + n_moments * stage.contact.pairs[p].die + i] += moments[i];
       }
     return terms;
   }
@@ -61,23 +93,29 @@ namespace retroforge
     if (has_number_of_metal(stage.scene))
       reverse_initial_law(stage.physics.material, {0., weights[of_m], 0.}, bar.physics.material);
     ContactPullback pullback(view, bar);
+    const double    at_most     = rest_speed(stage.physics.dies);
+    double          at_most_bar = 0.;
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_counted(stage, p))
       {
-        const double *of_die = &weights[of_dies + 3 * stage.contact.pairs[p].die];
+        ClosingMoments<double> of_die;
+        std::copy_n(weights.begin() + of_dies + n_moments * stage.contact.pairs[p].die, n_moments, of_die.begin());
         pullback.add(p,
                      reverse_closing_moments(stage.contact_node(p, view.W, view.active),
                                              stage.physics.contact,
-                                             {{of_die[0], of_die[1], of_die[2]}}));
+                                             at_most,
+                                             of_die,
+                                             at_most_bar));
       }
     pullback.finish();
+    reverse_rest_speed(stage.physics.dies, at_most_bar, bar.physics.dies);
   }
 
   template <typename Number>
   Number closing_power(const std::vector<Number> &terms)
   {
     Number C(0.);
-    for (std::size_t d = of_dies; d < terms.size(); d += 3)
+    for (std::size_t d = of_dies; d < terms.size(); d += n_moments)
       C += terms[d + 1];
     return C;
   }
@@ -85,20 +123,27 @@ namespace retroforge
   template <typename Number>
   EnergyParts<Number> spent_power(const std::vector<Number> &terms)
   {
-    Assert(terms.size() >= of_dies && (terms.size() - of_dies) % 3 == 0,
-           dealii::ExcMessage("the terms of an increment's power are three, and three of each die"));
+    Assert(terms.size() >= of_dies && (terms.size() - of_dies) % n_moments == 0,
+           dealii::ExcMessage("the terms of an increment's power are three, and five of each die"));
     const Number       &m = terms[of_m];
     EnergyParts<Number> parts{terms[0], terms[of_friction], Number(0.)};
     const Number        D = parts.total();
     Number              at_once(0.);
-    for (std::size_t d = of_dies; d < terms.size(); d += 3)
+    for (std::size_t d = of_dies; d < terms.size(); d += n_moments)
     {
-      const Number *moments = &terms[d];
-      const Number  rest = (at_rest * D) * (at_rest * D), square = moments[0] * moments[2] + rest;
+      const Number &N = terms[d], &Nu = terms[d + 1];
+      // The speed at which the die would come to what it stands on, and the moments of what closes beside that.
+      const Number &standing_force = terms[d + 3];
+      const Number  least = least_standing * N, of_force = standing_force * standing_force + least * least;
+      const Number  common =
+        value_of(of_force) > 0. ? Number(terms[d + 4] * standing_force / of_force) : Number(0.);
+      const Number beside = Nu - N * common, second = terms[d + 2] - (2. * Nu - N * common) * common;
+      const Number rest = (at_rest * D) * (at_rest * D), square = N * second + rest;
+      at_once += N * common;
       if (value_of(square) > 0.)
       {
-        const Number part = (moments[1] * moments[1] + rest) / square, squared = part * part;
-        at_once += moments[1] * squared * squared;
+        const Number part = (beside * beside + rest) / square, squared = part * part;
+        at_once += beside * squared * squared;
       }
     }
     parts.closing = 0.5 * (1. + m) * (closing_power(terms) - at_once);
@@ -122,6 +167,7 @@ namespace retroforge
   }
 
 #define RETROFORGE_INSTANTIATE(Number)                                       \
+  template Number              rest_speed(const std::vector<DieState<Number>> &); \
   template std::vector<Number> power_terms(const EquilibriumView<Number> &); \
   template EnergyParts<Number> spent_power(const std::vector<Number> &);     \
   template Number              closing_power(const std::vector<Number> &);   \

@@ -184,10 +184,17 @@ namespace retroforge
                         const MaterialLaw<Number> &law,
                         const ContactLaw<Number>  &contact);
 
-  /// Returns (N, N u_n, N u_n^2),  u_n = u·n: the force that closes the gap or opens it, its power [mJ/s], and
-  /// what tells whether points close at one speed [mJ mm/s^2].
+  /// (N, N u, N u^2, N phi, N phi a),  u = u·n,  phi = (1 + (a/u_r)^2)^-1 for gaps, ^-4 for depths,  a the speed at which the gap may close:
+  /// the force that closes the gap or opens it [N], its power [mJ/s], what tells whether points close at one speed
+  /// [mJ mm/s^2], and, as far as the die stands on the point, the force and its power if it closed the gap.
   template <typename Number>
-  std::array<Number, 3> closing_moments(const ContactNode<Number> &node, const ContactLaw<Number> &contact);
+  using ClosingMoments = std::array<Number, 5>;
+
+  /// @param rest_speed  u_r, below which the die stands on a point; 0: phi is 0 [mm/s]
+  template <typename Number>
+  ClosingMoments<Number> closing_moments(const ContactNode<Number> &node,
+                                         const ContactLaw<Number>  &contact,
+                                         const Number              &rest_speed);
 
   /// Value of the potential whose gradient in V is contact_force, where the law has one.
   double contact_potential(const ContactNode<double> &node,
@@ -209,10 +216,12 @@ namespace retroforge
                                        const ContactLaw<double>  &contact,
                                        const Vec3                &lambda);
 
-  /// Derivatives of  weights·closing_moments.
-  ContactNodeBar reverse_closing_moments(const ContactNode<double>   &node,
-                                         const ContactLaw<double>    &contact,
-                                         const std::array<double, 3> &weights);
+  /// Derivatives of  weights·closing_moments; that in the rest speed is added to rest_speed_bar.
+  ContactNodeBar reverse_closing_moments(const ContactNode<double>    &node,
+                                         const ContactLaw<double>     &contact,
+                                         double                        rest_speed,
+                                         const ClosingMoments<double> &weights,
+                                         double                       &rest_speed_bar);
 
   /// Derivatives of  weight * friction_power.
   ContactNodeBar reverse_friction_power(const ContactNode<double> &node,

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/contact/interface_law.h>
 #include <retroforge/solver/equilibrium.h>
 
 /// @file
@@ -17,14 +18,19 @@
 ///     is D + (1 + m)/2 C.
 ///   - Where a die arrives at all points at once, the body flows as if the die came slower:
 ///     D = c (v - u)^(1+m), C = c (v - u)^m u. The truth, c (v - u) v^m, is D^(1-m) (D + C)^m.
-/// Both are linear in u, so that they hold for a gap that closes in several increments, too. Between the two,
-/// the share of the second is for each die
-///   kappa = (((sum N u)^2 + r^2) / (sum N sum N u^2 + r^2))^4,  r = 0.025 D.
-/// The ratio is 1 where all pressed points close at one speed, or rest, and about the share of the arriving
-/// points in the force where the others rest. Its power counts more of what arrives as arriving at a body that
-/// flows (measured, doc/theory/increment_and_adjoint.md). (What a gap costs that opens everywhere at once is not the sum of what
+/// Both are linear in u, so that they hold for a gap that closes in several increments, too. Of each die, what
+/// closes at the speed at which it comes to the points that it stands on is of the second case, a their approach
+/// speeds,
+///   u_c = A sum N phi a / (A^2 + (0.02 sum N)^2),   A = sum N phi,   phi = (1 + (a/u_r)^2)^-1, ^-4 where a < 0,
+///   u_r = 0.005 of the dies' closing speed,
+/// and of what closes beside that, w = u - u_c, the share
+///   kappa = (((sum N w)^2 + r^2) / (sum N sum N w^2 + r^2))^4,  r = 0.025 D.
+/// The ratio is 1 where all pressed points close at one speed, and about the share of the arriving points in the
+/// force where the others rest. Its power counts more of what arrives as arriving at a body that flows
+/// (measured, doc/theory/increment_and_adjoint.md). (What a gap costs that opens everywhere at once is not the sum of what
 /// it costs point by point: there is no derivative at rest that is right for both. This one is that of dies and
-/// billets that move as a whole.)
+/// billets that move as a whole, also where other points arrive in that increment: without u_c these took half
+/// of the derivative by an offset of the die with them.)
 ///
 /// With  w C  for what is added to D, all forces are multiplied by  (D + w C) / (D + C):  the power of the dies
 /// is then what is spent, and the forces are in equilibrium as before.
@@ -40,16 +46,27 @@ namespace retroforge
     Number total() const { return deformation + friction + closing; }
   };
 
+  /// Returns the speed of closing below which points rest, u_r [mm/s].
+  template <typename Number>
+  Number rest_speed(const std::vector<DieState<Number>> &dies);
+
+  /// Adds the derivatives of  speed_bar * rest_speed(dies).
+  void reverse_rest_speed(const std::vector<DieState<double>> &dies,
+                          double                               speed_bar,
+                          std::vector<DieState<double>>       &dies_bar);
+
   /// What a stage contributes to the power of its increment. Terms are sums over the stages, weighted as the
   /// time scheme does, and over ranks; their number is n_power_terms().
   /// @return this rank's part
   template <typename Number>
   std::vector<Number> power_terms(const EquilibriumView<Number> &view);
 
+  constexpr std::size_t n_closing_moments = std::tuple_size<ClosingMoments<double>>::value;
+
   /// Returns how many terms there are.
   inline std::size_t n_power_terms(const std::size_t n_dies)
   {
-    return 3 + 3 * n_dies;
+    return 3 + n_closing_moments * n_dies;
   }
 
   /// Adds the derivatives of  weights·power_terms.

@@ -154,6 +154,26 @@ def sphere(radius=30.0, per_turn=240, angle=0.0, polar=60.0):
     return revolved(sphere_profile(radius, polar, per_turn), per_turn, angle)
 
 
+def lobed_pan(per_turn=96):
+    """A pan 7 mm deep within r = 15 + 2 cos 3 phi, its wall 5 mm wide, with a round island of 3 mm in its middle."""
+    radii = np.array([*np.arange(0, 31) * 0.75, 24, 27, 31, 36])
+    phi = 2.0 * np.pi * np.arange(per_turn) / per_turn
+    r, phi = np.meshgrid(radii, phi, indexing="ij")
+
+    def step(t):
+        t = np.clip(t, 0.0, 1.0)
+        return t * t * (3.0 - 2.0 * t)
+    z = 7.0 * step((17.5 + 2.0 * np.cos(3.0 * phi) - r) / 5.0) - 3.0 * step((6.5 - r) / 3.0)
+    rings = np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=2)
+    facets = []
+    for inner, outer in zip(rings, rings[1:]):
+        c, d = np.roll(outer, -1, axis=0), np.roll(inner, -1, axis=0)
+        facets.append(np.stack([inner, c, outer], axis=1))
+        if inner is not rings[0]:
+            facets.append(np.stack([inner, d, c], axis=1))
+    return np.concatenate(facets)
+
+
 # ---- files and measures ----
 
 def write(file, facets):

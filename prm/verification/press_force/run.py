@@ -4,8 +4,9 @@
 """Is the force of the press one number, and how far does it and the energy depend on the steps?   run.py BUILD PART
 
 gap: a cube under a gap, in closed form. balance: hub, tripod, a rod with flash, a sphere punch and 20 random dies at all
-defaults: force against power. order: the hub's first mesh in 10 to 160 increments. hub_roughness, tripod_roughness: not
-remeshed, 11 radii. defaults: tutorials at all defaults against steps ten times finer. filling: a cavity filled to its last corner."""
+defaults: force against power. offset: slopes of the energy by the offset of the moving die against the force, on eleven
+scenes. order: the hub's first mesh in 10 to 160 increments. hub_roughness, tripod_roughness: not remeshed, 11 radii.
+defaults: tutorials at all defaults against steps ten times finer. filling: a cavity filled to its last corner."""
 import csv
 import math
 import os
@@ -144,6 +145,41 @@ def balance(options):
     runs.figure("largest_force", max(maxima))
 
 
+# ---- slopes ----
+
+def lobed_pan(name, **billet):
+    """A low cylinder under a lobed pan, 1 mm of air between them."""
+    return runs.write_case(f"pan_{name}.prm", {
+        **runs.cylinder(12, 22, 3.5, **billet), "Dies/names": "lower, upper", **runs.plane("lower", 0),
+        **runs.stl("upper", dies.write("pan.stl", dies.lobed_pan()), (0, 0, 19), velocity=-80), "Material/consistency": 40,
+        "Material/strain rate sensitivity": 0.15, "Press/stroke": 14})
+
+
+def offset(options):
+    """A moving die that is nearer by an offset presses farther by it: d energy / d offset is the force at the end."""
+    cases = [("hub", HUB, {}), ("tripod", TRIPOD, {}), *((f"lobed pan, {name}", lobed_pan(name, **billet), {}) for name, billet in (
+        ("60", {"sector_angle": 60}), ("120", {"sector_angle": 120}), ("whole", {"translation": "1, 0.5, 0"})))]
+    for number in range(6):
+        words, settings, facets = random_dies.scene(3, number)
+        curved = "upper" if "above" in words["kind"] else "lower"
+        settings[f"Die {curved}/file"] = dies.write(os.path.abspath(f"slope_{number}.stl"), facets)
+        cases.append((f"random {number}: {words['kind']}", runs.write_case(f"slope_{number}.prm", settings), {"Press/increments": 0}))
+    print("| scene | increments | force at the end [N] | d energy / d offset over it |\n" + "| --- " * 4 + "|")
+    off = []
+    for name, case, settings in cases:
+        run = runs.forge(options.build, "gradient", case, "offset",
+                         {**ENERGY_ONLY, **settings, "Design/parameters": "die upper/offset", **options.settings}, timeout=options.timeout)
+        if not run.ended:
+            print(f"| {name} | {run.message[:200]} |", flush=True)
+            off.append(math.inf)
+            continue
+        force = history(run)["force"]
+        off.append(abs(run.slope("die upper/offset")) / force[-1] - 1)
+        print(f"| {name} | {len(force)} | {force[-1]:.6g} | {off[-1]:+.2%} |", flush=True)
+    runs.figure("offset_worst", max(map(abs, off)))
+    runs.figure("offset_median", float(np.median(np.abs(off))))
+
+
 # ---- time ----
 
 def order(options):
@@ -200,7 +236,7 @@ def filling(options):
 
 
 def main():
-    parts = {f.__name__: f for f in (gap, balance, order, hub_roughness, tripod_roughness, defaults, filling)}
+    parts = {f.__name__: f for f in (gap, balance, offset, order, hub_roughness, tripod_roughness, defaults, filling)}
     options = runs.arguments(__doc__, *parts)
     parts[options.part](options)
 

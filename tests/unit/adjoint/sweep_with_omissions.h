@@ -336,10 +336,14 @@ namespace retroforge
         at, stage.physics.material.law, stage.physics.contact, weight * dt * weights[1]);
       if (omitted != Term::closing)
       {
-        const double *of_die  = &weights[3 + 3 * stage.contact.pairs[p].die];
-        const double  factor  = weight * dt;
-        const auto    closing = reverse_closing_moments(
-          at, stage.physics.contact, {{factor * of_die[0], factor * of_die[1], factor * of_die[2]}});
+        const double          *of_die = &weights[3 + n_closing_moments * stage.contact.pairs[p].die];
+        ClosingMoments<double> factors;
+        for (unsigned int i = 0; i < n_closing_moments; ++i)
+          factors[i] = weight * dt * of_die[i];
+        double     rest_speed_bar = 0.;
+        const auto closing        = reverse_closing_moments(
+          at, stage.physics.contact, rest_speed(stage.physics.dies), factors, rest_speed_bar);
+        reverse_rest_speed(stage.physics.dies, rest_speed_bar, bar.dies);
         node.u += closing.u;
         node.n += closing.n;
         node.delta += closing.delta;
