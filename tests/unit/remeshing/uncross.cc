@@ -43,8 +43,8 @@ namespace
   /// Two sheets of one cube's thickness that hang together in a corner.
   TetMesh two_sheets()
   {
-    return block_mesh({{4, 4, 3}}, [](const unsigned int i, const unsigned int j, const unsigned int k) {
-      return k != 1 || (i == 3 && j == 3);
+    return block_mesh({{5, 5, 3}}, [](const unsigned int i, const unsigned int j, const unsigned int k) {
+      return k != 1 || (i == 4 && j == 4);
     });
   }
 
@@ -53,7 +53,7 @@ namespace
   {
     NodalVectors<double> X = mesh.X;
     for (Vec3 &x : X)
-      if ((x - Vec3({1., 1., 2.})).norm() < 0.1)
+      if ((x - Vec3({2., 2., 2.})).norm() < 0.1)
         x += Vec3({0.11, 0.07, -1.2});
     return X;
   }
@@ -120,5 +120,5 @@ int main(int argc, char **argv)
   run("a corner in the other prong", mesh, bent(mesh, 4., 0., 1.3));
   run("a whole prong in the other", mesh, bent(mesh, 2., 2., 1.7));
   const TetMesh sheets = two_sheets();
-  run("a dent in the other sheet", sheets, dented(sheets), 1.6);
+  run("a dent in the other sheet", sheets, dented(sheets), 2.);
 }
