@@ -430,7 +430,9 @@ namespace retroforge
       if (moves)
         ways.push_back(-velocity);
       ways.push_back(-facing);
-      if (const Vec3 way = way_out(die, displacement, metal, approach.overlap); way.norm() > 0.)
+      // A die that moves across a plane of symmetry is another one in its mirror image.
+      const Vec3 way = metal.along_symmetry(way_out(die, displacement, metal, approach.overlap));
+      if (way.norm() > 0.)
         ways.push_back(way);
       approach.freeing   = shortest_move(die, displacement, ways, metal);
       approach.gap_place = approach.overlap.place;

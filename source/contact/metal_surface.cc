@@ -245,6 +245,23 @@ namespace retroforge
     });
   }
 
+  Vec3 MetalSurface::along_symmetry(const Vec3 &direction) const
+  {
+    Vec3              along = direction;
+    std::vector<Vec3> across; // orthonormal
+    for (const Plane &plane : symmetry_)
+    {
+      Vec3 n = plane.normal;
+      for (const Vec3 &other : across)
+        n -= (n * other) * other;
+      if (n.norm() < 1e-6)
+        continue;
+      across.push_back(n / n.norm());
+      along -= (along * across.back()) * across.back();
+    }
+    return along.norm() > 1e-6 * direction.norm() ? along : Vec3();
+  }
+
   namespace
   {
     MetalSurface surface_of_faces(const TetMesh &mesh, const NodalVectors<double> &X)

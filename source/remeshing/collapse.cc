@@ -191,7 +191,8 @@ namespace retroforge
       return {};
     plan_faces(mesh, a, b, change);
     if (!plan_ridges(mesh, a, b, change) || !edges_short_enough(context, a, b, longest) ||
-        !keeps_shape(context, a, b, change) || !links_meet_at_edge_only(mesh, a, b))
+        !keeps_shape(context, a, b, change) || !links_meet_at_edge_only(mesh, a, b) ||
+        hides_metal(context, change))
       return {};
     return change;
   }

@@ -170,7 +170,7 @@ namespace retroforge
     change.quality_after = triangulation.quality();
     if (!(change.quality_after > bound))
       return {};
-    if (!ring.is_closed && !flip_surface(context, a, b, ring, change))
+    if (!ring.is_closed && (!flip_surface(context, a, b, ring, change) || hides_metal(context, change)))
       return {};
     triangulation.add_cells(0, n - 1, change.added_cells);
     return change;

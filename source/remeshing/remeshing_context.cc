@@ -71,6 +71,45 @@ namespace retroforge
     return m * n > 0.85 * m.norm() * n.norm();
   }
 
+  namespace
+  {
+    /// Depth in dies of the middles of a face of the surface and of its edges; 0 on a plane of symmetry.
+    double
+    depth_of_chords(const RemeshingContext &context, const std::array<Vec3, 3> &x, const unsigned int region)
+    {
+      if (!context.old_surface.planes_of_region(region).empty())
+        return 0.;
+      double depth = context.old_surface.depth_in_dies((x[0] + x[1] + x[2]) / 3.);
+      for (unsigned int i = 0; i < 3; ++i)
+        depth = std::max(depth, context.old_surface.depth_in_dies((x[i] + x[(i + 1) % 3]) / 2.));
+      return depth;
+    }
+  } // namespace
+
+  bool hides_metal(const RemeshingContext &context, const CavityChange &change)
+  {
+    const EditableMesh      &mesh    = context.mesh;
+    std::vector<SurfaceFace> added   = change.added_faces;
+    auto                     removed = change.removed_faces;
+    if (change.placed_node != invalid_index && change.placed_node < mesh.n_nodes())
+      for (const unsigned int f : removed = mesh.faces_at(change.placed_node))
+        added.push_back(mesh.face(f));
+    double after = 0.;
+    for (const SurfaceFace &face : added)
+    {
+      std::array<Vec3, 3> x;
+      for (unsigned int i = 0; i < 3; ++i)
+        x[i] = face.nodes[i] == change.placed_node ? change.position : mesh.X(face.nodes[i]);
+      after = std::max(after, depth_of_chords(context, x, face.region));
+    }
+    if (after == 0. ||
+        after <= context.parameters.surface_deviation * context.size(mesh.X(added[0].nodes[0])))
+      return false;
+    return std::none_of(removed.begin(), removed.end(), [&](const unsigned int f) {
+      return depth_of_chords(context, corners(mesh.face(f).nodes, mesh), mesh.face(f).region) >= after;
+    });
+  }
+
   Vec3 Place::operator()(const Vec3 &x) const
   {
     if (kind == NodeKind::surface)

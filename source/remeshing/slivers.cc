@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/remeshing/slivers.h>
+#include <retroforge/remeshing/thin_metal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,19 +23,21 @@ namespace retroforge
       return cells;
     }
 
-    /// Returns the cells at the surface that are flatter than a degree, the flattest first.
+    /// Returns the cells that are flatter than a degree and have a face or all their nodes on the surface, the
+    /// flattest first.
     std::vector<Cell> slivers(const PeeledMesh &peeled)
     {
-      const double                      limit = std::sin(M_PI / 180.);
-      const TetMesh                    &mesh  = peeled.mesh();
-      std::set<std::pair<double, Cell>> found;
+      const double        limit = std::sin(M_PI / 180.);
+      const TetMesh      &mesh  = peeled.mesh();
+      const auto          thin  = thin_cells(mesh);
+      std::set<CellIndex> at_surface(thin.begin(), thin.end());
       for (const BoundaryFace &face : mesh.faces)
         if (mesh.is_surface(face))
-        {
-          const Cell &cell = mesh.cells[peeled.cell_behind(face.nodes)];
-          if (const double quality = tet_quality(corners(cell, mesh.X)); quality < limit)
-            found.insert({quality, cell});
-        }
+          at_surface.insert(peeled.cell_behind(face.nodes));
+      std::set<std::pair<double, Cell>> found;
+      for (const CellIndex c : at_surface)
+        if (const double quality = tet_quality(corners(mesh.cells[c], mesh.X)); quality < limit)
+          found.insert({quality, mesh.cells[c]});
       std::vector<Cell> cells;
       for (const auto &[quality, cell] : found)
         cells.push_back(cell);
@@ -42,7 +45,9 @@ namespace retroforge
     }
 
     /// The mesh without the sliver; nothing when it has to stay.
-    std::optional<PeeledMesh> without(const Cell &sliver, PeeledMesh peeled, const double most)
+    /// @param near  of thin metal that may go for it [mm]
+    std::optional<PeeledMesh>
+    without(const Cell &sliver, PeeledMesh peeled, const double most, const double near)
     {
       for (;;)
       {
@@ -50,10 +55,11 @@ namespace retroforge
         const auto  found = std::find(cells.begin(), cells.end(), sliver);
         if (found == cells.end())
           return peeled;
-        const CellIndex        cell   = found - cells.begin();
-        const auto             beside = peeled.surface_cells_beside(cell);
+        const CellIndex        cell = found - cells.begin();
         std::vector<CellIndex> in_turn{cell};
-        in_turn.insert(in_turn.end(), beside.begin(), beside.end());
+        for (const auto &more : {peeled.surface_cells_beside(cell),
+                                 thin_cells_near(peeled, centre_of(peeled.mesh(), cell), near)})
+          in_turn.insert(in_turn.end(), more.begin(), more.end());
         const auto stays = [planes = cells_in_planes(peeled)](const CellIndex c) {
           return planes.count(c) > 0;
         };
@@ -75,7 +81,8 @@ namespace retroforge
       for (const Cell &sliver : slivers(peeled))
       {
         const double h = size(X[sliver[0]]);
-        if (auto made = without(sliver, peeled, std::min(most, peeled.removed() + h * h * h)))
+        if (auto made =
+              without(sliver, peeled, std::min(most, peeled.removed() + h * h * h), reach_of_thin * h))
         {
           peeled = std::move(*made);
           return true;

@@ -249,6 +249,8 @@ namespace retroforge
       if (!look_alike(before, after))
         return {};
     }
+    if (hides_metal(context, change))
+      return {};
     change.placement = searched({{node, node}}, place, std::move(cavity), std::move(best));
     return change;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/mesh/self_crossing.h>
+#include <retroforge/remeshing/thin_metal.h>
 #include <retroforge/remeshing/uncross.h>
 
 #include <algorithm>
@@ -54,8 +55,12 @@ namespace retroforge
       const auto crossings = self_crossings(peeled.mesh(), X);
       if (crossings.empty())
         return peeled.result();
-      const double h = size(X[crossings[0].edge[0]]);
-      if (!peeled.remove_first(candidates(peeled, crossings), h * h * h))
+      const Vec3  &x       = X[crossings[0].edge[0]];
+      const double h       = size(x);
+      auto         in_turn = candidates(peeled, crossings);
+      const auto   thin    = thin_cells_near(peeled, x, reach_of_thin * h);
+      in_turn.insert(in_turn.end(), thin.begin(), thin.end());
+      if (!peeled.remove_first(in_turn, h * h * h))
         return {};
     }
   }

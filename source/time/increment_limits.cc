@@ -403,8 +403,27 @@ namespace retroforge
     }
   }
 
-  void IncrementLimits::check_fold(const ForgingState &state)
+  void IncrementLimits::check_fold(const ForgingState &state) const
   {
-    check_boundary_does_not_cross(state.epoch->scene.mesh, state.workpiece.X, "Workpiece");
+    const TetMesh              &mesh    = state.epoch->scene.mesh;
+    const NodalVectors<double> &X       = state.workpiece.X;
+    const double                allowed = remesher_.largest_repair() * state.volume;
+    if (!remesher_.enabled() || state.removed_volume < allowed)
+      check_boundary_does_not_cross(mesh, X, "Workpiece");
+    else if (const auto crossings = self_crossings(mesh, X); !crossings.empty())
+    {
+      std::ostringstream what;
+      what.precision(4);
+      what << "the workpiece folds onto itself: at stroke " << state.stroke
+           << " mm its surface crosses itself" << at(X[crossings[0].edge[0]]) << ", and "
+           << state.removed_volume << " mm^3 have been taken away in such places";
+      throw Error(
+        "Remeshing/largest repair",
+        what.str(),
+        "metal that meets metal is not in the model; laps thinner than an element are taken away, " +
+          as_text(allowed) + " mm^3 of them at most",
+        "the part has a lap there: round the die's edge, or shorten the stroke to where it does not "
+        "close yet; if a lap does not matter, raise the limit");
+    }
   }
 } // namespace retroforge

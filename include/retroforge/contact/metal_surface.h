@@ -38,6 +38,9 @@ namespace retroforge
     /// Returns whether x lies beyond a plane of symmetry, by more than rounding.
     bool is_beyond(const Vec3 &x) const;
 
+    /// Returns the part of a direction along all planes of symmetry; zero where only rounding is left.
+    Vec3 along_symmetry(const Vec3 &direction) const;
+
     /// Returns the sagitta of a concave surface that turns as the facets do [mm]: the maximum over the edges
     /// of the triangle that turn inwards by up to 45 degrees, of height times angle over eight.
     double hollow(unsigned int triangle) const { return hollow_[triangle]; }

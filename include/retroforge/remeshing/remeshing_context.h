@@ -49,6 +49,10 @@ namespace retroforge
   /// Returns whether two triangles face the same way: cosine of the angle of their normals above 0.85.
   bool look_alike(const std::array<Vec3, 3> &a, const std::array<Vec3, 3> &b);
 
+  /// Returns whether faces of the surface would lie deeper in dies than those they are exchanged for, and by more
+  /// than the surface may be moved: chords over the edge of a die, behind which metal hides.
+  bool hides_metal(const RemeshingContext &context, const CavityChange &change);
+
   /// The set of positions allowed to a new node of the given kind: anywhere in the interior, on the old
   /// region or on the old curve on the boundary.
   struct Place

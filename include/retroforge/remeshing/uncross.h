@@ -10,7 +10,8 @@ namespace retroforge
 {
   /// Takes cells away where the boundary crosses itself, the smallest first, until it does not: metal that is
   /// thinner than an element (a lip that the side left as it rolled onto a die, or a chord) cannot be
-  /// followed by the mesh. A cell may go when the boundary stays a surface; those that go lose together less
+  /// followed by the mesh. Cells behind the crossing faces go first, then thin metal around: see thin_cells_near().
+  /// A cell may go when the boundary stays a surface; those that go lose together less
   /// than the volume of a cube of the wanted length there. Nothing when it does not cross itself, or when
   /// that is not enough: then metal meets metal. What is lost of the volume is for the volume correction.
   /// @param X     current positions

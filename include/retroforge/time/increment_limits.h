@@ -113,8 +113,9 @@ namespace retroforge
     /// @throws Error
     void check_progress(const ForgingState &state) const;
 
-    /// Where metal meets metal, which is not in the model.  @throws Error
-    static void check_fold(const ForgingState &state);
+    /// Where metal meets metal, which is not in the model, or more has been taken away in such places than may be.
+    /// @throws Error
+    void check_fold(const ForgingState &state) const;
 
   private:
     struct Slip

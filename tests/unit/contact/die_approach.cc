@@ -13,6 +13,8 @@
 // the
 //   other, and it comes down by 1;
 // - the pyramid with its tip in the plane of symmetry of the half block, as on the whole one;
+// - the pyramid 0.3 deep in a side: it is free when it goes back by that, but not from the half block, where that is
+//   across the plane of symmetry: up it goes by 1.6, until its sides are 5 from the middle below the top face;
 // - a bar of 10 radius meshed with edges of 9: billet_surface() is round to a hundredth of what the mesh is.
 // The pyramid covers 3 x 3 of the face's 10 x 10; a quarter of that where it stands over a corner; of the
 // half block 1.5 x 3 of 5 x 10; from below its roof does. The blade covers 1 x 10, and a plane all.
@@ -154,6 +156,8 @@ int main(int argc, char **argv)
   const MetalSurface half_metal = metal_surface(half, half.X);
   report("tip on the whole", tip, Vec3({0., 1.6, 9.5}), down, down, metal);
   report("tip in the plane of symmetry", tip, Vec3({0., 1.6, 9.5}), down, down, half_metal);
+  report("pyramid beside the whole", tip, Vec3({6.2, 0., 6.}), down, down, metal);
+  report("pyramid beside the half", tip, Vec3({6.2, 0., 6.}), down, down, half_metal);
 
   std::printf(
     "covered: %.4f above, %.4f over a corner, %.4f of the half, %.4f from below, %.4f by the blade, "

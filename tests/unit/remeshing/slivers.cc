@@ -8,7 +8,9 @@
 //   remeshing as a run does it gives a sound mesh of the same volume; not where nothing may be taken away;
 // - a film of three cells whose root, a node below, touches an edge above: two flat cells, none of which can
 //   go before the film's end. It goes, then they do, 1/6 mm^3 and what is flat; all stay where that is
-//   more than a cube of the wanted length, or than is allowed, or where the film ends in a plane of symmetry.
+//   more than a cube of the wanted length, or than is allowed, or where the film ends in a plane of symmetry;
+// - a neck: a flat cell inside, all of whose nodes are on the surface. It goes with the two cells above it, 2/3 mm^3;
+//   where these are not on the surface either, the thinnest metal above them goes first.
 
 #include "../mesh/block_mesh.h"
 #include "remeshing_test_tools.h"
@@ -157,6 +159,58 @@ namespace
         face.patch = 1;
     print("film from a plane of symmetry", mesh, without_slivers(mesh, mesh.X, size_of_one, 0.2));
   }
+
+  /// A flat cell A B C D, whose edges A B and C D nearly touch, between cells with the apexes P above and Q below:
+  /// a neck. Nothing of these is on the surface, for each of their other faces bears one more cell.
+  TetMesh neck(const bool with_caps)
+  {
+    enum : NodeIndex
+    {
+      A,
+      B,
+      C,
+      D,
+      P,
+      Q
+    };
+    TetMesh mesh;
+    mesh.X     = {Vec3({-1., 0., 0.}),
+                  Vec3({1., 0., 0.}),
+                  Vec3({0., -1., -thin}),
+                  Vec3({0., 1., -thin}),
+                  Vec3({0., 0., 1.}),
+                  Vec3({0., 0., -1.})};
+    mesh.cells = {{{A, B, C, D}}, {{A, B, C, P}}, {{A, B, D, P}}, {{A, C, D, Q}}, {{B, C, D, Q}}};
+    if (with_caps)
+      for (const NodeIndex apex : {P, Q})
+        for (const NodeIndex end : {A, B})
+          for (const NodeIndex side : {C, D})
+          {
+            const Vec3 middle = (mesh.X[apex] + mesh.X[end] + mesh.X[side]) / 3.;
+            mesh.cells.push_back({{apex, end, side, static_cast<NodeIndex>(mesh.X.size())}});
+            mesh.X.push_back((apex == P ? 1.5 : 1.7) * middle);
+          }
+    for (auto &cell : mesh.cells)
+      if (tet_volume(corners(cell, mesh.X)) < 0.)
+        std::swap(cell[2], cell[3]);
+    add_one_patch(mesh);
+    check_mesh(mesh, "neck");
+    return mesh;
+  }
+
+  void necks()
+  {
+    const TetMesh bare = neck(false), capped = neck(true);
+    print("neck", bare, without_slivers(bare, bare.X, size_of_one, 1.));
+    const auto of_size = [](const double size) { return [size](const Vec3 &) { return size; }; };
+    print("neck within more metal", capped, without_slivers(capped, capped.X, of_size(1.2), 2.));
+    print("neck within more metal, wanted length 0.8",
+          capped,
+          without_slivers(capped, capped.X, of_size(0.8), 2.));
+    print("neck within more metal, 0.3 mm^3 allowed",
+          capped,
+          without_slivers(capped, capped.X, of_size(1.2), 0.3));
+  }
 } // namespace
 
 int main(int argc, char **argv)
@@ -164,4 +218,5 @@ int main(int argc, char **argv)
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   cap();
   film_with_a_root();
+  necks();
 }

@@ -6,7 +6,9 @@
 // - a node of one prong that is pushed into the other makes edges and faces cross; the cells there are taken
 //   away, less than a cube, and what is left is a sound mesh that does not cross itself, whose other cells
 //   and nodes are the old ones, in the old patches;
-// - a whole prong pushed into the other is a fold: nothing is done.
+// - a whole prong pushed into the other is a fold: nothing is done;
+// - in two sheets one element thick no cell behind a dent in the other sheet may go, for all its nodes are on the
+//   surface: they go once the sheet is open from its rim.
 
 #include "../mesh/block_mesh.h"
 #include "../mesh/mesh_test_tools.h"
@@ -35,6 +37,24 @@ namespace
     for (Vec3 &x : X)
       if (x[0] == 1. && x[2] >= from && x[1] <= y)
         x += Vec3({shift, 0.13, -0.17}); // off the grid of the other prong
+    return X;
+  }
+
+  /// Two sheets of one cube's thickness that hang together in a corner.
+  TetMesh two_sheets()
+  {
+    return block_mesh({{5, 5, 3}}, [](const unsigned int i, const unsigned int j, const unsigned int k) {
+      return k != 1 || (i == 4 && j == 4);
+    });
+  }
+
+  /// A node below the upper sheet, pushed into the lower one.
+  NodalVectors<double> dented(const TetMesh &mesh)
+  {
+    NodalVectors<double> X = mesh.X;
+    for (Vec3 &x : X)
+      if ((x - Vec3({2., 2., 2.})).norm() < 0.1)
+        x += Vec3({0.11, 0.07, -1.2});
     return X;
   }
 
@@ -70,10 +90,10 @@ namespace
     return n;
   }
 
-  void run(const std::string &title, const NodalVectors<double> &X)
+  void
+  run(const std::string &title, const TetMesh &mesh, const NodalVectors<double> &X, const double size = 1.)
   {
-    const TetMesh mesh = u_shape();
-    const auto    made = uncross(mesh, X, [](const Vec3 &) { return 1.; });
+    const auto made = uncross(mesh, X, [size](const Vec3 &) { return size; });
     std::cout << title << ": crosses itself: " << yes(!self_crossings(mesh, X).empty());
     if (!made)
     {
@@ -86,7 +106,7 @@ namespace
     std::cout << ", after: " << yes(!self_crossings(made->mesh.mesh, made->mesh.mesh.X).empty())
               << "\n  taken away: " << mesh.n_cells() - made->mesh.mesh.n_cells() << " cells, told right: "
               << yes(std::abs(volume_of(before) - volume_of(made->mesh.mesh) - made->removed) < 1e-13)
-              << ", less than a cube: " << yes(made->removed < 1.)
+              << ", less than a cube: " << yes(made->removed < size * size * size)
               << "\n  cells, faces that are not the old ones: " << strange(before, made->mesh) << "\n";
   }
 } // namespace
@@ -95,8 +115,10 @@ int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const TetMesh                            mesh = u_shape();
-  run("prongs apart", mesh.X);
-  run("prongs near each other", bent(mesh, 4., 2., 0.9));
-  run("a corner in the other prong", bent(mesh, 4., 0., 1.3));
-  run("a whole prong in the other", bent(mesh, 2., 2., 1.7));
+  run("prongs apart", mesh, mesh.X);
+  run("prongs near each other", mesh, bent(mesh, 4., 2., 0.9));
+  run("a corner in the other prong", mesh, bent(mesh, 4., 0., 1.3));
+  run("a whole prong in the other", mesh, bent(mesh, 2., 2., 1.7));
+  const TetMesh sheets = two_sheets();
+  run("a dent in the other sheet", sheets, dented(sheets), 2.);
 }
