@@ -73,9 +73,8 @@ namespace retroforge
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_counted(stage, p))
       {
-        const auto moments = closing_moments(stage.contact_node(p, view.W, view.active),
-                                             stage.physics.contact,
-                                             at_most);
+        const auto moments =
+          closing_moments(stage.contact_node(p, view.W, view.active), stage.physics.contact, at_most);
         for (unsigned int i = 0; i < n_moments; ++i)
           terms[of_dies + n_moments * stage.contact.pairs[p].die + i] += moments[i];
       }
@@ -99,13 +98,12 @@ namespace retroforge
       if (is_counted(stage, p))
       {
         ClosingMoments<double> of_die;
-        std::copy_n(weights.begin() + of_dies + n_moments * stage.contact.pairs[p].die, n_moments, of_die.begin());
-        pullback.add(p,
-                     reverse_closing_moments(stage.contact_node(p, view.W, view.active),
-                                             stage.physics.contact,
-                                             at_most,
-                                             of_die,
-                                             at_most_bar));
+        std::copy_n(
+          weights.begin() + of_dies + n_moments * stage.contact.pairs[p].die, n_moments, of_die.begin());
+        pullback.add(
+          p,
+          reverse_closing_moments(
+            stage.contact_node(p, view.W, view.active), stage.physics.contact, at_most, of_die, at_most_bar));
       }
     pullback.finish();
     reverse_rest_speed(stage.physics.dies, at_most_bar, bar.physics.dies);
@@ -166,11 +164,11 @@ namespace retroforge
     return value_of(given) > 0. ? Number(parts.total() / given) : Number(1.);
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                       \
+#define RETROFORGE_INSTANTIATE(Number)                                            \
   template Number              rest_speed(const std::vector<DieState<Number>> &); \
-  template std::vector<Number> power_terms(const EquilibriumView<Number> &); \
-  template EnergyParts<Number> spent_power(const std::vector<Number> &);     \
-  template Number              closing_power(const std::vector<Number> &);   \
+  template std::vector<Number> power_terms(const EquilibriumView<Number> &);      \
+  template EnergyParts<Number> spent_power(const std::vector<Number> &);          \
+  template Number              closing_power(const std::vector<Number> &);        \
   template Number              force_factor(const std::vector<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)

@@ -271,8 +271,8 @@ namespace retroforge
             feature.found() && states[d].in_press != 0)
         {
           const auto projection = dies_[d].project(at, states[d].displacement, feature);
-          // What rests on a plane lies in it, and is left as it is.
-          if (projection.delta < (dies_[d].surface() ? resting : -resting))
+          // What rests is left as it is: of metal that a die only comes to, it does not move with the die.
+          if (projection.delta < -resting)
             steps.push_back({d, feature, at + projection.delta * projection.n});
         }
       }

@@ -167,9 +167,9 @@ void check_tangent(const NodeCase<double> &c, Errors &errors)
 
 void check_reverse(const NodeCase<double> &c, const Vec3 &lambda, Errors &errors)
 {
-  const double                weight    = -0.7;
-  const auto                  force_bar = values(reverse_contact_force(c.node, c.law, c.contact, lambda));
-  const auto                  power_bar = values(reverse_friction_power(c.node, c.law, c.contact, weight));
+  const double                 weight     = -0.7;
+  const auto                   force_bar  = values(reverse_contact_force(c.node, c.law, c.contact, lambda));
+  const auto                   power_bar  = values(reverse_friction_power(c.node, c.law, c.contact, weight));
   const double                 rest_speed = 0.9;
   double                       rest_speed_bar = 0.;
   const ClosingMoments<double> weights{{0.4, -1.1, 0.6, 0.8, -0.5}};

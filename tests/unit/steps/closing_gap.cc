@@ -211,13 +211,13 @@ namespace
       };
       together = together && std::abs((shifted(u) - shifted(-u)) / (2. * u) / (1.2 * m) - 1.) < 0.02;
     }
-    std::printf(
-      "by hand: a die that comes slower: %s, one of many: %s, sunk in: %s, with what arrives: %s, forces: %s\n",
-      yes(slower),
-      yes(single),
-      yes(sunk),
-      yes(together),
-      yes(forces));
+    std::printf("by hand: a die that comes slower: %s, one of many: %s, sunk in: %s, with what arrives: %s, "
+                "forces: %s\n",
+                yes(slower),
+                yes(single),
+                yes(sunk),
+                yes(together),
+                yes(forces));
   }
 } // namespace
 
