@@ -29,9 +29,9 @@ namespace retroforge
     constexpr double worthwhile_gain = 1.5;
     // Distance from a die, over the element size, within which a node touches it.
     constexpr double touching_distance = 1e-2;
-    // Distance from a die, over the element size, within which a point of the surface rests on it and is put there. Were
-    // it pushed out of the die only, a surface at rest, which contact holds within its penetration, would have a kink
-    // there.
+    // Distance from a die, over the element size, within which a point of the surface rests on it and is left as it is:
+    // a surface at rest is held within the penetration of contact, so that at the die itself there would be a kink. Put
+    // onto the die, points would go with it, metal that it only comes to as well.
     constexpr double resting_distance = 1e-5;
 
     /// Edges that metal may be drawn over: those that stick out, and the rim of an open die. Where a die that
