@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/objective/contact_pressure.h>
 #include <retroforge/objective/damage_statistics.h>
+#include <retroforge/objective/die_temperature.h>
 #include <retroforge/objective/die_wear.h>
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>
@@ -29,6 +30,7 @@ namespace retroforge
                                                         largest_hydrostatic_pressure_type(),
                                                         largest_shear_type(),
                                                         die_wear_type(),
+                                                        die_temperature_type(),
                                                         damage_type(),
                                                         filling_type(),
                                                         unfilled_volume_type(),

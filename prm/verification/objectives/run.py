@@ -48,32 +48,6 @@ def write_ball(name, radius, centre, n=24):
         file.write("endsolid ball\n")
 
 
-def judge(build, case, settings, label):
-    summary, text = case_tools.run(build, "check", case, settings, f"run_{label}", may_fail=True)
-    if summary is None:
-        sys.exit(text)
-    with open(f"check_{label}.txt", "w") as file:
-        file.write(text)
-    rows, scale = summary["check"], {o["name"]: abs(o["value"]) for o in summary["objectives"]}
-    failed = [f"{r['objective']} by {r['parameter']}" for r in rows if r["verdict"] == "failed"]
-    print(f"{label}: {summary['mesh']['nodes']} nodes, {summary['remeshings']} remeshings, {len(scale)} objectives, "
-          f"{len(rows)} derivatives, of which {sum(r['verdict'] == 'zero' for r in rows)} zero, {len(failed)} failed\n" + "".join(f"  {f}\n" for f in failed))
-    print("| objective | value | adjoint/tangent - 1 | best replayed difference | median Taylor order |\n" + "| --- " * 5 + "|")
-    for name in scale:
-        # Random directions cancel: the program measures them against their terms.
-        of = [r for r in rows if r["objective"] == name and "random" not in r["parameter"] and r["verdict"] == "passed"]
-        if not of:
-            print(f"| {name} | {scale[name]:.6g} | - | - | - |")
-            continue
-        tangent = max(abs(r["tangent"] / r["adjoint"] - 1.0) for r in of)
-        replayed = max(min(abs(s["replayed_central"] / r["adjoint"] - 1.0) for s in r["steps"]) for r in of)
-        # Where the remainder is rounding its order means nothing: the least is the program's to judge.
-        orders = [r["taylor_orders"][-1] for r in of if r["taylor_orders"][-1] is not None]
-        print(f"| {name} | {scale[name]:.6g} | {tangent:.1e} | {replayed:.1e} | {sorted(orders)[len(orders) // 2]:.3f} |")
-    case_tools.figure(f"failed_{label}", len(failed))
-    case_tools.figure(f"derivatives_{label}", len(rows))
-
-
 def objectives(names, target, patches, more=None):
     settings = {"Objectives/names": ", ".join(names), "Objectives/history every": 0}
     for name in names:
@@ -93,14 +67,14 @@ def flat(build):
     write_ball("ball.stl", 24.0, (1.0, 2.0, 14.0))
     settings = objectives(PATH + END, "ball.stl", "side -x, side +x, side -y, side +y", {"Check/free differences": "false", "Check/taylor start": 1e-4, "Check/taylor halvings": 4})
     settings["Objective late force/window begin"] = 3.1
-    judge(build, FLAT, settings, "flat")
+    case_tools.judge_check(build, FLAT, settings, "flat")
 
 
 def curved(build, label, names, parameters, steps, more):
     settings = {**COARSE, **objectives(names, "die upper", "side"), "Check/steps": steps, "Design/parameters": ", ".join(parameters), **more}
     if "late force" in names:
         settings["Objective late force/window begin"] = 2.6
-    judge(build, CURVED, settings, label)
+    case_tools.judge_check(build, CURVED, settings, label)
 
 
 def ranks(build):
