@@ -36,3 +36,30 @@ def gradient(summary):
 
 def figure(name, value):
     print(f"FIGURE {name} {value:.6g}", flush=True)
+
+
+def judge_check(build, case, settings, label):
+    """Run `check`, print a table of what it finds of each objective, and the figures failed_LABEL and derivatives_LABEL."""
+    summary, text = run(build, "check", case, settings, f"run_{label}", may_fail=True)
+    if summary is None:
+        sys.exit(text)
+    with open(f"check_{label}.txt", "w") as file:
+        file.write(text)
+    rows, scale = summary["check"], {o["name"]: abs(o["value"]) for o in summary["objectives"]}
+    failed = [f"{r['objective']} by {r['parameter']}" for r in rows if r["verdict"] == "failed"]
+    print(f"{label}: {summary['mesh']['nodes']} nodes, {summary['remeshings']} remeshings, {len(scale)} objectives, "
+          f"{len(rows)} derivatives, of which {sum(r['verdict'] == 'zero' for r in rows)} zero, {len(failed)} failed\n" + "".join(f"  {f}\n" for f in failed))
+    print("| objective | value | adjoint/tangent - 1 | best replayed difference | median Taylor order |\n" + "| --- " * 5 + "|")
+    for name in scale:
+        # Random directions cancel: the program measures them against their terms.
+        of = [r for r in rows if r["objective"] == name and "random" not in r["parameter"] and r["verdict"] == "passed"]
+        if not of:
+            print(f"| {name} | {scale[name]:.6g} | - | - | - |")
+            continue
+        tangent = max(abs(r["tangent"] / r["adjoint"] - 1.0) for r in of)
+        replayed = max(min(abs(s["replayed_central"] / r["adjoint"] - 1.0) for s in r["steps"]) for r in of)
+        # Where the remainder is rounding its order means nothing: the least is the program's to judge.
+        orders = [r["taylor_orders"][-1] for r in of if r["taylor_orders"][-1] is not None]
+        print(f"| {name} | {scale[name]:.6g} | {tangent:.1e} | {replayed:.1e} | {sorted(orders)[len(orders) // 2]:.3f} |")
+    figure(f"failed_{label}", len(failed))
+    figure(f"derivatives_{label}", len(rows))

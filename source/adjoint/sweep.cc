@@ -11,10 +11,11 @@ namespace retroforge
 {
   namespace
   {
-    void add(const double weight, const NodalVectors<double> &from, NodalVectors<double> &to)
+    /// to += weight * from, number by number.
+    template <typename Aggregate>
+    void add(const double weight, const Aggregate &from, Aggregate &to)
     {
-      for (std::size_t k = 0; k < to.size(); ++k)
-        to[k] += weight * from[k];
+      for_each_number([weight](const double &x, double &y) { y += weight * x; }, from, to);
     }
 
     /// Derivatives of objective o, one of the end.
@@ -22,8 +23,8 @@ namespace retroforge
     {
       const FinalObjective &objective = *run.objectives[o].at_end;
       const FinalDecisions &decisions = run.traced.decisions[o];
-      const auto            dies      = run.process.at_stroke(end.stroke, end.operation).dies;
-      const auto            view      = final_view(objective, end.epoch->scene, end.workpiece, dies);
+      const auto            physics   = run.process.at_stroke(end.stroke, end.operation);
+      const auto            view      = final_view(objective, end.epoch->scene, end.workpiece, physics);
       const auto            integrals = objective.integrals(view, decisions).complete();
       return objective.derivatives(view, decisions, objective.reverse_value(integrals, decisions)).complete();
     }
@@ -50,21 +51,17 @@ namespace retroforge
           const double weight = combinations[j].weights[o];
           if (weight == 0.)
             continue;
-          add(weight, bar.X, costates[j].workpiece.X);
-          for (std::size_t c = 0; c < bar.q.size(); ++c)
-            costates[j].workpiece.strain[c] += weight * bar.q[c];
-          for (std::size_t k = 0; k < bar.T.size(); ++k)
-            costates[j].workpiece.temperature[k] += weight * bar.T[k];
-          for (std::size_t c = 0; c < bar.damage.size(); ++c)
-            costates[j].workpiece.damage[c] += weight * bar.damage[c];
+          WorkpieceState<3, double> &workpiece = costates[j].workpiece;
+          add<NodalVectors<double>>(weight, bar.X, workpiece.X);
+          add<std::vector<double>>(weight, bar.q, workpiece.strain);
+          add<std::vector<double>>(weight, bar.T, workpiece.temperature);
+          add<std::vector<double>>(weight, bar.skin, workpiece.skin);
+          add<std::vector<double>>(weight, bar.damage, workpiece.damage);
           PhysicsBar physics_bar(run.model.dies);
+          add(weight, bar.heat, physics_bar.heat);
+          add(weight, bar.dies, physics_bar.dies);
           if (const auto d = run.objectives[o].at_end->target_die(); d != invalid_index)
             add(weight, bar.target, physics_bar.dies[d].vertices);
-          for (std::size_t d = 0; d < run.model.dies.size(); ++d)
-          {
-            physics_bar.dies[d].displacement = weight * bar.dies[d].displacement;
-            add(weight, bar.dies[d].vertices, physics_bar.dies[d].vertices);
-          }
           costates[j].process.add_once([&](Process<double> &part) {
             reverse_over(run.process, {end.stroke, 0., end.operation}, 0., physics_bar, part);
           });
@@ -240,7 +237,7 @@ namespace retroforge
         },
         state);
     }
-    const auto        dies = process.at_stroke(end.stroke + end.step, end.operation).dies;
+    const auto        physics = process.at_stroke(end.stroke + end.step, end.operation);
     std::vector<Dual> values;
     for (std::size_t o = 0; o < run.objectives.size(); ++o)
       if (run.objectives[o].path)
@@ -248,7 +245,7 @@ namespace retroforge
       else
       {
         const FinalObjective &objective = *run.objectives[o].at_end;
-        const auto            view      = final_view(objective, epoch->scene, state, dies);
+        const auto            view      = final_view(objective, epoch->scene, state, physics);
         const FinalDecisions &decisions = run.traced.decisions[o];
         values.push_back(objective.value(objective.integrals(view, decisions).complete(), decisions));
       }

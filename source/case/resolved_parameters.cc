@@ -163,7 +163,8 @@ namespace retroforge
                                      made_billet,
                                      FrictionRamp{touching_gap_, step_model().contact.ramp.sharp},
                                      heat.heating != Heating::none,
-                                     material.damage != Damage::none}));
+                                     material.damage != Damage::none,
+                                     heat.heating == Heating::conduction}));
     return made;
   }
 

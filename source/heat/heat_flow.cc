@@ -95,6 +95,43 @@ namespace retroforge
               dt};
     }
 
+    /// Derivatives in what of each node touches dies.
+    struct NodeBar
+    {
+      std::vector<double> weight, area;
+
+      explicit NodeBar(const HeatFlow<double> &flow) : weight(flow.network.volumes.size(), 0.), area(weight)
+      {
+      }
+
+      /// Reverse of arguments_at(), but for e and dt.
+      void reverse_arguments(const HeatFlow<double>      &flow,
+                             const NodeIndex              k,
+                             const Touching<double>      &touching,
+                             const SkinArguments<double> &x_bar,
+                             HeatFlowBar                 &bar)
+      {
+        const double of_node = touching.area[k];
+        bar.contact_film += x_bar.h * touching.weight[k];
+        bar.law.conductivity += x_bar.k;
+        bar.law.capacity += x_bar.capacity;
+        bar.law.die_effusivity += x_bar.die_effusivity;
+        bar.network.volumes[k] += x_bar.depth / of_node;
+        weight[k] += x_bar.h * flow.contact_film;
+        area[k] -= x_bar.depth * flow.network.volumes[k] / (of_node * of_node);
+      }
+
+      /// Reverse of Touching's sums.
+      void reverse_touching(const HeatFlow<double> &flow, HeatFlowBar &bar) const
+      {
+        for (std::size_t i = 0; i < flow.surface.touching.size(); ++i)
+        {
+          bar.surface.weight[i] += weight[flow.surface.touching[i].node];
+          bar.surface.touching_area[i] += area[flow.surface.touching[i].node];
+        }
+      }
+    };
+
     /// Film of a free surface by convection and radiation.
     template <typename Number>
     Number air_film(const HeatLaw<Number> &law, const Number &T)
@@ -239,7 +276,7 @@ namespace retroforge
     }
 
     // Films to the dies.
-    std::vector<double> parts_bar(n, 0.), weights_bar(n, 0.);
+    std::vector<double> parts_bar(n, 0.);
     for (std::size_t i = 0; i < flow.surface.touching.size(); ++i)
     {
       const auto  &at = flow.surface.touching[i];
@@ -253,59 +290,178 @@ namespace retroforge
 
     // Skins.
     const Touching<double> touching(flow);
-    std::vector<double>    areas_bar(n, 0.);
+    NodeBar                nodes(flow);
     for (NodeIndex k = 0; k < n; ++k)
       if (touching.has_film(flow, k))
       {
-        using Partial                 = Sacado::Fad::SFad<double, 7>;
-        const auto             values = arguments_at<double>(flow, k, touching, skin[k], dt);
+        using Partial                = Sacado::Fad::SFad<double, 7>;
+        SkinArguments<double>  x_bar = arguments_at<double>(flow, k, touching, skin[k], dt);
         SkinArguments<Partial> x;
         int                    i = 0;
-        for_each_number([&](const double value, Partial &to) { to = Partial(7, i++, value); }, values, x);
-        const auto          step = beneath_contacts(x);
-        std::vector<double> x_bar;
-        for (int j = 0; j < 7; ++j)
-          x_bar.push_back(skin_bar[k] * step.e.dx(j) + parts_bar[k] * step.mean.dx(j));
-        skin_bar[k] = x_bar[0];
-        bar.contact_film += x_bar[1] * touching.weight[k];
-        weights_bar[k] = x_bar[1] * flow.contact_film;
-        bar.law.conductivity += x_bar[2];
-        bar.law.capacity += x_bar[3];
-        bar.law.die_effusivity += x_bar[4];
-        const double area = touching.area[k];
-        bar.network.volumes[k] += x_bar[5] / area;
-        areas_bar[k] = -x_bar[5] * flow.network.volumes[k] / (area * area);
-        bar.dt += x_bar[6];
+        for_each_number([&](const double value, Partial &to) { to = Partial(7, i++, value); }, x_bar, x);
+        const auto step = beneath_contacts(x);
+        i               = 0;
+        for_each_number(
+          [&](double &to) {
+            to = skin_bar[k] * step.e.dx(i) + parts_bar[k] * step.mean.dx(i);
+            ++i;
+          },
+          x_bar);
+        skin_bar[k] = x_bar.e;
+        bar.dt += x_bar.dt;
+        nodes.reverse_arguments(flow, k, touching, x_bar, bar);
       }
-    for (std::size_t i = 0; i < flow.surface.touching.size(); ++i)
-    {
-      bar.surface.weight[i] += weights_bar[flow.surface.touching[i].node];
-      bar.surface.touching_area[i] += areas_bar[flow.surface.touching[i].node];
-    }
+    nodes.reverse_touching(flow, bar);
   }
 
-  std::array<std::vector<double>, 2> surface_temperatures(const HeatFlow<double>    &flow,
-                                                          const std::vector<double> &T,
-                                                          const std::vector<double> &skin)
+  namespace
   {
-    const Touching<double>     touching(flow);
-    const std::vector<double> &volumes = flow.network.volumes;
-    std::vector<double>        metal   = T, die(T.size(), 0.), partner(T.size(), 0.);
-    for (const auto &at : flow.surface.touching)
-      if (at.weight > 0.)
-        partner[at.node] += at.weight / touching.weight[at.node] * flow.dies[at.die].temperature;
-    for (NodeIndex k = 0; k < volumes.size(); ++k)
+    /// What the temperatures at a node's surface depend on.
+    template <typename Number>
+    struct SurfaceArguments
     {
-      if (!touching.has_film(flow, k))
-        continue;
-      const auto of                        = arguments_at<double>(flow, k, touching, skin[k], 1.);
-      const auto [effusivity, metals_part] = together(of);
-      const double y                       = skin_biot(skin[k], of.h, effusivity * effusivity);
-      const double resistance              = skin_resistance(of, metals_part, y);
-      const double flux                    = (T[k] - partner[k]) / (1. + resistance); // over the film
-      die[k]                               = partner[k] + flux * y * (1. - metals_part);
-      metal[k]                             = die[k] + flux;
+      SkinArguments<Number> skin;
+      Number                T, partner; ///< of the metal beneath, and of the dies [C]
+
+      template <typename Self>
+      static auto members(Self &self)
+      {
+        auto &[skin, T, partner] = self;
+        return std::tie(skin, T, partner);
+      }
+    };
+
+    /// Of the metal, and of the dies.
+    template <typename Number>
+    std::array<Number, 2> at_surface(const SurfaceArguments<Number> &of)
+    {
+      const auto [effusivity, metals_part] = together(of.skin);
+      const Number y                       = skin_biot(of.skin.e, of.skin.h, Number(effusivity * effusivity));
+      const Number resistance              = skin_resistance(of.skin, metals_part, y);
+      const Number flux                    = (of.T - of.partner) / (1. + resistance); // over the film
+      const Number die                     = of.partner + flux * y * (1. - metals_part);
+      return {{Number(die + flux), die}};
     }
+
+    /// The mean temperature of the dies that each node touches.
+    template <typename Number>
+    std::vector<Number> partners(const HeatFlow<Number> &flow, const Touching<Number> &touching)
+    {
+      std::vector<Number> mean(flow.network.volumes.size(), Number(0.));
+      for (const auto &at : flow.surface.touching)
+        if (value_of(at.weight) > 0.)
+          mean[at.node] += at.weight / touching.weight[at.node] * flow.dies[at.die].temperature;
+      return mean;
+    }
+
+    /// Steps in time do not matter here.
+    template <typename Number>
+    SurfaceArguments<Number> surface_arguments(const HeatFlow<Number>    &flow,
+                                               const NodeIndex            k,
+                                               const Touching<Number>    &touching,
+                                               const std::vector<Number> &partner,
+                                               const std::vector<Number> &T,
+                                               const std::vector<Number> &skin)
+    {
+      return {arguments_at(flow, k, touching, skin[k], Number(1.)), T[k], partner[k]};
+    }
+  } // namespace
+
+  template <typename Number>
+  std::array<std::vector<Number>, 2> surface_temperatures(const HeatFlow<Number>    &flow,
+                                                          const std::vector<Number> &T,
+                                                          const std::vector<Number> &skin)
+  {
+    AssertDimension(T.size(), flow.network.volumes.size());
+    AssertDimension(skin.size(), T.size());
+    const Touching<Number>    touching(flow);
+    const std::vector<Number> partner = partners(flow, touching);
+    std::vector<Number>       metal   = T, die(T.size(), Number(0.));
+    for (NodeIndex k = 0; k < T.size(); ++k)
+      if (touching.has_film(flow, k))
+      {
+        const auto both = at_surface(surface_arguments(flow, k, touching, partner, T, skin));
+        metal[k]        = both[0];
+        die[k]          = both[1];
+      }
     return {{metal, die}};
   }
+
+  template std::array<std::vector<double>, 2>
+  surface_temperatures(const HeatFlow<double> &, const std::vector<double> &, const std::vector<double> &);
+  template std::array<std::vector<Dual>, 2>
+  surface_temperatures(const HeatFlow<Dual> &, const std::vector<Dual> &, const std::vector<Dual> &);
+
+  void reverse_surface_temperatures(const HeatFlow<double>                   &flow,
+                                    const std::vector<double>                &T,
+                                    const std::vector<double>                &skin,
+                                    const std::array<std::vector<double>, 2> &surfaces_bar,
+                                    std::vector<double>                      &T_bar,
+                                    std::vector<double>                      &skin_bar,
+                                    HeatFlowBar                              &bar)
+  {
+    const Touching<double>    touching(flow);
+    const std::vector<double> partner = partners(flow, touching);
+    NodeBar                   nodes(flow);
+    std::vector<double>       partner_bar(T.size(), 0.);
+    for (NodeIndex k = 0; k < T.size(); ++k)
+    {
+      const double metal_bar = surfaces_bar[0][k], die_bar = surfaces_bar[1][k];
+      if (!touching.has_film(flow, k))
+        T_bar[k] += metal_bar;
+      else if (metal_bar != 0. || die_bar != 0.)
+      {
+        using Partial = Sacado::Fad::SFad<double, 9>;
+        SurfaceArguments<Partial> x;
+        SurfaceArguments<double>  x_bar = surface_arguments(flow, k, touching, partner, T, skin);
+        int                       i     = 0;
+        for_each_number([&](const double value, Partial &to) { to = Partial(9, i++, value); }, x_bar, x);
+        const auto both = at_surface(x);
+        i               = 0;
+        for_each_number(
+          [&](double &to) {
+            to = metal_bar * both[0].dx(i) + die_bar * both[1].dx(i);
+            ++i;
+          },
+          x_bar);
+        T_bar[k] += x_bar.T;
+        partner_bar[k] = x_bar.partner;
+        skin_bar[k] += x_bar.skin.e;
+        nodes.reverse_arguments(flow, k, touching, x_bar.skin, bar);
+      }
+    }
+    for (std::size_t i = 0; i < flow.surface.touching.size(); ++i)
+      if (const auto &at = flow.surface.touching[i]; at.weight > 0.)
+      {
+        const double of_node = partner_bar[at.node] / touching.weight[at.node],
+                     t       = flow.dies[at.die].temperature;
+        bar.dies[at.die].temperature += of_node * at.weight;
+        bar.surface.weight[i] += of_node * (t - partner[at.node]);
+      }
+    nodes.reverse_touching(flow, bar);
+  }
+
+  namespace
+  {
+    template <typename Number>
+    std::vector<bool> dies_in_press(const std::vector<DieState<Number>> &dies)
+    {
+      std::vector<bool> touch;
+      for (const auto &die : dies)
+        touch.push_back(die.in_press == 1);
+      return touch;
+    }
+  } // namespace
+
+  template <typename Number>
+  HeatUnderPress<Number>::HeatUnderPress(const ContactView<Number> &view, const HeatLaw<Number> &law)
+      : edges(view.mesh, view.topology)
+      , network(conduction_network(view.mesh, edges, view.X))
+      , surface(thermal_surface(view, dies_in_press(view.states), value_of(law.gap)))
+      , flow{edges, network, surface, law, law.contact_film, view.states}
+  {
+  }
+
+  template struct HeatUnderPress<double>;
+  template struct HeatUnderPress<Dual>;
 } // namespace retroforge

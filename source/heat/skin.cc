@@ -68,12 +68,6 @@ namespace retroforge
     constexpr double four_thirds = 4. / 3.;
   } // namespace
 
-  double skin_biot(const double e, const double h, const double b2)
-  {
-    const double a = four_thirds * e * h / b2; // y²/(1+y)
-    return 0.5 * (a + std::sqrt(a * (a + 4.)));
-  }
-
   SkinStep<double>
   skin_step(const double e, const double h, const double b2, const double dt, SkinDerivatives *derivatives)
   {

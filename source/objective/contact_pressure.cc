@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/core/error.h>
-#include <retroforge/core/text.h>
 #include <retroforge/objective/contact_pressure.h>
 #include <retroforge/objective/objective_settings.h>
+#include <retroforge/objective/pairs_of_die.h>
 #include <retroforge/solver/contact_pullback.h>
 
 namespace retroforge
@@ -14,9 +13,7 @@ namespace retroforge
     template <typename Number>
     bool is_mine(const EquilibriumView<Number> &view, const unsigned int p, const unsigned int die)
     {
-      const ContactPair &pair = view.stage.contact.pairs[p];
-      return pair.die == die && pair.point.is_node() &&
-             view.stage.scene.discretization.owns(pair.point.nodes[0]);
+      return view.stage.contact.pairs[p].point.is_node() && is_of_die(view, p, die);
     }
 
     constexpr unsigned int none = invalid_index;
@@ -66,18 +63,8 @@ namespace retroforge
   } // namespace
 
   ContactPressure::ContactPressure(const unsigned int die, const double exponent, const double reference)
-      : die_(die), exponent_(exponent), reference_(reference)
+      : PathMaximumOf("Contact pressure", exponent, reference), die_(die)
   {
-    if (!(exponent >= 1.))
-      throw Error("Contact pressure",
-                  "the exponent is " + as_text(exponent),
-                  "it must be at least 1",
-                  "use 10 to 50: the larger, the nearer to the maximum");
-    if (!(reference > 0.))
-      throw Error("Contact pressure",
-                  "the reference is " + as_text(reference) + " MPa",
-                  "it must be positive",
-                  "use the pressure expected, or the consistency K");
   }
 
   template <typename Number>
@@ -91,7 +78,7 @@ namespace retroforge
       if (is_mine(view, p, die_))
       {
         const Number surface = larger * stage.areas.S[p];
-        sums[0] += surface * power(Number(pressure[p] / reference_), Number(exponent_));
+        sums[0] += surface * raised(pressure[p]);
         sums[1] += surface * stage.contact.ramps[p];
       }
     return sums;
@@ -111,13 +98,12 @@ namespace retroforge
       if (is_mine(view, p, die_))
       {
         // A (F/A)^e,  A = larger S
-        const double   whole = power(pressure[p] / reference_, exponent_);
         ContactNodeBar node_bar;
-        node_bar.S = larger * (weights[0] * (1. - exponent_) * whole + weights[1] * stage.contact.ramps[p]);
+        node_bar.S = larger * (weights[0] * (1. - exponent()) * raised(pressure[p]) +
+                               weights[1] * stage.contact.ramps[p]);
         bar.contact.ramp[p] += weights[1] * larger * stage.areas.S[p];
         pullback.add(p, node_bar);
-        if (pressure[p] > 0.)
-          force_bar[p] = weights[0] * exponent_ * whole / pressure[p];
+        force_bar[p] = weights[0] * slope(pressure[p]);
       }
     for (unsigned int p = 0; p < pressure.size(); ++p)
       if (const ContactPair &pair = stage.contact.pairs[p]; counts(view, p, die_))

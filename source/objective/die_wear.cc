@@ -3,20 +3,13 @@
 #include <retroforge/core/enum_setting.h>
 #include <retroforge/objective/die_wear.h>
 #include <retroforge/objective/objective_settings.h>
+#include <retroforge/objective/pairs_of_die.h>
 #include <retroforge/solver/contact_pullback.h>
 
 namespace retroforge
 {
   namespace
   {
-    /// Returns whether pair p is one of the die's, at a point of this rank.
-    template <typename Number>
-    bool is_of_die(const EquilibriumView<Number> &view, const unsigned int p, const unsigned int die)
-    {
-      const ContactPair &pair = view.stage.contact.pairs[p];
-      return pair.die == die && view.stage.scene.discretization.owns(pair.point.nodes[0]);
-    }
-
     template <typename Number>
     Number sliding_speed(const ContactNode<Number> &node, const Number &v0)
     {
@@ -76,7 +69,7 @@ namespace retroforge
       {
         const ContactPoint       &point  = stage.contact.pairs[p].point;
         const ContactNode<Number> node   = stage.contact_node(p, view.W, view.active);
-        const Number              inside = weight(point.position(stage.X));
+        const Number              inside = weight_in(region_, point.position(stage.X));
         sums[0] += inside * normal_force(node, law) * sliding_speed(node, law.v0);
         if (point.is_node())
           sums[1] += inside * larger * stage.areas.S[p] * stage.contact.ramps[p];
@@ -98,7 +91,7 @@ namespace retroforge
         const ContactPoint       &point  = stage.contact.pairs[p].point;
         const ContactNode<double> node   = stage.contact_node(p, view.W, view.active);
         const Vec3                x      = point.position(stage.X);
-        const double              inside = weight(x);
+        const double              inside = weight_in(region_, x);
         double         inside_bar        = weights[0] * normal_force(node, law) * sliding_speed(node, law.v0);
         ContactNodeBar node_bar          = reverse_work(node, law, weights[0] * inside);
         if (point.is_node())

@@ -36,10 +36,22 @@ namespace retroforge
                       dealii::Patterns::Double(0.));
   }
 
+  void add_temperature_smoothing(dealii::ParameterHandler &prm, double &smoothing)
+  {
+    prm.add_parameter(
+      "temperature smoothing",
+      smoothing,
+      "Difference of temperatures over which an extreme is smoothed: it is missed by about 1.5 "
+      "times as much. Units: K.",
+      dealii::Patterns::Double(1e-300));
+  }
+
   void DieSetting::add_parameters(dealii::ParameterHandler &prm)
   {
     prm.add_parameter(
-      "die", name, "Of an effort, contact pressure or wear; empty: the leading die. Units: none.");
+      "die",
+      name,
+      "Of an effort, contact pressure, wear or temperature; empty: the leading die. Units: none.");
   }
 
   unsigned int DieSetting::find(const std::string &where, const ObjectiveContext &context) const

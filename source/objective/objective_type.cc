@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/objective/cell_statistics.h>
 #include <retroforge/objective/contact_pressure.h>
-#include <retroforge/objective/damage_statistics.h>
+#include <retroforge/objective/die_temperature.h>
 #include <retroforge/objective/die_wear.h>
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>
@@ -10,7 +11,6 @@
 #include <retroforge/objective/objective_type.h>
 #include <retroforge/objective/radius.h>
 #include <retroforge/objective/shape_distance.h>
-#include <retroforge/objective/strain_statistics.h>
 #include <retroforge/objective/stress_maxima.h>
 #include <retroforge/objective/temperatures.h>
 #include <retroforge/objective/unfilled_volume.h>
@@ -29,6 +29,7 @@ namespace retroforge
                                                         largest_hydrostatic_pressure_type(),
                                                         largest_shear_type(),
                                                         die_wear_type(),
+                                                        die_temperature_type(),
                                                         damage_type(),
                                                         filling_type(),
                                                         unfilled_volume_type(),

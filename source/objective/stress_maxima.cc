@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/core/error.h>
-#include <retroforge/core/text.h>
 #include <retroforge/discretization/element_pairs.h>
 #include <retroforge/element/cell_geometry.templates.h>
 #include <retroforge/objective/objective_settings.h>
@@ -75,19 +73,8 @@ namespace retroforge
                                const double                       reference,
                                const PathWindow                  &window,
                                const std::optional<SmoothRegion> &region)
-      : stress_(stress), exponent_(exponent), reference_(reference), window_(window), region_(region)
+      : PathMaximumOf("Largest stress", exponent, reference, window), stress_(stress), region_(region)
   {
-    if (!(exponent >= 1.))
-      throw Error("Largest stress",
-                  "the exponent is " + as_text(exponent),
-                  "it must be at least 1",
-                  "use 10 to 50: the larger, the nearer to the maximum");
-    if (!(reference > 0.))
-      throw Error("Largest stress",
-                  "the reference is " + as_text(reference) + " MPa",
-                  "it must be positive",
-                  "use the stress expected, or the consistency K");
-    window.check("Largest stress");
     if (region)
       region->check("Largest stress");
   }
@@ -101,7 +88,7 @@ namespace retroforge
   {
     double largest = 0.;
     for (const PathRow<double> &row : rows)
-      if (window_.overlap(row) > 0.)
+      if (window().overlap(row) > 0.)
         largest = std::max(largest, row.integrals[2]);
     return {{"true maximum", largest}};
   }
@@ -118,13 +105,13 @@ namespace retroforge
       const Number share = geometry_of_cell(discretization, view.stage.X, c).volume / double(of_cell.size());
       for (const Sample<Number> &sample : of_cell)
       {
-        const Number volume = share * weight(sample.place);
+        const Number volume = share * weight_in(region_, sample.place);
         if (value_of(volume) == 0.)
           continue;
         sums[1] += volume;
         if (value_of(sample.x) <= 0.)
           continue;
-        sums[0] += volume * power(Number(sample.x / reference_), Number(exponent_));
+        sums[0] += volume * raised(sample.x);
         largest = std::max(largest, double(value_of(sample.x)));
       }
     }
@@ -151,12 +138,11 @@ namespace retroforge
       double                      volume_bar = 0.;
       for (const auto &[x, place] : of_cell)
       {
-        const double inside  = weight(place);
-        const double whole   = x > 0. ? power(x / reference_, exponent_) : 0.;
-        const double density = weights[0] * whole + weights[1];
+        const double inside  = weight_in(region_, place);
+        const double density = weights[0] * raised(x) + weights[1];
         volume_bar += part * inside * density;
         const double volume = part * geometry.volume;
-        samples_bar.push_back({x > 0. ? volume * inside * weights[0] * exponent_ * whole / x : 0.,
+        samples_bar.push_back({volume * inside * weights[0] * slope(x),
                                region_ ? Vec3(volume * density * region_->gradient(place)) : Vec3()});
       }
       reverse_samples(view, stress_, c, samples_bar, bar);

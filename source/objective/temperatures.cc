@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/objective/objective_settings.h>
 #include <retroforge/objective/temperatures.h>
 #include <retroforge/objective/volume.h>
 
@@ -44,21 +45,6 @@ namespace retroforge
   }
 
   template <typename Number>
-  std::array<Number, 4> TemperatureObjective::terms(const Number &T, const Decisions &decisions) const
-  {
-    using std::exp;
-    const Number from_hot = T - decisions.largest, from_cold = T - decisions.least;
-    const Number hot = exp(Number(from_hot / smoothing_)), cold = exp(Number(-from_cold / smoothing_));
-    return {{hot, Number(hot * from_hot), cold, Number(cold * from_cold)}};
-  }
-
-  std::array<double, 4> TemperatureObjective::slopes(const double T, const Decisions &decisions) const
-  {
-    const auto f = terms(T, decisions);
-    return {{f[0] / smoothing_, f[0] + f[1] / smoothing_, -f[2] / smoothing_, f[2] - f[3] / smoothing_}};
-  }
-
-  template <typename Number>
   std::vector<Number> TemperatureObjective::compute_integrals(const FinalView<Number> &view,
                                                               const Decisions         &decisions) const
   {
@@ -80,7 +66,8 @@ namespace retroforge
   template <typename Number>
   Number TemperatureObjective::combine(const std::vector<Number> &b, const Decisions &decisions) const
   {
-    const Number largest = decisions.largest + b[1] / b[0], least = decisions.least + b[3] / b[2];
+    const Number largest = hottest_.combine(b[0], b[1], decisions.largest),
+                 least   = coldest_.combine(b[2], b[3], decisions.least);
     switch (extreme_)
     {
       case TemperatureExtreme::largest:
@@ -104,12 +91,12 @@ namespace retroforge
       for (const NodeIndex k : view.scene.mesh.cells[c])
       {
         const double T = (*view.T)[k];
-        const auto   f = terms(T, decisions), slope = slopes(T, decisions);
+        const auto   f = terms(T, decisions);
         for (unsigned int i = 0; i < weights.size(); ++i)
-        {
           volume_bar += weights[i] * f[i];
-          bar.T[k] += weights[i] * volume * slope[i];
-        }
+        const auto hot = hottest_.slopes(T, decisions.largest), cold = coldest_.slopes(T, decisions.least);
+        for (unsigned int i = 0; i < 2; ++i)
+          bar.T[k] += volume * (weights[i] * hot[i] + weights[2 + i] * cold[i]);
       }
       reverse_cell_volume(view, c, volume_bar, bar.X);
     }
@@ -132,12 +119,7 @@ namespace retroforge
 
       void add_parameters(dealii::ParameterHandler &prm) override
       {
-        prm.add_parameter(
-          "temperature smoothing",
-          smoothing,
-          "Difference of temperatures over which an extreme is smoothed: it is missed by about 1.5 "
-          "times as much. Units: K.",
-          dealii::Patterns::Double(1e-300));
+        add_temperature_smoothing(prm, smoothing);
       }
 
       void make(const std::string      &where,

@@ -5,26 +5,6 @@
 
 namespace retroforge
 {
-  namespace
-  {
-    /// The entries of a row of J with the least and the largest value, between which the new value stays: weights
-    /// of J may be negative, and a temperature out of the range of those around would be none.
-    template <typename Number>
-    std::pair<NodeIndex, NodeIndex>
-    extremes(const TransferOperator &J, const unsigned int k, const std::vector<Number> &q)
-    {
-      NodeIndex least = J.node[J.begin[k]], largest = least;
-      for (unsigned int i = J.begin[k]; i < J.begin[k + 1]; ++i)
-      {
-        if (value_of(q[J.node[i]]) < value_of(q[least]))
-          least = J.node[i];
-        if (value_of(q[J.node[i]]) > value_of(q[largest]))
-          largest = J.node[i];
-      }
-      return {least, largest};
-    }
-  } // namespace
-
   template <typename Number>
   void MemberTransfer<Number>::operator()(const NodalVectors<Number> &positions,
                                           NodalVectors<Number>       &to) const
@@ -36,17 +16,8 @@ namespace retroforge
   void MemberTransfer<Number>::operator()(const NodeField<Number> &q, NodeField<Number> &to) const
   {
     to = q;
-    if (q.empty())
-      return;
-    to = remesh.transfer.apply<Number>(q);
-    for (unsigned int k = 0; k < to.size(); ++k)
-    {
-      const auto [least, largest] = extremes(remesh.transfer, k, q);
-      if (value_of(to[k]) < value_of(q[least]))
-        to[k] = q[least];
-      else if (value_of(to[k]) > value_of(q[largest]))
-        to[k] = q[largest];
-    }
+    if (!q.empty())
+      to = remesh.transfer.apply_bounded<Number>(q);
   }
 
   template <typename Number>
@@ -66,6 +37,15 @@ namespace retroforge
       to = transfer_cells<Number>(old_mesh, X, remesh.transfer, remesh.mesh, q);
   }
 
+  template <typename Number>
+  void MemberTransfer<Number>::operator()(const BoundedCellField<Number> &q,
+                                          BoundedCellField<Number>       &to) const
+  {
+    to = q;
+    if (!q.empty())
+      to = transfer_cells<Number>(old_mesh, X, remesh.transfer, remesh.mesh, q, CellRange::bounded);
+  }
+
   template struct MemberTransfer<double>;
   template struct MemberTransfer<Dual>;
 
@@ -82,23 +62,8 @@ namespace retroforge
                                          NodeField<double>       &to) const
   {
     to = q_bar;
-    if (q_bar.empty())
-      return;
-    const TransferOperator   &J         = remesh.transfer;
-    const std::vector<double> unbounded = J.apply<double>(q);
-    std::vector<double>       mapped    = q_bar;
-    std::vector<double>       bounded(old_mesh.n_nodes(), 0.);
-    for (unsigned int k = 0; k < mapped.size(); ++k)
-    {
-      const auto [least, largest] = extremes(J, k, q);
-      if (unbounded[k] < q[least])
-        bounded[least] += std::exchange(mapped[k], 0.);
-      else if (unbounded[k] > q[largest])
-        bounded[largest] += std::exchange(mapped[k], 0.);
-    }
-    to = J.apply_transpose<double>(mapped);
-    for (std::size_t i = 0; i < to.size(); ++i)
-      to[i] += bounded[i];
+    if (!q_bar.empty())
+      to = remesh.transfer.reverse_apply_bounded(q, q_bar);
   }
 
   void ReverseMemberTransfer::operator()(const NodeVectorField<3, double> &,
@@ -115,5 +80,15 @@ namespace retroforge
     to.assign(q_bar.empty() ? 0 : old_mesh.n_cells(), 0.);
     if (!is_zero(q_bar))
       reverse_transfer_cells(old_mesh, X, remesh.transfer, remesh.mesh, q, q_bar, to, X_bar);
+  }
+
+  void ReverseMemberTransfer::operator()(const BoundedCellField<double> &q,
+                                         const BoundedCellField<double> &q_bar,
+                                         BoundedCellField<double>       &to) const
+  {
+    to.assign(q_bar.empty() ? 0 : old_mesh.n_cells(), 0.);
+    if (!is_zero(q_bar))
+      reverse_transfer_cells(
+        old_mesh, X, remesh.transfer, remesh.mesh, q, q_bar, to, X_bar, CellRange::bounded);
   }
 } // namespace retroforge

@@ -124,13 +124,9 @@ namespace retroforge
   {
     if (!process.heat.conducts())
       return {};
-    const NetworkEdges edges(scene.mesh, scene.topology);
-    const auto         dies    = process.over(place_of(HalfOfIncrement::second, at)).dies;
-    const auto         network = conduction_network(scene.mesh, edges, state.X);
-    const auto surface = thermal_surface(scene.view(dies, state.X), dies_in(process, at), process.heat.gap);
-    return surface_temperatures({edges, network, surface, process.heat, process.heat.contact_film, dies},
-                                state.temperature,
-                                state.skin);
+    const auto                   dies = process.over(place_of(HalfOfIncrement::second, at)).dies;
+    const HeatUnderPress<double> heat(scene.view(dies, state.X), process.heat);
+    return surface_temperatures(heat.flow, state.temperature, state.skin);
   }
 
   void reverse_conduct_over(const HalfOfIncrement            half,

@@ -30,14 +30,15 @@ namespace retroforge
   template PathRow<Dual>   row_of(const IncrementRecord &, const Process<Dual> &);
 
   template <typename Number>
-  FinalView<Number> final_view(const FinalObjective                &objective,
-                               const Scene                         &scene,
-                               const WorkpieceState<3, Number>     &workpiece,
-                               const std::vector<DieState<Number>> &dies)
+  FinalView<Number> final_view(const FinalObjective            &objective,
+                               const Scene                     &scene,
+                               const WorkpieceState<3, Number> &workpiece,
+                               const Physics<Number>           &physics)
   {
     AssertDimension(workpiece.X.size(), scene.mesh.n_nodes());
     AssertDimension(workpiece.strain.size(), scene.mesh.n_cells());
-    AssertDimension(dies.size(), scene.dies.size());
+    AssertDimension(physics.dies.size(), scene.dies.size());
+    const auto        &dies  = physics.dies;
     const unsigned int d     = objective.target_die();
     const bool         moved = d != invalid_index && !dies[d].vertices.empty();
     return {scene,
@@ -46,17 +47,17 @@ namespace retroforge
             dies,
             moved ? &dies[d].vertices : nullptr,
             workpiece.temperature.empty() ? nullptr : &workpiece.temperature,
-            workpiece.damage.empty() ? nullptr : &workpiece.damage};
+            workpiece.damage.empty() ? nullptr : &workpiece.damage,
+            workpiece.skin.empty() ? nullptr : &workpiece.skin,
+            physics.heat.conducts() ? &physics.heat : nullptr};
   }
 
   template FinalView<double> final_view(const FinalObjective &,
                                         const Scene &,
                                         const WorkpieceState<3, double> &,
-                                        const std::vector<DieState<double>> &);
-  template FinalView<Dual>   final_view(const FinalObjective &,
-                                        const Scene &,
-                                        const WorkpieceState<3, Dual> &,
-                                        const std::vector<DieState<Dual>> &);
+                                        const Physics<double> &);
+  template FinalView<Dual>
+  final_view(const FinalObjective &, const Scene &, const WorkpieceState<3, Dual> &, const Physics<Dual> &);
 
   void ObjectiveTrace::add(const IncrementEvent &event)
   {
@@ -73,11 +74,10 @@ namespace retroforge
   {
     using Evaluation = ObjectiveTrace::Evaluation;
 
-    FinalView<double> view_of(const FinalObjective                &objective,
-                              const ForgingState                  &state,
-                              const std::vector<DieState<double>> &dies)
+    FinalView<double>
+    view_of(const FinalObjective &objective, const ForgingState &state, const Physics<double> &physics)
     {
-      return final_view(objective, state.epoch->scene, state.workpiece, dies);
+      return final_view(objective, state.epoch->scene, state.workpiece, physics);
     }
 
     Evaluation evaluated(const PathObjective &objective, const PathRows<double> &rows)
@@ -117,24 +117,24 @@ namespace retroforge
 
   void ObjectiveTrace::decide(const ForgingState &state)
   {
-    const auto dies = process_.at_stroke(state.stroke, state.operation).dies;
+    const auto physics = process_.at_stroke(state.stroke, state.operation);
     recorded_.decisions.assign(objectives_.size(), {});
     for (std::size_t j = 0; j < objectives_.size(); ++j)
       if (const auto &objective = objectives_[j].at_end)
-        recorded_.decisions[j] = objective->decide(view_of(*objective, state, dies));
+        recorded_.decisions[j] = objective->decide(view_of(*objective, state, physics));
   }
 
   std::vector<Evaluation> ObjectiveTrace::evaluate(const ForgingState &state) const
   {
     AssertDimension(recorded_.decisions.size(), objectives_.size());
-    const auto              dies = process_.at_stroke(state.stroke, state.operation).dies;
+    const auto              physics = process_.at_stroke(state.stroke, state.operation);
     std::vector<Evaluation> evaluations;
     for (std::size_t j = 0; j < objectives_.size(); ++j)
       if (const auto &path = objectives_[j].path)
         evaluations.push_back(evaluated(*path, recorded_.rows[j]));
       else
         evaluations.push_back(evaluated(
-          *objectives_[j].at_end, view_of(*objectives_[j].at_end, state, dies), recorded_.decisions[j]));
+          *objectives_[j].at_end, view_of(*objectives_[j].at_end, state, physics), recorded_.decisions[j]));
     return evaluations;
   }
 
@@ -148,14 +148,14 @@ namespace retroforge
 
   std::vector<Evaluation> ObjectiveTrace::evaluate_so_far(const ForgingState &state) const
   {
-    const auto              dies = process_.at_stroke(state.stroke, state.operation).dies;
+    const auto              physics = process_.at_stroke(state.stroke, state.operation);
     std::vector<Evaluation> evaluations;
     for (std::size_t j = 0; j < objectives_.size(); ++j)
       if (const auto &path = objectives_[j].path)
         evaluations.push_back(evaluated_so_far(*path, recorded_.rows[j]));
       else
         evaluations.push_back(
-          evaluated_so_far(*objectives_[j].at_end, view_of(*objectives_[j].at_end, state, dies)));
+          evaluated_so_far(*objectives_[j].at_end, view_of(*objectives_[j].at_end, state, physics)));
     return evaluations;
   }
 } // namespace retroforge

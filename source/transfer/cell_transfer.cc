@@ -61,10 +61,13 @@ namespace retroforge
                                      const NodalVectors<Number> &X,
                                      const TransferOperator     &J,
                                      const TetMesh              &new_mesh,
-                                     const std::vector<Number>  &q_T)
+                                     const std::vector<Number>  &q_T,
+                                     const CellRange             range)
   {
-    std::vector<Number> q        = node_to_cell(new_mesh, J.apply(cell_to_node(old_mesh, X, q_T)));
-    const auto          old_cell = kept_cells(old_mesh, J, new_mesh);
+    const auto          at_node = cell_to_node(old_mesh, X, q_T);
+    std::vector<Number> q =
+      node_to_cell(new_mesh, range == CellRange::bounded ? J.apply_bounded(at_node) : J.apply(at_node));
+    const auto old_cell = kept_cells(old_mesh, J, new_mesh);
     for (CellIndex c = 0; c < new_mesh.n_cells(); ++c)
       if (old_cell[c] != invalid_index)
         q[c] = q_T[old_cell[c]];
@@ -78,7 +81,8 @@ namespace retroforge
                               const std::vector<double>  &q_T,
                               std::vector<double>         q_bar,
                               std::vector<double>        &q_T_bar,
-                              NodalVectors<double>       &X_bar)
+                              NodalVectors<double>       &X_bar,
+                              const CellRange             range)
   {
     AssertDimension(q_bar.size(), new_mesh.n_cells());
     const auto old_cell = kept_cells(old_mesh, J, new_mesh);
@@ -90,17 +94,22 @@ namespace retroforge
       }
     std::vector<double> at_node(new_mesh.n_nodes(), 0.);
     reverse_node_to_cell(new_mesh, q_bar, at_node);
-    reverse_cell_to_node(old_mesh, X, q_T, J.apply_transpose(at_node), q_T_bar, X_bar);
+    const auto old_bar = range == CellRange::bounded
+                           ? J.reverse_apply_bounded(cell_to_node(old_mesh, X, q_T), at_node)
+                           : J.apply_transpose(at_node);
+    reverse_cell_to_node(old_mesh, X, q_T, old_bar, q_T_bar, X_bar);
   }
 
   template std::vector<double> transfer_cells(const TetMesh &,
                                               const NodalVectors<double> &,
                                               const TransferOperator &,
                                               const TetMesh &,
-                                              const std::vector<double> &);
+                                              const std::vector<double> &,
+                                              CellRange);
   template std::vector<Dual>   transfer_cells(const TetMesh &,
                                               const NodalVectors<Dual> &,
                                               const TransferOperator &,
                                               const TetMesh &,
-                                              const std::vector<Dual> &);
+                                              const std::vector<Dual> &,
+                                              CellRange);
 } // namespace retroforge

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 namespace retroforge
 {
@@ -176,6 +177,60 @@ namespace retroforge
     return scattered;
   }
 
+  namespace
+  {
+    /// The entries of row k with the least and the largest value.
+    template <typename Number>
+    std::pair<NodeIndex, NodeIndex>
+    extremes(const TransferOperator &J, const unsigned int k, const std::vector<Number> &q)
+    {
+      NodeIndex least = J.node[J.begin[k]], largest = least;
+      for (unsigned int i = J.begin[k]; i < J.begin[k + 1]; ++i)
+      {
+        if (value_of(q[J.node[i]]) < value_of(q[least]))
+          least = J.node[i];
+        if (value_of(q[J.node[i]]) > value_of(q[largest]))
+          largest = J.node[i];
+      }
+      return {least, largest};
+    }
+
+    /// The node whose value bounds row k, or none.
+    template <typename Number>
+    NodeIndex
+    bound(const TransferOperator &J, const unsigned int k, const std::vector<Number> &q, const Number &free)
+    {
+      const auto [least, largest] = extremes(J, k, q);
+      if (value_of(free) < value_of(q[least]))
+        return least;
+      return value_of(free) > value_of(q[largest]) ? largest : invalid_index;
+    }
+  } // namespace
+
+  template <typename Number>
+  std::vector<Number> TransferOperator::apply_bounded(const std::vector<Number> &q) const
+  {
+    std::vector<Number> transferred = apply(q);
+    for (unsigned int k = 0; k < n_new(); ++k)
+      if (const NodeIndex at = bound(*this, k, q, transferred[k]); at != invalid_index)
+        transferred[k] = q[at];
+    return transferred;
+  }
+
+  std::vector<double> TransferOperator::reverse_apply_bounded(const std::vector<double> &q,
+                                                              std::vector<double>        q_bar) const
+  {
+    const std::vector<double> free = apply(q);
+    std::vector<double>       of_bounds(n_old, 0.);
+    for (unsigned int k = 0; k < n_new(); ++k)
+      if (const NodeIndex at = bound(*this, k, q, free[k]); at != invalid_index)
+        of_bounds[at] += std::exchange(q_bar[k], 0.);
+    std::vector<double> bar = apply_transpose(q_bar);
+    for (NodeIndex k = 0; k < n_old; ++k)
+      bar[k] += of_bounds[k];
+    return bar;
+  }
+
   void TransferOperator::set_offset(const NodalVectors<double> &X, const NodalVectors<double> &X_new)
   {
     AssertDimension(X_new.size(), n_new());
@@ -193,6 +248,8 @@ namespace retroforge
   template std::vector<Dual>    TransferOperator::apply(const std::vector<Dual> &) const;
   template NodalVectors<double> TransferOperator::apply(const NodalVectors<double> &) const;
   template NodalVectors<Dual>   TransferOperator::apply(const NodalVectors<Dual> &) const;
+  template std::vector<double>  TransferOperator::apply_bounded(const std::vector<double> &) const;
+  template std::vector<Dual>    TransferOperator::apply_bounded(const std::vector<Dual> &) const;
   template std::vector<double>  TransferOperator::apply_transpose(const std::vector<double> &) const;
   template NodalVectors<double> TransferOperator::apply_transpose(const NodalVectors<double> &) const;
 

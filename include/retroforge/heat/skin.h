@@ -60,5 +60,11 @@ namespace retroforge
   }
 
   /// Returns y of a skin, the drop of temperature within it over that across the film.
-  double skin_biot(double e, double h, double b2);
+  template <typename Number>
+  Number skin_biot(const Number &e, const Number &h, const Number &b2)
+  {
+    using std::sqrt;
+    const Number a = 4. / 3. * e * h / b2; // y²/(1+y)
+    return value_of(a) > 0. ? Number(0.5 * (a + sqrt(Number(a * (a + 4.))))) : Number(0.);
+  }
 } // namespace retroforge

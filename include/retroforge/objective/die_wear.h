@@ -67,12 +67,6 @@ namespace retroforge
     }
 
   private:
-    template <typename Number>
-    Number weight(const Vector3<Number> &x) const
-    {
-      return region_ ? (*region_)(x) : Number(1.);
-    }
-
     unsigned int                die_;
     Wear                        wear_;
     PathWindow                  window_;

@@ -30,6 +30,9 @@ namespace retroforge
     const NodalVectors<Number> *target = nullptr;
     const std::vector<Number>  *T      = nullptr; ///< temperatures of the nodes [C]; null: not followed
     const std::vector<Number>  *damage = nullptr; ///< of each cell; null: not followed
+    /// Skins beneath the nodes (heat/skin.h), and the numbers of heat; null where it does not flow.
+    const std::vector<Number> *skin = nullptr;
+    const HeatLaw<Number>     *heat = nullptr;
   };
 
   /// What an objective decided on a workpiece, a value of the type T::Decisions of FinalObjectiveOf. Of lists
@@ -48,8 +51,10 @@ namespace retroforge
     std::vector<double>  q;
     std::vector<double>  T;      ///< empty where temperatures are not followed
     std::vector<double>  damage; ///< empty where it is not followed
+    std::vector<double>  skin;   ///< empty where heat does not flow
+    HeatLaw<double>      heat;   ///< its numbers
     NodalVectors<double> target; ///< vertices of the target, where the view or a die has them; else empty
-    /// Displacements, and vertices of dies that are not meant as the target.
+    /// Displacements, temperatures, and vertices of dies that are not meant as the target.
     std::vector<DieState<double>> dies;
 
     /// Makes zero derivatives.
@@ -59,8 +64,8 @@ namespace retroforge
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[X, q, T, damage, target, dies] = self;
-      return std::tie(X, q, T, damage, target, dies);
+      auto &[X, q, T, damage, skin, heat, target, dies] = self;
+      return std::tie(X, q, T, damage, skin, heat, target, dies);
     }
   };
 

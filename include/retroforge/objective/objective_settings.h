@@ -104,4 +104,7 @@ namespace retroforge
 
   /// Declares the setting `sharpness` of a smooth maximum.
   void add_sharpness(dealii::ParameterHandler &prm, double &sharpness);
+
+  /// Declares the setting `temperature smoothing`, that of an ExponentialMean [K].
+  void add_temperature_smoothing(dealii::ParameterHandler &prm, double &smoothing);
 } // namespace retroforge

@@ -19,6 +19,7 @@ namespace retroforge
     FrictionRamp ramp;               ///< the friction ramp of contact, by which nodes begin to touch
     bool         warms      = false; ///< whether the workpiece has temperatures
     bool         is_damaged = false; ///< whether its damage is followed
+    bool         conducts   = false; ///< whether heat flows to the dies
   };
 
   /// A type of objective: its settings, and how an objective is made of them. doc/objectives.md says what

@@ -5,6 +5,8 @@
 #include <retroforge/contact/contact_kinematics.h>
 #include <retroforge/objective/box.h>
 
+#include <optional>
+
 namespace retroforge
 {
   /// A weight that is 1 in a box and falls smoothly to 0 within `width` [mm] around it, so that what enters
@@ -23,4 +25,11 @@ namespace retroforge
     /// Returns the gradient in x.
     Vec3 gradient(const Vec3 &x) const;
   };
+
+  /// Returns the weight in a region, 1 without one.
+  template <typename Number>
+  Number weight_in(const std::optional<SmoothRegion> &region, const Vector3<Number> &x)
+  {
+    return region ? (*region)(x) : Number(1.);
+  }
 } // namespace retroforge

@@ -4,12 +4,12 @@
 
 #include <retroforge/objective/final_objective.h>
 #include <retroforge/objective/objective_type.h>
+#include <retroforge/objective/smooth_maximum.h>
 
 /// @file
-/// Extremes of the temperature of the workpiece after the stroke [C]. The largest is a mean over the nodes,
-///   ( sum_k V_k T_k exp(T_k/s) ) / ( sum_k V_k exp(T_k/s) ),  V_k the volume of the cells at node k,
-/// which lies below it by about 1.5 s where a hot spot is round; the least is that of -T, the spread their
-/// difference.
+/// Extremes of the temperature of the workpiece after the stroke [C]. The largest is the ExponentialMean over the nodes,
+///   ( sum_k V_k T_k exp(T_k/s) ) / ( sum_k V_k exp(T_k/s) ),  V_k the volume of the cells at node k;
+/// the least is that of -T, the spread their difference.
 namespace retroforge
 {
   enum class TemperatureExtreme
@@ -24,7 +24,7 @@ namespace retroforge
   public:
     /// @param smoothing  s [K]
     TemperatureObjective(TemperatureExtreme extreme, double smoothing)
-        : extreme_(extreme), smoothing_(smoothing)
+        : extreme_(extreme), hottest_{smoothing}, coldest_{-smoothing}
     {
     }
 
@@ -55,12 +55,14 @@ namespace retroforge
   private:
     /// What is summed of a node: weights of hot and of cold, and the same times the distance from the extreme.
     template <typename Number>
-    std::array<Number, 4> terms(const Number &T, const Decisions &decisions) const;
-    /// Returns the derivatives of terms() in T.
-    std::array<double, 4> slopes(double T, const Decisions &decisions) const;
+    std::array<Number, 4> terms(const Number &T, const Decisions &decisions) const
+    {
+      const auto hot = hottest_.terms(T, decisions.largest), cold = coldest_.terms(T, decisions.least);
+      return {{hot[0], hot[1], cold[0], cold[1]}};
+    }
 
     TemperatureExtreme extreme_;
-    double             smoothing_;
+    ExponentialMean    hottest_, coldest_;
   };
 
   /// Return the types of these objectives, as parameter files offer them.

@@ -9,7 +9,8 @@
 /// @file
 /// The step that takes the workpiece from one mesh to the next. What happens to a member of the state follows
 /// from its kind: positions by the tape of what remeshing did to them (PositionTape), one number or vector per
-/// node q' = J q, one number per cell transfer_cells(). Temperatures are then corrected so that heat is kept
+/// node q' = J q, one number per cell transfer_cells(); fields of nodes and bounded ones of cells within the range of the
+/// values that a row of J takes. Temperatures are then corrected so that heat is kept
 /// (steps/kept_heat.h).
 namespace retroforge
 {
@@ -27,6 +28,7 @@ namespace retroforge
     void operator()(const NodeField<Number> &q, NodeField<Number> &to) const;
     void operator()(const NodeVectorField<3, Number> &v, NodeVectorField<3, Number> &to) const;
     void operator()(const CellField<Number> &q, CellField<Number> &to) const;
+    void operator()(const BoundedCellField<Number> &q, BoundedCellField<Number> &to) const;
   };
 
   /// The reverse of it: from a member of the costate on the new mesh to that on the old one. Positions come
@@ -51,6 +53,9 @@ namespace retroforge
                     const NodeVectorField<3, double> &v_bar,
                     NodeVectorField<3, double>       &to) const;
     void operator()(const CellField<double> &q, const CellField<double> &q_bar, CellField<double> &to) const;
+    void operator()(const BoundedCellField<double> &q,
+                    const BoundedCellField<double> &q_bar,
+                    BoundedCellField<double>       &to) const;
   };
 
   /// Returns the state on the new mesh; on dual numbers its tangent.

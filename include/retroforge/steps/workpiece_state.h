@@ -41,6 +41,14 @@ namespace retroforge
     CellField(std::vector<Number> values) : std::vector<Number>(std::move(values)) {}
   };
 
+  /// The same, whose values stay within the range of those around at a change of mesh, as those of nodes do.
+  template <typename Number>
+  struct BoundedCellField : std::vector<Number>
+  {
+    using std::vector<Number>::vector;
+    BoundedCellField(std::vector<Number> values) : std::vector<Number>(std::move(values)) {}
+  };
+
   /// What flows from increment to increment, and nothing else: complete on every rank. The derivatives of a
   /// scalar in it, its costate, are another such aggregate. Each member tells by its type how it reaches
   /// another mesh (steps/change_of_mesh.h).
@@ -54,8 +62,8 @@ namespace retroforge
     NodeVectorField<dim, Number> velocity;
     NodeField<Number>            temperature; ///< [C]; none where the metal keeps that before the stroke
     /// Of the layers that contacts have chilled (heat/skin.h) [mJ/(mm^2 K)]; none where heat does not flow.
-    NodeField<Number> skin;
-    CellField<Number> damage; ///< dimensionless; none where it is not followed
+    NodeField<Number>        skin;
+    BoundedCellField<Number> damage; ///< dimensionless; none where it is not followed
 
     template <typename Self>
     static auto members(Self &self)
@@ -88,7 +96,7 @@ namespace retroforge
             NodeVectorField<dim, double>(n_nodes),
             NodeField<double>(warms ? n_nodes : 0, 0.),
             NodeField<double>(conducts ? n_nodes : 0, 0.),
-            CellField<double>(damages ? n_cells : 0, 0.)};
+            BoundedCellField<double>(damages ? n_cells : 0, 0.)};
   }
 
   /// Returns what of a state does not follow from the velocities that are recorded: all but positions and

@@ -13,10 +13,10 @@ namespace retroforge
 
   /// What an objective of the end sees: its target moves with the die's vertices.
   template <typename Number>
-  FinalView<Number> final_view(const FinalObjective                &objective,
-                               const Scene                         &scene,
-                               const WorkpieceState<3, Number>     &workpiece,
-                               const std::vector<DieState<Number>> &dies);
+  FinalView<Number> final_view(const FinalObjective            &objective,
+                               const Scene                     &scene,
+                               const WorkpieceState<3, Number> &workpiece,
+                               const Physics<Number>           &physics);
 
   /// What is recorded of a run for its objectives, next to its increments.
   struct RecordedObjectives

@@ -11,11 +11,18 @@ namespace retroforge
   std::vector<CellIndex>
   kept_cells(const TetMesh &old_mesh, const TransferOperator &J, const TetMesh &new_mesh);
 
+  /// Whether values at nodes stay within the range of those that a row of J takes.
+  enum class CellRange
+  {
+    free,
+    bounded
+  };
+
   /// Takes a field of one value per cell, such as the accumulated strain, to a new mesh: kept cells keep
   /// their values to the bit; the others get theirs through the nodes,
   ///   node_to_cell( J cell_to_node(q_T) ),
-  /// so that only what was remeshed is smoothed. Constants pass unchanged. Linear in q_T, and of X it depends
-  /// on the volumes by which cell_to_node() weighs.
+  /// so that only what was remeshed is smoothed. Constants pass unchanged. Linear in q_T but where it is bounded: no
+  /// value then leaves the range of those around; and of X it depends on the volumes by which cell_to_node() weighs.
   /// @param X    positions on the old mesh
   /// @param q_T  one value per old cell
   template <typename Number>
@@ -23,7 +30,8 @@ namespace retroforge
                                      const NodalVectors<Number> &X,
                                      const TransferOperator     &J,
                                      const TetMesh              &new_mesh,
-                                     const std::vector<Number>  &q_T);
+                                     const std::vector<Number>  &q_T,
+                                     CellRange                   range = CellRange::free);
 
   /// Adds the pull-back of q_bar, one value per new cell, through transfer_cells to q_T_bar and X_bar.
   void reverse_transfer_cells(const TetMesh              &old_mesh,
@@ -33,5 +41,6 @@ namespace retroforge
                               const std::vector<double>  &q_T,
                               std::vector<double>         q_bar,
                               std::vector<double>        &q_T_bar,
-                              NodalVectors<double>       &X_bar);
+                              NodalVectors<double>       &X_bar,
+                              CellRange                   range = CellRange::free);
 } // namespace retroforge

@@ -35,6 +35,14 @@ namespace retroforge
     template <typename Value>
     std::vector<Value> apply_transpose(const std::vector<Value> &q_bar) const;
 
+    /// J q, each value within the range of those that its row takes: weights may be negative.
+    /// @tparam Number  double or Dual
+    template <typename Number>
+    std::vector<Number> apply_bounded(const std::vector<Number> &q) const;
+
+    /// The pull-back of apply_bounded at q.
+    std::vector<double> reverse_apply_bounded(const std::vector<double> &q, std::vector<double> q_bar) const;
+
     /// c = X' - J X.
     void set_offset(const NodalVectors<double> &X, const NodalVectors<double> &X_new);
 

@@ -87,5 +87,21 @@ def order():
     case_tools.figure("conduction_order", min(orders))
 
 
+def derivatives():
+    """Temperatures of metal and dies by the numbers of heat, positions and the press, remeshed twice."""
+    numbers = ("heat capacity", "conductivity", "contact film", "die effusivity", "air film", "emissivity", "friction part", "transfer time",
+               "dwell time")
+    settings = {"Billet/element size": 7, "Press/stroke": 12, "Press/increments": 9, "Contact/penetration": 1e-3, "Heat/transfer time": 5,
+                "Heat/dwell time": 2, "Heat/contact gap": 1, "Newton/tolerance": 1e-13, "Adjoint/tolerance": 1e-13,
+                "Objectives/names": "die below, die above, largest temperature, least temperature",
+                "Objective die below/type": "die temperature", "Objective die below/die": "lower", "Objective die below/temperature smoothing": 20,
+                "Objective die above/type": "die temperature", "Objective die above/temperature smoothing": 20,
+                "Design/parameters": ", ".join(["billet/radius", "billet/temperature", "die upper/offset", "die upper/speed", "die lower/temperature",
+                                                "die upper/temperature"] + [f"heat/{number}" for number in numbers]),
+                "Check/steps": "1e-3, 1e-4, 1e-5, 1e-6", "Check/free differences": "false", "Check/taylor start": 3e-5,
+                "Check/taylor halvings": 3, "Output/fields every": 0, "Output/record": "false"}
+    case_tools.judge_check(BUILD, UPSETTING, settings, "heat")
+
+
 if __name__ == "__main__":
-    {"balance": balance, "bounds": bounds, "order": order}[sys.argv[2]]()
+    {"balance": balance, "bounds": bounds, "order": order, "derivatives": derivatives}[sys.argv[2]]()

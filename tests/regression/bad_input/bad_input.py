@@ -196,6 +196,8 @@ MISTAKES = {
     "region without extent": (objective("fold", "region from=1, 1, 1", "region to=2, 2, 0"), r"Objective fold/region from"),
     "exponent below one": (objective("fold", "exponent=0.5"), r"exponent.*0\.5"),
     "damage that is not followed": (objective("damage"), r"Objective damage.*Material/damage is none.*Latham-Cockcroft"),
+    "temperature of a die that stays as it is": (objective("die temperature"), r"Objective die temperature.*heat.*conduction"),
+    "temperature of a missing die": (objective("die temperature", "die=middle"), r"Objective die temperature.*middle.*upper"),
     "unknown damage": (settings("Material/damage=Lemaitre"), r"Material/damage.*Lemaitre"),
     "wear of a missing die": (objective("die wear", "die=middle"), r"Objective die wear.*middle.*upper"),
     "wear after the end": (objective("die wear", "window begin=50"), r"Objective die wear/window begin.*50"),

@@ -12,11 +12,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include "directions.h"
-
-#include <algorithm>
-#include <functional>
-#include <iostream>
+#include "ways.h"
 
 using namespace retroforge;
 
@@ -55,61 +51,6 @@ namespace
     return p;
   }
 
-  /// A direction, or the coefficient or the limit of both dies, or numbers of the metal.
-  struct Way
-  {
-    Direction             direction;
-    double                friction_dot = 0., limit_dot = 0.;
-    std::array<double, 3> metal_dot = {{0., 0., 0.}}; ///< K, m, e0
-  };
-
-  template <typename Number>
-  std::pair<Process<Number>, NodalVectors<Number>> at(const RecordedRun &run, const Way &way, const double t)
-  {
-    auto there = along<Number>(run, way.direction, t);
-    for (auto &die : there.first.dies)
-    {
-      die.friction    = number<Number>(value_of(die.friction) + t * way.friction_dot, way.friction_dot);
-      die.shear_limit = number<Number>(value_of(die.shear_limit) + t * way.limit_dot, way.limit_dot);
-    }
-    for (unsigned int i = 0; i < 3; ++i)
-      if (const double dot = way.metal_dot[i]; dot != 0.)
-      {
-        Number &x = number_of(there.first.material.law, i);
-        x         = number<Number>(value_of(x) + t * dot, dot);
-      }
-    return there;
-  }
-
-  double energy(const RecordedRun &run, const Way &way, const double t)
-  {
-    const auto [process, X] = at<double>(run, way, t);
-    return run.replayed_energy(process, X);
-  }
-
-  double by_adjoint(const RecordedRun &run, const AdjointResult &bar, const Way &way)
-  {
-    double sum = slope(run, bar, way.direction);
-    for (const auto &die : bar.process.dies)
-      sum += way.friction_dot * die.friction + way.limit_dot * die.shear_limit;
-    for (unsigned int i = 0; i < 3; ++i)
-    {
-      auto law_bar = bar.process.material.law;
-      sum += way.metal_dot[i] * number_of(law_bar, i);
-    }
-    return sum;
-  }
-
-  /// Order of the remainder between two steps.
-  double taylor_order(const RecordedRun &run, const Way &way, const double gradient, const double step)
-  {
-    const double here      = energy(run, way, 0.);
-    const auto   remainder = [&](const double t) {
-      return std::abs(energy(run, way, t) - here - t * gradient);
-    };
-    return std::log2(remainder(step) / remainder(0.5 * step));
-  }
-
   /// @param with_metal  whether by the metal's numbers, too
   double check(const std::string &name, const Parameters &parameters, const bool with_metal)
   {
@@ -118,36 +59,29 @@ namespace
     const NodalVectors<double> still(run.state().workpiece.X.size());
     std::cout << name << "\n  friction works: "
               << yes(run.state().energy.friction > 1e-3 * run.state().energy.total()) << "\n";
-    double           largest = 0.;
+    double     largest = 0.;
+    const auto of_dies = [](double DieState<double>::*number) {
+      return [number](Process<double> &dot) {
+        for (auto &die : dot.dies)
+          die.*number = 1.;
+      };
+    };
     std::vector<Way> ways{{{"random X_0", random_vectors(still.size()), 0., 0., {}}},
                           {{"speed", still, 1., 0., {}}},
                           {{"offset", still, 0., 1., {}}},
-                          {{"friction", still, 0., 0., {}}, 1.}};
+                          {{"friction", still, 0., 0., {}}, of_dies(&DieState<double>::friction)}};
     if (with_metal)
       for (unsigned int i = 0; i < 3; ++i)
-      {
-        ways.push_back({{MaterialLaw<double>::info()[i].name, still, 0., 0., {}}});
-        ways.back().metal_dot[i] = 1.;
-      }
+        ways.push_back({{MaterialLaw<double>::info()[i].name, still, 0., 0., {}},
+                        [i](Process<double> &dot) { number_of(dot.material.law, i) = 1.; }});
     if (parameters.dies[0].friction_law == "Coulomb")
-      ways.push_back({{"limit", still, 0., 0., {}}, 0., 1.});
+      ways.push_back({{"limit", still, 0., 0., {}}, of_dies(&DieState<double>::shear_limit)});
     for (const Way &way : ways)
     {
-      const double adjoint    = by_adjoint(run, bar, way);
-      const auto [process, X] = at<Dual>(run, way, 0.);
-      const double tangent    = relative_error(run.derivative(process, X), adjoint);
-      double       best = 1e300, order = 0.;
-      for (const double h : {1e-4, 1e-5, 1e-6})
-        best =
-          std::min(best, relative_error((energy(run, way, h) - energy(run, way, -h)) / (2. * h), adjoint));
-      for (const double h : {1e-2, 1e-3})
-        if (const double found = taylor_order(run, way, adjoint, h);
-            std::abs(found - 2.) < std::abs(order - 2.))
-          order = found;
-      largest = std::max(largest, best);
-      std::cout << "  " << way.direction.name << ": direct method within 1e-10: " << yes(tangent < 1e-10)
-                << ", differences within 1e-6: " << yes(best < 1e-6)
-                << ", remainder of second order: " << yes(std::abs(order - 2.) < 0.1) << "\n";
+      WorstErrors errors;
+      errors.take(slope_errors(run, way, {bar})[0], way.direction.name);
+      errors.print("  " + way.direction.name + ": ");
+      largest = std::max(largest, errors.difference());
     }
     return largest;
   }

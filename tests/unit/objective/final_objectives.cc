@@ -17,11 +17,10 @@
 #include <retroforge/core/error.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/surface_areas.h>
-#include <retroforge/objective/damage_statistics.h>
+#include <retroforge/objective/cell_statistics.h>
 #include <retroforge/objective/filling.h>
 #include <retroforge/objective/radius.h>
 #include <retroforge/objective/shape_distance.h>
-#include <retroforge/objective/strain_statistics.h>
 #include <retroforge/objective/unfilled_volume.h>
 #include <retroforge/objective/volume.h>
 
@@ -34,9 +33,10 @@ void check_volume_and_strain(Errors &errors)
 {
   FinalProblem    problem(box(Vec3(), Vec3({2., 3., 4.}), 1.), {});
   VolumeObjective volume;
-  StrainObjective mean(StrainStatistic::mean), variance(StrainStatistic::variance);
-  StrainObjective p_norm(StrainStatistic::maximum, {SmoothMaximum::Kind::p_norm, 30.});
-  StrainObjective exponential(StrainStatistic::maximum, {SmoothMaximum::Kind::log_sum_exp, 100.});
+  const auto      strain = CellQuantity::strain;
+  CellStatistics  mean(strain, CellStatistic::mean), variance(strain, CellStatistic::variance);
+  CellStatistics  p_norm(strain, CellStatistic::largest, {SmoothMaximum::Kind::p_norm, 30.});
+  CellStatistics  exponential(strain, CellStatistic::largest, {SmoothMaximum::Kind::log_sum_exp, 100.});
   errors.compare("volume", problem.value(volume), 24.);
   errors.compare("even strain, mean", problem.value(mean), 0.3);
   errors.compare("even strain, variance", problem.value(variance), 0.);
@@ -57,8 +57,8 @@ void check_volume_and_strain(Errors &errors)
                  problem.value(exponential),
                  std::log(fraction * std::exp(70.) + (1. - fraction) * std::exp(20.)) / 100.);
   errors.compare("two strains, true maximum", problem.detail(exponential, "true maximum"), 0.7);
-  const DamageObjective mean_damage(DamageStatistic::mean),
-    damage(DamageStatistic::largest, {SmoothMaximum::Kind::p_norm, 30.});
+  const CellStatistics mean_damage(CellQuantity::damage, CellStatistic::mean),
+    damage(CellQuantity::damage, CellStatistic::largest, {SmoothMaximum::Kind::p_norm, 30.});
   problem.at.damage = problem.at.q;
   errors.compare("two damages, mean", problem.value(mean_damage), 0.2 + 0.5 * fraction);
   errors.compare("two damages, p-norm", problem.value(damage), problem.value(p_norm));
@@ -192,9 +192,10 @@ double check_all_derivatives()
   under_die.at.dies[0].displacement = Vec3({0.02, -0.01, -0.05});
 
   VolumeObjective  volume;
-  StrainObjective  mean(StrainStatistic::mean), variance(StrainStatistic::variance);
-  StrainObjective  p_norm(StrainStatistic::maximum, {SmoothMaximum::Kind::p_norm, 15.});
-  StrainObjective  exponential(StrainStatistic::maximum, {SmoothMaximum::Kind::log_sum_exp, 30.});
+  const auto       strain = CellQuantity::strain;
+  CellStatistics   mean(strain, CellStatistic::mean), variance(strain, CellStatistic::variance);
+  CellStatistics   p_norm(strain, CellStatistic::largest, {SmoothMaximum::Kind::p_norm, 15.});
+  CellStatistics   exponential(strain, CellStatistic::largest, {SmoothMaximum::Kind::log_sum_exp, 30.});
   const Box        low(Vec3({-1., -1., -1.}), Vec3({1., 1., 0.6}));
   FillingObjective die_filling(TargetSurface(die, 0, low)), closed_filling{TargetSurface(bumpy), 1e-2};
   ShapeDistance    die_distance(TargetSurface(die, 0, low)), closed_distance{TargetSurface(bumpy)};
@@ -233,9 +234,9 @@ double check_all_derivatives()
   check("mean radius", bore, inside);
   for (const double q : inside.at.q)
     inside.at.damage.push_back(1.1 - q);
-  check("mean damage", DamageObjective(DamageStatistic::mean), inside);
+  check("mean damage", CellStatistics(CellQuantity::damage, CellStatistic::mean), inside);
   check("largest damage, p-norm",
-        DamageObjective(DamageStatistic::largest, {SmoothMaximum::Kind::p_norm, 15.}),
+        CellStatistics(CellQuantity::damage, CellStatistic::largest, {SmoothMaximum::Kind::p_norm, 15.}),
         inside);
   const auto   decided  = closed_filling.compute_decisions(inside.view(inside.at));
   unsigned int on_edges = 0;
@@ -264,8 +265,12 @@ int main(int argc, char **argv)
   std::cout << "derivatives" << std::endl;
   const double worst = check_all_derivatives();
   std::cout << "refused" << std::endl;
-  refused([] { StrainObjective(StrainStatistic::maximum, {SmoothMaximum::Kind::p_norm, 0.5}); });
-  refused([] { DamageObjective(DamageStatistic::largest, {SmoothMaximum::Kind::p_norm, 0.5}); });
+  refused([] {
+    CellStatistics(CellQuantity::strain, CellStatistic::largest, {SmoothMaximum::Kind::p_norm, 0.5});
+  });
+  refused([] {
+    CellStatistics(CellQuantity::damage, CellStatistic::largest, {SmoothMaximum::Kind::p_norm, 0.5});
+  });
   refused([] { FillingObjective{TargetSurface(scaled(cube(), 1., Vec3())), -1.}; });
   refused([] {
     const auto open = scaled(sheet(2, [](double, double) { return 0.; }), 1., Vec3());

@@ -7,13 +7,13 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <retroforge/objective/cell_statistics.h>
 #include <retroforge/objective/contact_pressure.h>
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>
 #include <retroforge/objective/filling.h>
 #include <retroforge/objective/fold.h>
 #include <retroforge/objective/shape_distance.h>
-#include <retroforge/objective/strain_statistics.h>
 #include <retroforge/objective/unfilled_volume.h>
 
 #include "../adjoint/recorded_run.h"
@@ -54,8 +54,8 @@ Objectives all_objectives(const unsigned int upper)
   for (Vec3 &x : ball)
     x = 24. * x + Vec3({1., 2., 14.});
   const TargetSurface target(std::make_shared<TriangleSurface>("ball", ball, sphere(2).triangles()));
-  at_end("variance of the strain", StrainObjective(StrainStatistic::variance));
-  at_end("maximum strain", StrainObjective(StrainStatistic::maximum));
+  at_end("variance of the strain", CellStatistics(CellQuantity::strain, CellStatistic::variance));
+  at_end("maximum strain", CellStatistics(CellQuantity::strain, CellStatistic::largest));
   at_end("shape distance", ShapeDistance(target));
   at_end("filling", FillingObjective(target, 0.01));
   at_end("filling of free nodes", FillingObjective(target, 0.01, FreeNodes(FrictionRamp{1., false})));

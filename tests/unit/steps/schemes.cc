@@ -11,9 +11,9 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <retroforge/objective/cell_statistics.h>
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>
-#include <retroforge/objective/strain_statistics.h>
 
 #include "../adjoint/directions.h"
 
@@ -93,7 +93,7 @@ namespace
                    SymmetryScaling::none,
                    invalid_index,
                    nullptr,
-                   std::make_unique<StrainObjective>(StrainStatistic::variance)});
+                   std::make_unique<CellStatistics>(CellQuantity::strain, CellStatistic::variance)});
     return all;
   }
 

@@ -8,23 +8,20 @@
 
 namespace retroforge
 {
-  enum class DamageStatistic
-  {
-    largest, ///< smooth maximum over the volume
-    mean     ///< int D / V
-  };
-
-  /// Damage of the metal at the end (steps/damage.h), dimensionless; cells weighted with their volume at X_N.
-  class DamageObjective : public FinalObjectiveOf<DamageObjective>
+  /// The largest temperature of a die's surface, beneath the metal that touches it at the end [C]: the mean
+  ///   ( sum_k A_k t_k exp(t_k/s) ) / ( sum_k A_k exp(t_k/s) ),
+  /// t_k the temperature of the surface at node k (heat/heat_flow.h), A_k the area there that touches the die. That of
+  /// the die itself where nothing does.
+  class DieTemperature : public FinalObjectiveOf<DieTemperature>
   {
   public:
-    /// @param smooth  of the largest one, and else ignored   @throws Error
-    explicit DamageObjective(DamageStatistic statistic, const SmoothMaximum &smooth = {});
+    /// @param smoothing  s [K]
+    DieTemperature(const unsigned int die, const double smoothing) : die_(die), mean_{smoothing} {}
 
-    std::string name() const override { return "damage"; }
-    std::string unit() const override { return "none"; }
+    std::string name() const override { return "die temperature"; }
+    std::string unit() const override { return "C"; }
 
-    /// The true maximum, by which values are divided before they are summed; the objective does not depend on it.
+    /// The true maximum, to which exponents are taken; the value does not depend on it.
     struct Decisions
     {
       double largest;
@@ -35,6 +32,7 @@ namespace retroforge
     std::map<std::string, double> details(const std::vector<double> &,
                                           const FinalDecisions &decisions) const override;
 
+    /// The sums of the mean, and the temperature of the die itself.
     template <typename Number>
     std::vector<Number> compute_integrals(const FinalView<Number> &view, const Decisions &decisions) const;
     template <typename Number>
@@ -46,18 +44,10 @@ namespace retroforge
                            FinalBar                  &bar) const;
 
   private:
-    /// Returns what is integrated of a cell's damage.
-    template <typename Number>
-    Number integrand(const Number &damage, const Decisions &decisions) const
-    {
-      return statistic_ == DamageStatistic::mean ? damage
-                                                 : smooth_.term(damage, Number(1.), decisions.largest);
-    }
-
-    DamageStatistic statistic_;
-    SmoothMaximum   smooth_;
+    unsigned int    die_;
+    ExponentialMean mean_;
   };
 
   /// Returns the type of this objective, as parameter files offer it.
-  Choice<ObjectiveType>::Maker damage_type();
+  Choice<ObjectiveType>::Maker die_temperature_type();
 } // namespace retroforge

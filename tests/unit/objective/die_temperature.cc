@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// The largest temperature of a die's surface.
+// - By hand: effusivities of 12 and 4 are 3 together, of which the metal has 1/4 and the die 3/4 of the drop in the skins.
+//   A skin of e = 3 under a film of 3 has y = 2, as y²/(1+y) = 4/3 e h/b² = 4/3; the metal's part is as thick as 24 mm, far
+//   more than elements of a millimetre leave unresolved, so that R = 2·3/4 and the die's surface has
+//   T_d + 0.6 (T - T_d) = 680 C beneath metal of 1000 C, T_d = 200 C. Beneath metal of 999 C on a part of the surface it has
+//   679.4 C there, and the mean is that of both, by their areas. A die that touches nothing has its own temperature, and so has one
+//   that is not in the press.
+// - The reverse against dual numbers in positions, displacements, vertices and temperatures of the dies, temperatures and
+//   skins of the metal, and the numbers of heat, each alone, and the Taylor order along all: between a wavy die that a box
+//   touches in part, and a plane across its corner, with thin skins and thick ones.
+
+#include <retroforge/billet/billet.h>
+#include <retroforge/heat/thermal_surface.h>
+#include <retroforge/objective/die_temperature.h>
+
+#include <deal.II/base/mpi.h>
+
+#include "../geometry/geometry_test_tools.h"
+#include "objective_test_tools.h"
+
+using namespace retroforge;
+
+namespace
+{
+  template <typename Number>
+  struct Inputs
+  {
+    NodalVectors<Number>          X;
+    std::vector<DieState<Number>> dies;
+    std::vector<Number>           T, skin;
+    HeatLaw<Number>               law;
+
+    std::vector<Group<Number>> groups()
+    {
+      std::vector<Group<Number>> groups = {{"X", {}},
+                                           {"displacement", {}},
+                                           {"dies", {}},
+                                           {"temperatures of dies", {}},
+                                           {"T", {}},
+                                           {"skin", {}},
+                                           {"heat", {}}};
+      append(X, groups[0].second);
+      for (auto &die : dies)
+      {
+        for (unsigned int i = 0; i < 3; ++i)
+          groups[1].second.push_back(&die.displacement[i]);
+        append(die.vertices, groups[2].second);
+        groups[3].second.push_back(&die.temperature);
+      }
+      for (Number &value : T)
+        groups[4].second.push_back(&value);
+      for (Number &value : skin)
+        groups[5].second.push_back(&value);
+      // Those that are positive and not frozen.
+      for (Number *number : {&law.capacity, &law.conductivity, &law.contact_film, &law.die_effusivity})
+        groups[6].second.push_back(number);
+      return groups;
+    }
+  };
+
+  struct Problem
+  {
+    Scene          scene;
+    Inputs<double> at;
+
+    Problem(TetMesh mesh, const std::vector<Die> &dies, const HeatLaw<double> &law)
+        : scene(std::move(mesh), DiscretizationChoice(), dies, MPI_COMM_WORLD)
+        , at{scene.mesh.X,
+             std::vector<DieState<double>>(dies.size()),
+             std::vector<double>(scene.mesh.n_nodes(), 1000.),
+             std::vector<double>(scene.mesh.n_nodes(), 3.),
+             law}
+    {
+      for (std::size_t d = 0; d < dies.size(); ++d)
+      {
+        at.dies[d].temperature = 200.;
+        if (dies[d].surface())
+          at.dies[d].vertices = dies[d].surface()->vertices();
+      }
+      at.law.heating = static_cast<unsigned int>(Heating::conduction);
+    }
+
+    template <typename Number, typename F>
+    auto with_view(const Inputs<Number> &inputs, const F &f) const
+    {
+      const std::vector<Number> q(scene.mesh.n_cells(), Number(0.));
+      return f(FinalView<Number>{
+        scene, inputs.X, q, inputs.dies, nullptr, &inputs.T, nullptr, &inputs.skin, &inputs.law});
+    }
+
+    FinalDecisions decide(const DieTemperature &objective) const
+    {
+      return with_view(at, [&](const auto &view) { return objective.decide(view); });
+    }
+
+    template <typename Number>
+    Number value(const DieTemperature &objective,
+                 const FinalDecisions &decisions,
+                 const Inputs<Number> &inputs) const
+    {
+      return with_view(inputs, [&](const auto &view) {
+        return objective.value(objective.integrals(view, decisions).complete(), decisions);
+      });
+    }
+
+    double value(const DieTemperature &objective) const { return value(objective, decide(objective), at); }
+
+    Inputs<double> reverse(const DieTemperature &objective,
+                           const FinalDecisions &decisions,
+                           const Inputs<double> &inputs) const
+    {
+      return with_view(inputs, [&](const auto &view) {
+        const auto b = objective.integrals(view, decisions).complete();
+        auto bar = objective.derivatives(view, decisions, objective.reverse_value(b, decisions)).complete();
+        return Inputs<double>{bar.X, bar.dies, bar.T, bar.skin, bar.heat};
+      });
+    }
+  };
+
+  TetMesh box(const Vec3 &base, const Vec3 &size, const double element_size)
+  {
+    BilletParameters parameters;
+    parameters.base_centre  = base;
+    parameters.size         = size;
+    parameters.element_size = element_size;
+    return make_billet(parameters, MPI_COMM_WORLD);
+  }
+
+  HeatLaw<double> known_law()
+  {
+    HeatLaw<double> law;
+    law.capacity       = 3.;
+    law.conductivity   = 48.;
+    law.contact_film   = 3.;
+    law.die_effusivity = 4.;
+    law.gap            = 0.1;
+    return law;
+  }
+
+  void check_by_hand()
+  {
+    Errors               errors;
+    const DieTemperature lower(0, 1.), upper(1, 1.);
+    Problem              problem(
+      box(Vec3(), Vec3({3., 3., 2.}), 1.),
+      {Die("lower", Vec3(), Vec3({0., 0., 1.})), Die("upper", Vec3({0., 0., 5.}), Vec3({0., 0., -1.}))},
+      known_law());
+    errors.compare("even metal", problem.value(lower), 680.);
+    errors.compare("nothing touches", problem.value(upper), 200.);
+    const auto surface =
+      thermal_surface(problem.scene.view(problem.at.dies, problem.at.X), {true, true}, problem.at.law.gap);
+    double hot = 0., cold = 0.;
+    for (const auto &at : surface.touching)
+    {
+      const bool is_cold    = at.node % 2 == 0;
+      problem.at.T[at.node] = is_cold ? 999. : 1000.;
+      (is_cold ? cold : hot) += at.area;
+    }
+    const double weight = cold * std::exp(-0.6);
+    errors.compare("two temperatures", problem.value(lower), (hot * 680. + weight * 679.4) / (hot + weight));
+    const auto decisions = problem.decide(lower);
+    errors.compare("true maximum", lower.details({}, decisions).at("true maximum"), 680.);
+    problem.at.dies[0].in_press = 0;
+    errors.compare("not in the press", problem.value(lower), 200.);
+    errors.print(1e-12);
+  }
+
+  double check_derivatives_of(const std::string &name, const double skin, const unsigned int die)
+  {
+    Random     random;
+    const auto wave = [](const double x, const double y) {
+      return 0.1 + 0.1 * std::sin(4. * x) * std::cos(3. * y);
+    };
+    HeatLaw<double> law         = known_law();
+    law.gap                     = 0.3;
+    TriangleSurface die_surface = sheet(9, wave);
+    Problem         problem(box(Vec3({0., 0., 0.2}), Vec3({1.6, 1.4, 1.}), 0.4),
+                    {Die("lower", die_surface, 2.), Die("side", Vec3({0.75, 0., 0.}), Vec3({-1., 0., 0.1}))},
+                    law);
+    for (Vec3 &x : problem.at.X)
+      x += 0.03 * random.vector();
+    for (double &T : problem.at.T)
+      T += 2. * random.scalar();
+    for (double &e : problem.at.skin)
+      e = skin * (1. + 0.5 * random.scalar());
+    problem.at.dies[0].displacement = Vec3({0.02, -0.01, -0.05});
+    problem.at.dies[1].temperature  = 350.;
+    const DieTemperature objective(die, 20.);
+    const auto           decisions = problem.decide(objective);
+    Inputs<Dual>         dual;
+    convert(problem.at.X, dual.X);
+    convert(problem.at.dies, dual.dies);
+    convert(problem.at.T, dual.T);
+    convert(problem.at.skin, dual.skin);
+    convert(problem.at.law, dual.law);
+    return check_derivatives<Inputs>(
+      name,
+      problem.at,
+      [&](const auto &inputs) { return problem.value(objective, decisions, inputs); },
+      [&](const auto &inputs) { return problem.reverse(objective, decisions, inputs); },
+      dual,
+      random);
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
+    std::cout.setstate(std::ios::failbit);
+  std::cout << "by hand" << std::endl;
+  check_by_hand();
+  std::cout << "derivatives" << std::endl;
+  const double worst = std::max({check_derivatives_of("wavy die, thin skins", 1e-3, 0),
+                                 check_derivatives_of("wavy die, thick skins", 2., 0),
+                                 check_derivatives_of("plane across a corner", 1e-2, 1)});
+  std::cout << "FIGURE die_temperature_derivative_error " << worst << std::endl;
+}
