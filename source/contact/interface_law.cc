@@ -246,19 +246,19 @@ namespace retroforge
 
   namespace
   {
-    /// phi of closing_moments() by t = a/u_r: it falls slowly with a gap, and fast with a depth, since pressed edges
-    /// are sunk in.
+    /// phi and psi of closing_moments() by t = a/u_r.
     template <typename Number>
-    Number standing_part(const Number &t)
+    std::array<Number, 2> standing_parts(const Number &t)
     {
-      const Number q = 1. / (1. + t * t);
-      return value_of(t) >= 0. ? q : Number(q * q * q * q);
+      const Number q = 1. / (1. + t * t), square = q * q;
+      return {{value_of(t) < 0. ? Number(1.) : square, square}};
     }
 
-    double standing_slope(const double t)
+    /// Their derivatives.
+    std::array<double, 2> standing_slopes(const double t)
     {
-      const double q = 1. / (1. + t * t);
-      return -2. * t * q * q * (t >= 0. ? 1. : 4. * q * q * q);
+      const double slope = -4. * t / std::pow(1. + t * t, 3);
+      return {{t < 0. ? 0. : slope, slope}};
     }
   } // namespace
 
@@ -269,10 +269,10 @@ namespace retroforge
   {
     const Number N = normal_force(node, contact), u = node.u * node.n;
     const Number a = approach_speed(node.delta, node.tau, node.approach);
-    Number       standing(0.);
-    if (value_of(rest_speed) > 0.)
-      standing = N * standing_part(Number(a / rest_speed));
-    return {{N, Number(N * u), Number(N * u * u), standing, Number(standing * a)}};
+    if (!(value_of(rest_speed) > 0.))
+      return {{N, Number(N * u), Number(N * u * u), Number(0.), Number(0.)}};
+    const auto [phi, psi] = standing_parts(Number(a / rest_speed));
+    return {{N, Number(N * u), Number(N * u * u), Number(N * phi), Number(N * psi * a)}};
   }
 
   double contact_potential(const ContactNode<double> &node,
@@ -344,11 +344,13 @@ namespace retroforge
     const double a     = approach_speed(node.delta, node.tau, node.approach);
     if (rest_speed > 0.)
     {
-      const double t = a / rest_speed, phi = standing_part(t), of_phi = weights[3] + a * weights[4],
-                   slope = standing_slope(t) / rest_speed;
-      of_N += phi * of_phi;
-      a_bar = N * (phi * weights[4] + of_phi * slope);
-      rest_speed_bar -= N * of_phi * slope * t;
+      const double t            = a / rest_speed;
+      const auto [phi, psi]     = standing_parts(t);
+      const auto [phi_t, psi_t] = standing_slopes(t);
+      const double of_psi = a * weights[4], t_bar = N * (phi_t * weights[3] + psi_t * of_psi);
+      of_N += phi * weights[3] + psi * of_psi;
+      a_bar = N * psi * weights[4] + t_bar / rest_speed;
+      rest_speed_bar -= t_bar * t / rest_speed;
     }
     ContactNodeBar bar = reverse_normal_force(node, contact, of_N);
     bar.delta += a_bar * approach_slope(node.delta, node.tau, node.approach);

@@ -18,11 +18,8 @@ namespace retroforge
     /// digits.
     constexpr double at_rest = 0.025;
 
-    /// The same for gaps, of points by which one sees how far the die is off: pressed edges are sunk by more.
+    /// The same for the approach to points by which one sees how far the die is off.
     constexpr double standing = 0.005;
-
-    /// Where points that stand bear less than this part of the force, they do not tell.
-    constexpr double least_standing = 0.02;
 
     /// Part of an increment that a die presses after it arrived, below which it does not count.
     constexpr double just_touching = 1e-12;
@@ -130,11 +127,8 @@ namespace retroforge
     for (std::size_t d = of_dies; d < terms.size(); d += n_moments)
     {
       const Number &N = terms[d], &Nu = terms[d + 1];
-      // The speed at which the die would come to what it stands on, and the moments of what closes beside that.
-      const Number &standing_force = terms[d + 3];
-      const Number  least = least_standing * N, of_force = standing_force * standing_force + least * least;
-      const Number  common =
-        value_of(of_force) > 0. ? Number(terms[d + 4] * standing_force / of_force) : Number(0.);
+      // The speed at which the die comes to the nearest points, and the moments of what closes beside that.
+      const Number common = value_of(terms[d + 3]) > 0. ? Number(terms[d + 4] / terms[d + 3]) : Number(0.);
       const Number beside = Nu - N * common, second = terms[d + 2] - (2. * Nu - N * common) * common;
       const Number rest = (at_rest * D) * (at_rest * D), square = N * second + rest;
       at_once += N * common;

@@ -184,7 +184,8 @@ namespace retroforge
                         const MaterialLaw<Number> &law,
                         const ContactLaw<Number>  &contact);
 
-  /// (N, N u, N u^2, N phi, N phi a),  u = u·n,  phi = (1 + (a/u_r)^2)^-1 for gaps, ^-4 for depths,  a the speed at which the gap may close:
+  /// (N, N u, N u^2, N phi, N psi a),  u = u·n,  a the speed at which the gap may close,
+  /// psi = (1 + (a/u_r)^2)^-2, phi the same for gaps and 1 for depths:
   /// the force that closes the gap or opens it [N], its power [mJ/s], what tells whether points close at one speed
   /// [mJ mm/s^2], and, as far as the die stands on the point, the force and its power if it closed the gap.
   template <typename Number>

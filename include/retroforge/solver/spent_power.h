@@ -19,11 +19,11 @@
 ///   - Where a die arrives at all points at once, the body flows as if the die came slower:
 ///     D = c (v - u)^(1+m), C = c (v - u)^m u. The truth, c (v - u) v^m, is D^(1-m) (D + C)^m.
 /// Both are linear in u, so that they hold for a gap that closes in several increments, too. Of each die, what
-/// closes at the speed at which it comes to the points that it stands on is of the second case, a their approach
-/// speeds,
-///   u_c = A sum N phi a / (A^2 + (0.02 sum N)^2),   A = sum N phi,   phi = (1 + (a/u_r)^2)^-1, ^-4 where a < 0,
+/// closes at the speed at which it comes to the nearest points that it presses is of the second case, a their
+/// approach speeds,
+///   u_c = sum N psi a / sum N phi,   psi = (1 + (a/u_r)^2)^-2,   phi = psi for gaps and 1 for depths,
 ///   u_r = 0.005 of the dies' closing speed,
-/// and of what closes beside that, w = u - u_c, the share
+/// which is 0 where it stands on some; of what closes beside that, w = u - u_c, the share of the second case is
 ///   kappa = (((sum N w)^2 + r^2) / (sum N sum N w^2 + r^2))^4,  r = 0.025 D.
 /// The ratio is 1 where all pressed points close at one speed, and about the share of the arriving points in the
 /// force where the others rest. Its power counts more of what arrives as arriving at a body that flows

@@ -166,10 +166,10 @@ def lobed_pan(per_turn=96):
     z = 7.0 * step((17.5 + 2.0 * np.cos(3.0 * phi) - r) / 5.0) - 3.0 * step((6.5 - r) / 3.0)
     rings = np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=2)
     facets = []
-    for inner, outer in zip(rings, rings[1:]):
+    for i, (inner, outer) in enumerate(zip(rings, rings[1:])):
         c, d = np.roll(outer, -1, axis=0), np.roll(inner, -1, axis=0)
         facets.append(np.stack([inner, c, outer], axis=1))
-        if inner is not rings[0]:
+        if i > 0:
             facets.append(np.stack([inner, d, c], axis=1))
     return np.concatenate(facets)
 

@@ -171,11 +171,11 @@ def offset(options):
                          {**ENERGY_ONLY, **settings, "Design/parameters": "die upper/offset", **options.settings}, timeout=options.timeout)
         if not run.ended:
             print(f"| {name} | {run.message[:200]} |", flush=True)
-            off.append(math.inf)
             continue
         force = history(run)["force"]
         off.append(abs(run.slope("die upper/offset")) / force[-1] - 1)
         print(f"| {name} | {len(force)} | {force[-1]:.6g} | {off[-1]:+.2%} |", flush=True)
+    runs.figure("offset_missing", len(cases) - len(off))
     runs.figure("offset_worst", max(map(abs, off)))
     runs.figure("offset_median", float(np.median(np.abs(off))))
 
