@@ -248,30 +248,31 @@ namespace retroforge
   {
     /// phi and psi of closing_moments() by t = a/u_r.
     template <typename Number>
-    std::array<Number, 2> standing_parts(const Number &t)
+    std::array<Number, 2> standing_parts(const Number &t, const bool sinks)
     {
       const Number q = 1. / (1. + t * t), square = q * q;
-      return {{value_of(t) < 0. ? Number(1.) : square, square}};
+      return {{sinks && value_of(t) < 0. ? Number(1.) : square, square}};
     }
 
     /// Their derivatives.
-    std::array<double, 2> standing_slopes(const double t)
+    std::array<double, 2> standing_slopes(const double t, const bool sinks)
     {
       const double slope = -4. * t / std::pow(1. + t * t, 3);
-      return {{t < 0. ? 0. : slope, slope}};
+      return {{sinks && t < 0. ? 0. : slope, slope}};
     }
   } // namespace
 
   template <typename Number>
   ClosingMoments<Number> closing_moments(const ContactNode<Number> &node,
                                          const ContactLaw<Number>  &contact,
-                                         const Number              &rest_speed)
+                                         const Number              &rest_speed,
+                                         const bool                 sinks)
   {
     const Number N = normal_force(node, contact), u = node.u * node.n;
     const Number a = approach_speed(node.delta, node.tau, node.approach);
     if (!(value_of(rest_speed) > 0.))
       return {{N, Number(N * u), Number(N * u * u), Number(0.), Number(0.)}};
-    const auto [phi, psi] = standing_parts(Number(a / rest_speed));
+    const auto [phi, psi] = standing_parts(Number(a / rest_speed), sinks);
     return {{N, Number(N * u), Number(N * u * u), Number(N * phi), Number(N * psi * a)}};
   }
 
@@ -333,6 +334,7 @@ namespace retroforge
   ContactNodeBar reverse_closing_moments(const ContactNode<double>    &node,
                                          const ContactLaw<double>     &contact,
                                          const double                  rest_speed,
+                                         const bool                    sinks,
                                          const ClosingMoments<double> &weights,
                                          double                       &rest_speed_bar)
   {
@@ -345,8 +347,8 @@ namespace retroforge
     if (rest_speed > 0.)
     {
       const double t            = a / rest_speed;
-      const auto [phi, psi]     = standing_parts(t);
-      const auto [phi_t, psi_t] = standing_slopes(t);
+      const auto [phi, psi]     = standing_parts(t, sinks);
+      const auto [phi_t, psi_t] = standing_slopes(t, sinks);
       const double of_psi = a * weights[4], t_bar = N * (phi_t * weights[3] + psi_t * of_psi);
       of_N += phi * weights[3] + psi * of_psi;
       a_bar = N * psi * weights[4] + t_bar / rest_speed;
@@ -408,7 +410,7 @@ namespace retroforge
   template Number friction_power(                                                          \
     const ContactNode<Number> &, const MaterialLaw<Number> &, const ContactLaw<Number> &); \
   template ClosingMoments<Number> closing_moments(                                         \
-    const ContactNode<Number> &, const ContactLaw<Number> &, const Number &);
+    const ContactNode<Number> &, const ContactLaw<Number> &, const Number &, bool);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE

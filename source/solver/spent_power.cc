@@ -19,7 +19,7 @@ namespace retroforge
     constexpr double at_rest = 0.025;
 
     /// The same for the approach to points by which one sees how far the die is off.
-    constexpr double standing = 0.005;
+    constexpr double standing = 0.01;
 
     /// Part of an increment that a die presses after it arrived, below which it does not count.
     constexpr double just_touching = 1e-12;
@@ -28,6 +28,13 @@ namespace retroforge
     bool has_number_of_metal(const Scene &scene)
     {
       return dealii::Utilities::MPI::this_mpi_process(scene.discretization.comm()) == 0;
+    }
+
+    /// Edges do, whose penalty is soft.
+    template <typename Number>
+    bool sinks(const Equilibrium<Number> &stage, const unsigned int p)
+    {
+      return !stage.contact.pairs[p].point.has_own_velocity();
     }
 
     template <typename Number>
@@ -70,8 +77,8 @@ namespace retroforge
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_counted(stage, p))
       {
-        const auto moments =
-          closing_moments(stage.contact_node(p, view.W, view.active), stage.physics.contact, at_most);
+        const auto moments = closing_moments(
+          stage.contact_node(p, view.W, view.active), stage.physics.contact, at_most, sinks(stage, p));
         for (unsigned int i = 0; i < n_moments; ++i)
           terms[of_dies + n_moments * stage.contact.pairs[p].die + i] += moments[i];
       }
@@ -97,10 +104,13 @@ namespace retroforge
         ClosingMoments<double> of_die;
         std::copy_n(
           weights.begin() + of_dies + n_moments * stage.contact.pairs[p].die, n_moments, of_die.begin());
-        pullback.add(
-          p,
-          reverse_closing_moments(
-            stage.contact_node(p, view.W, view.active), stage.physics.contact, at_most, of_die, at_most_bar));
+        pullback.add(p,
+                     reverse_closing_moments(stage.contact_node(p, view.W, view.active),
+                                             stage.physics.contact,
+                                             at_most,
+                                             sinks(stage, p),
+                                             of_die,
+                                             at_most_bar));
       }
     pullback.finish();
     reverse_rest_speed(stage.physics.dies, at_most_bar, bar.physics.dies);

@@ -185,17 +185,19 @@ namespace retroforge
                         const ContactLaw<Number>  &contact);
 
   /// (N, N u, N u^2, N phi, N psi a),  u = u·n,  a the speed at which the gap may close,
-  /// psi = (1 + (a/u_r)^2)^-2, phi the same for gaps and 1 for depths:
+  /// psi = (1 + (a/u_r)^2)^-2, phi the same, but 1 for the depth of a point that sinks under pressure, as edges do:
   /// the force that closes the gap or opens it [N], its power [mJ/s], what tells whether points close at one speed
   /// [mJ mm/s^2], and, as far as the die stands on the point, the force and its power if it closed the gap.
   template <typename Number>
   using ClosingMoments = std::array<Number, 5>;
 
   /// @param rest_speed  u_r, below which the die stands on a point; 0: phi is 0 [mm/s]
+  /// @param sinks       whether the point does under pressure
   template <typename Number>
   ClosingMoments<Number> closing_moments(const ContactNode<Number> &node,
                                          const ContactLaw<Number>  &contact,
-                                         const Number              &rest_speed);
+                                         const Number              &rest_speed,
+                                         bool                       sinks);
 
   /// Value of the potential whose gradient in V is contact_force, where the law has one.
   double contact_potential(const ContactNode<double> &node,
@@ -221,6 +223,7 @@ namespace retroforge
   ContactNodeBar reverse_closing_moments(const ContactNode<double>    &node,
                                          const ContactLaw<double>     &contact,
                                          double                        rest_speed,
+                                         bool                          sinks,
                                          const ClosingMoments<double> &weights,
                                          double                       &rest_speed_bar);
 

@@ -341,8 +341,12 @@ namespace retroforge
         for (unsigned int i = 0; i < n_closing_moments; ++i)
           factors[i] = weight * dt * of_die[i];
         double     rest_speed_bar = 0.;
-        const auto closing        = reverse_closing_moments(
-          at, stage.physics.contact, rest_speed(stage.physics.dies), factors, rest_speed_bar);
+        const auto closing        = reverse_closing_moments(at,
+                                                     stage.physics.contact,
+                                                     rest_speed(stage.physics.dies),
+                                                     !stage.contact.pairs[p].point.has_own_velocity(),
+                                                     factors,
+                                                     rest_speed_bar);
         reverse_rest_speed(stage.physics.dies, rest_speed_bar, bar.dies);
         node.u += closing.u;
         node.n += closing.n;

@@ -177,7 +177,7 @@ namespace
     result[2] = m;
     for (const auto &[N, u] : points)
     {
-      const double q   = 1. / (1. + std::pow(u / 0.025, 2));
+      const double q   = 1. / (1. + std::pow(u / 0.01, 2));
       double      *sum = &result[3 + n_closing_moments];
       for (const double moment : {N, N * u, N * u * u, N * q * q, N * q * q * u})
         *sum++ += moment;
