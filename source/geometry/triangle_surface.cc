@@ -56,8 +56,9 @@ namespace retroforge
     if (triangles_.empty())
       throw Error(where, "has no facets", "a surface needs at least one", "export the part's surface anew");
     check_facets(where);
-    box_           = bounding_box(vertices_);
-    made_diagonal_ = diagonal();
+    box_ = bounding_box(vertices_);
+    // A length that does not follow small changes of the vertices, which derivatives would have to know.
+    made_diagonal_ = std::exp2(std::round(std::log2(diagonal())));
     connect(where);
     check_folds(where);
     check_cracks(where);

@@ -59,7 +59,7 @@ namespace retroforge
     double                       diagonal() const { return (box_.second - box_.first).norm(); }
 
     /// What lies nearer to the surface than this is on it: 1e-5 of the bounding box's diagonal as the surface
-    /// was made.
+    /// was made, that rounded to a power of two.
     double rounding() const { return rounding_width * made_diagonal_; }
 
     /// The length over which the normal turns at edges and vertices (see project_on_feature): 3e-4 of that

@@ -83,7 +83,7 @@ def checks():
 
 def nothing_may_be_taken_away():
     done = run("simulate", "fold", "Remeshing/largest repair=0", case="toothed.prm")
-    judge("toothed, nothing allowed: stops", done.returncode == 1 and "the boundary crosses itself" in done.stderr, done.stderr)
+    judge("toothed, nothing allowed: stops", done.returncode == 1 and "its surface crosses itself" in done.stderr, done.stderr)
     done = run("simulate", "sliver", "Remeshing/largest repair=0", case="capped.prm")
     judge("capped, nothing allowed: ends", done.returncode == 0, done.stderr)
     judge("capped, nothing allowed: not repaired", summary_of("sliver")["volume_repaired"] == 0.0)

@@ -144,7 +144,7 @@ void show_bad_files()
 
 void show_bad_headers()
 {
-  show_changed("other format", start, "header", [](const hid_t g) { replace_attribute(g, "format", 12u); });
+  show_changed("other format", start, "header", [](const hid_t g) { replace_attribute(g, "format", 13u); });
   show_changed(
     "format is no integer", start, "header", [](const hid_t g) { replace_attribute(g, "format", 1.); });
   show_changed("cells of five nodes", start, "header", [](const hid_t g) {
