@@ -5,7 +5,7 @@
 
 gap: a cube under a gap, in closed form. balance: hub, tripod, a rod with flash, a sphere punch and 20 random dies at all
 defaults: force against power. offset: slopes of the energy by the offset of the moving die against the force, on eleven
-scenes. order: the hub's first mesh in 10 to 160 increments. hub_roughness, tripod_roughness: not remeshed, 11 radii.
+scenes; offset_quick on two. order: the hub's first mesh in 10 to 160 increments. hub_roughness, tripod_roughness: not remeshed, 11 radii.
 defaults: tutorials at all defaults against steps ten times finer. filling: a cavity filled to its last corner."""
 import csv
 import math
@@ -155,6 +155,28 @@ def lobed_pan(name, **billet):
         "Material/strain rate sensitivity": 0.15, "Press/stroke": 14})
 
 
+def slope_over_force(options, case, settings):
+    """d energy / d offset of the upper die over the force at the end, with the run and its forces; None where it does not end."""
+    run = runs.forge(options.build, "gradient", case, "offset",
+                     {**ENERGY_ONLY, **settings, "Design/parameters": "die upper/offset", **options.settings}, timeout=options.timeout)
+    if not run.ended:
+        return None, run, None
+    of = history(run)
+    return abs(run.slope("die upper/offset")) / of["force"][-1] - 1, run, of
+
+
+def offset_quick(options):
+    """The hub to 2 mm, whose die begins on the metal, and a pan whose corners are sharp: slope, and the work of closing at the end."""
+    off = {}
+    for name, case, settings in (("hub", HUB, {"Press/stroke": 2}), ("pan", lobed_pan("60", sector_angle=60), {})):
+        off[name], run, of = slope_over_force(options, case, settings)
+        if of is None:
+            sys.exit(f"{case}: {run.message}")
+        print(f"{name}: {off[name]:+.2%}; closing work of the last four increments {np.abs(of['balance'][-4:]).max():.2%}")
+        runs.figure(f"offset_{name}", abs(off[name]))
+    runs.figure("end_of_stroke", np.abs(of["balance"][-4:]).max())
+
+
 def offset(options):
     """A moving die that is nearer by an offset presses farther by it: d energy / d offset is the force at the end."""
     cases = [("hub", HUB, {}), ("tripod", TRIPOD, {}), *((f"lobed pan, {name}", lobed_pan(name, **billet), {}) for name, billet in (
@@ -167,14 +189,12 @@ def offset(options):
     print("| scene | increments | force at the end [N] | d energy / d offset over it |\n" + "| --- " * 4 + "|")
     off = []
     for name, case, settings in cases:
-        run = runs.forge(options.build, "gradient", case, "offset",
-                         {**ENERGY_ONLY, **settings, "Design/parameters": "die upper/offset", **options.settings}, timeout=options.timeout)
-        if not run.ended:
+        ratio, run, of = slope_over_force(options, case, settings)
+        if of is None:
             print(f"| {name} | {run.message[:200]} |", flush=True)
             continue
-        force = history(run)["force"]
-        off.append(abs(run.slope("die upper/offset")) / force[-1] - 1)
-        print(f"| {name} | {len(force)} | {force[-1]:.6g} | {off[-1]:+.2%} |", flush=True)
+        off.append(ratio)
+        print(f"| {name} | {len(of['force'])} | {of['force'][-1]:.6g} | {ratio:+.2%} |", flush=True)
     runs.figure("offset_missing", len(cases) - len(off))
     runs.figure("offset_worst", max(map(abs, off)))
     runs.figure("offset_median", float(np.median(np.abs(off))))
@@ -236,7 +256,7 @@ def filling(options):
 
 
 def main():
-    parts = {f.__name__: f for f in (gap, balance, offset, order, hub_roughness, tripod_roughness, defaults, filling)}
+    parts = {f.__name__: f for f in (gap, balance, offset, offset_quick, order, hub_roughness, tripod_roughness, defaults, filling)}
     options = runs.arguments(__doc__, *parts)
     parts[options.part](options)
 
