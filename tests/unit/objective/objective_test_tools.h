@@ -70,7 +70,7 @@ namespace retroforge
     }
     // Taylor: all inputs along the line at once.
     std::vector<double> remainders;
-    for (const double step : {1e-3, 5e-4, 2.5e-4, 1.25e-4})
+    for (const double step : {4e-5, 2e-5, 1e-5, 5e-6})
     {
       Inputs<double> moved        = at;
       const auto     moved_groups = moved.groups();
