@@ -250,14 +250,14 @@ namespace retroforge
     template <typename Number>
     std::array<Number, 2> standing_parts(const Number &t, const bool sinks)
     {
-      const Number q = 1. / (1. + t * t), square = q * q;
-      return {{sinks && value_of(t) < 0. ? Number(1.) : square, square}};
+      const Number part = 1. / (1. + t * t * t * t);
+      return {{sinks && value_of(t) < 0. ? Number(1.) : part, part}};
     }
 
     /// Their derivatives.
     std::array<double, 2> standing_slopes(const double t, const bool sinks)
     {
-      const double slope = -4. * t / std::pow(1. + t * t, 3);
+      const double slope = -4. * t * t * t / std::pow(1. + t * t * t * t, 2);
       return {{sinks && t < 0. ? 0. : slope, slope}};
     }
   } // namespace

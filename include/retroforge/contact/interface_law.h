@@ -185,7 +185,7 @@ namespace retroforge
                         const ContactLaw<Number>  &contact);
 
   /// (N, N u, N u^2, N phi, N psi a),  u = u·n,  a the speed at which the gap may close,
-  /// psi = (1 + (a/u_r)^2)^-2, phi the same, but 1 for the depth of a point that sinks under pressure, as edges do:
+  /// psi = 1/(1 + (a/u_r)^4), phi the same, but 1 for the depth of a point that sinks under pressure, as edges do:
   /// the force that closes the gap or opens it [N], its power [mJ/s], what tells whether points close at one speed
   /// [mJ mm/s^2], and, as far as the die stands on the point, the force and its power if it closed the gap.
   template <typename Number>

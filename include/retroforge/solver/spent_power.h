@@ -21,7 +21,7 @@
 /// Both are linear in u, so that they hold for a gap that closes in several increments, too. Of each die, what
 /// closes at the speed at which it comes to the nearest points that it presses is of the second case, a their
 /// approach speeds,
-///   u_c = sum N psi a / sum N phi,   psi = (1 + (a/u_r)^2)^-2,   phi = psi, but 1 where edges are sunk in,
+///   u_c = sum N psi a / sum N phi,   psi = 1/(1 + (a/u_r)^4),   phi = psi, but 1 where edges are sunk in,
 ///   u_r = 0.01 of the dies' closing speed,
 /// which is 0 where it stands on some; of what closes beside that, w = u - u_c, the share of the second case is
 ///   kappa = (((sum N w)^2 + r^2) / (sum N sum N w^2 + r^2))^4,  r = 0.025 D.

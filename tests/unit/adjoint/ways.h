@@ -144,7 +144,8 @@ namespace retroforge
       const auto remainder = [&](const double t) {
         return std::abs(value(o, t) - value(o, 0.) - t * adjoint);
       };
-      for (const double h : {1e-2, 1e-3, 1e-4})
+      // Between steps over which the remainder is not of second order yet and those that leave rounding of it.
+      for (const double h : {1e-2, 3e-3, 1e-3, 1e-4})
         if (const double found = std::log2(remainder(h) / remainder(0.5 * h));
             std::abs(found - 2.) < std::abs(order - 2.))
           order = found;

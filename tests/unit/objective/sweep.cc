@@ -110,7 +110,7 @@ int main(int argc, char **argv)
         X[k] += t * X_dot[k];
       return run.replayed_values(run.process(), X);
     },
-    1e-4);
+    2e-4);
   const auto by_speed = differences(
     [&](const double t) {
       Process<double> process = run.process();
