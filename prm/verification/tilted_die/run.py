@@ -11,7 +11,7 @@ import case_tools  # noqa: E402
 import check_tools  # noqa: E402
 
 QUICK = {"Design/parameters": "die upper/speed, die upper/offset, billet/stretch", "Press/increments": 4, "Press/stroke": 3,
-         "Check/steps": "3e-6, 3e-7, 3e-8"}
+         "Check/steps": "1e-5, 1e-6, 1e-7"}
 DECADES = 2
 SIZE = 30.0
 
