@@ -73,12 +73,12 @@ namespace retroforge
     std::tie(terms[0], terms[of_friction]) = stage.power(view.W, view.active);
     if (has_number_of_metal(stage.scene))
       terms[of_m] = stage.physics.material.initial_law().m;
-    const Number at_most = rest_speed(stage.physics.dies);
+    const Number u_r = rest_speed(stage.physics.dies);
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_counted(stage, p))
       {
         const auto moments = closing_moments(
-          stage.contact_node(p, view.W, view.active), stage.physics.contact, at_most, sinks(stage, p));
+          stage.contact_node(p, view.W, view.active), stage.physics.contact, u_r, sinks(stage, p));
         for (unsigned int i = 0; i < n_moments; ++i)
           terms[of_dies + n_moments * stage.contact.pairs[p].die + i] += moments[i];
       }
@@ -96,8 +96,8 @@ namespace retroforge
     if (has_number_of_metal(stage.scene))
       reverse_initial_law(stage.physics.material, {0., weights[of_m], 0.}, bar.physics.material);
     ContactPullback pullback(view, bar);
-    const double    at_most     = rest_speed(stage.physics.dies);
-    double          at_most_bar = 0.;
+    const double    u_r     = rest_speed(stage.physics.dies);
+    double          u_r_bar = 0.;
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_counted(stage, p))
       {
@@ -107,13 +107,13 @@ namespace retroforge
         pullback.add(p,
                      reverse_closing_moments(stage.contact_node(p, view.W, view.active),
                                              stage.physics.contact,
-                                             at_most,
+                                             u_r,
                                              sinks(stage, p),
                                              of_die,
-                                             at_most_bar));
+                                             u_r_bar));
       }
     pullback.finish();
-    reverse_rest_speed(stage.physics.dies, at_most_bar, bar.physics.dies);
+    reverse_rest_speed(stage.physics.dies, u_r_bar, bar.physics.dies);
   }
 
   template <typename Number>
