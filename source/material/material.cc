@@ -85,6 +85,25 @@ namespace retroforge
   template struct Material<double>;
   template struct Material<Dual>;
 
+  void MaterialType::reverse_law_at(const Material<double>    &material,
+                                    const PointState<double>  &state,
+                                    const MaterialLaw<double> &law_bar,
+                                    Material<double>          &bar,
+                                    PointState<double>        &state_bar) const
+  {
+    auto       metal    = converted<Dual>(material);
+    auto       point    = converted<Dual>(state);
+    const auto pull_one = [&](Dual &x, double &x_bar) {
+      x.fastAccessDx(0)           = 1.;
+      const MaterialLaw<Dual> law = law_at(metal, point);
+      x.fastAccessDx(0)           = 0.;
+      for_each_number([&](const Dual &y, const double &y_bar) { x_bar += y_bar * y.dx(0); }, law, law_bar);
+    };
+    for_each_number(pull_one, metal.law, bar.law);
+    for_each_number(pull_one, metal.numbers, bar.numbers);
+    for_each_number(pull_one, point, state_bar);
+  }
+
   void reverse_at(const Material<double>    &material,
                   const PointState<double>  &state,
                   const MaterialLaw<double> &law_bar,
@@ -97,16 +116,6 @@ namespace retroforge
       return;
     }
     bar.numbers.resize(material.numbers.size(), 0.);
-    auto       metal    = converted<Dual>(material);
-    auto       point    = converted<Dual>(state);
-    const auto pull_one = [&](Dual &x, double &x_bar) {
-      x.fastAccessDx(0)           = 1.;
-      const MaterialLaw<Dual> law = metal.at(point);
-      x.fastAccessDx(0)           = 0.;
-      for_each_number([&](const Dual &y, const double &y_bar) { x_bar += y_bar * y.dx(0); }, law, law_bar);
-    };
-    for_each_number(pull_one, metal.law, bar.law);
-    for_each_number(pull_one, metal.numbers, bar.numbers);
-    for_each_number(pull_one, point, state_bar);
+    material_type(material.type).reverse_law_at(material, state, law_bar, bar, state_bar);
   }
 } // namespace retroforge

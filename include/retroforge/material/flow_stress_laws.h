@@ -42,6 +42,12 @@ namespace retroforge
       law.m += x[m1] * warming;
       return law;
     }
+
+    void reverse_law_at(const Material<double>    &metal,
+                        const PointState<double>  &state,
+                        const MaterialLaw<double> &law_bar,
+                        Material<double>          &bar,
+                        PointState<double>        &state_bar) const override;
   };
 
   /// A e^(m1 T) T^m9 q^m2 e^(m4/q) (1+q)^(m5 T + m6) e^(m7 q) e^(m3 + m8 T):  the sort `Hansel-Spittel`, with
@@ -69,6 +75,12 @@ namespace retroforge
                                       (x[5] * T + x[6]) * log(1. + q) + x[7] * q);
       return {consistency_of(sigma, m), m, metal.law.e0};
     }
+
+    void reverse_law_at(const Material<double>    &metal,
+                        const PointState<double>  &state,
+                        const MaterialLaw<double> &law_bar,
+                        Material<double>          &bar,
+                        PointState<double>        &state_bar) const override;
   };
 
   /// Stresses from a table, times a number:  the sort `table` (material/flow_table.h).

@@ -111,11 +111,19 @@ namespace retroforge
     virtual MaterialLaw<double> law_at(const Material<double>   &material,
                                        const PointState<double> &state) const                             = 0;
     virtual MaterialLaw<Dual> law_at(const Material<Dual> &material, const PointState<Dual> &state) const = 0;
+
+    /// Adds the derivatives of the law at a point, as reverse_at() says: column by column, from dual numbers. Sorts whose
+    /// own is short have it in closed form, which is what the time of a sweep asks for.
+    virtual void reverse_law_at(const Material<double>    &material,
+                                const PointState<double>  &state,
+                                const MaterialLaw<double> &law_bar,
+                                Material<double>          &bar,
+                                PointState<double>        &state_bar) const;
   };
 
   /// A MaterialType made from class Type, which has for any Number
   ///   MaterialLaw<Number> compute_law(const Material<Number> &, const PointState<Number> &) const;
-  /// smooth in all of them. Derivatives come from dual numbers.
+  /// smooth in all of them.
   template <typename Type>
   class MaterialTypeOf : public MaterialType
   {
