@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
 """Conduction in whole runs: the heat of a closed body, temperatures that stay within what they are made of on twenty
-random scenes, and the order in time. run.py BUILD balance | bounds | order"""
+random scenes, the order in time, derivatives, and what heat costs. run.py BUILD balance | bounds | order | derivatives | cost"""
 import csv
 import math
 import os
 import random
+import statistics
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -103,5 +104,28 @@ def derivatives():
     case_tools.judge_check(BUILD, UPSETTING, settings, "heat")
 
 
+def cost():
+    """Seconds of a hub of 40 increments with Tresca's friction, of the metal at its first temperature, warmed by work, and with conduction;
+    and of the backward sweep over the forward run."""
+    case = os.path.join(PRM, "verification", "optimisation", "hot_hub.prm")
+    modes = {"none": {"Heat/heating": "none", "Heat/transfer time": 0, "Heat/dwell time": 0},
+             "adiabatic": {"Heat/heating": "adiabatic", "Heat/transfer time": 0, "Heat/dwell time": 0}, "conduction": {}}
+    settings = {"Press/stroke": 16, "Press/increments": 40, "Objectives/names": "energy", "Optimisation/objective": "", "Optimisation/at most": "",
+                "Design/parameters": "billet/radius", "Output/fields every": 0}
+    seconds = {name: [] for name in modes}
+    for repeat in range(3):
+        for name, heat in modes.items():
+            summary, _ = case_tools.run(BUILD, "gradient", case, {**settings, **heat}, "run_cost")
+            wall = summary["wall_seconds"]
+            seconds[name].append((wall["total"] - wall["adjoint"], wall["adjoint"]))
+    forward = {name: statistics.median(pair[0] for pair in pairs) for name, pairs in seconds.items()}
+    backward = {name: statistics.median(pair[1] / pair[0] for pair in pairs) for name, pairs in seconds.items()}
+    for name in modes:
+        print(f"{name}: forward {forward[name]:.2f} s, over none {forward[name] / forward['none']:.3f}; backward over forward {backward[name]:.3f}")
+        case_tools.figure(f"backward_{name}", backward[name])
+    case_tools.figure("cost_adiabatic", forward["adiabatic"] / forward["none"])
+    case_tools.figure("cost_conduction", forward["conduction"] / forward["none"])
+
+
 if __name__ == "__main__":
-    {"balance": balance, "bounds": bounds, "order": order, "derivatives": derivatives}[sys.argv[2]]()
+    {"balance": balance, "bounds": bounds, "order": order, "derivatives": derivatives, "cost": cost}[sys.argv[2]]()
