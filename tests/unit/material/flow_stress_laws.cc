@@ -11,6 +11,7 @@
 //   missing temperature, one in K, and files that are no table are refused with one message each.
 
 #include <retroforge/core/error.h>
+#include <retroforge/material/flow_stress_laws.h>
 #include <retroforge/material/material_parameters.h>
 
 #include "../element/element_test_tools.h"
@@ -276,6 +277,9 @@ int main()
   reverse.print(1e-6);
   Errors closed;
   check_closed_form("power", power().metal(1.), closed);
+  Material<double> soft        = power().metal(1.); // no stress before the first strain
+  soft.numbers[PowerMetal::q0] = 0.;
+  check_closed_form("power without q0", soft, closed);
   check_closed_form("Hansel-Spittel", hansel_spittel().metal(1.), closed);
   closed.print(1e-12);
   check_messages();
