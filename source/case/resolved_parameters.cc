@@ -161,6 +161,7 @@ namespace retroforge
                                      press.stroke,
                                      material.metal(1.).initial_law().K,
                                      made_billet,
+                                     edge_length(made_billet),
                                      FrictionRamp{touching_gap_, step_model().contact.ramp.sharp},
                                      heat.heating != Heating::none,
                                      material.damage != Damage::none,

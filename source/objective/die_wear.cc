@@ -1,44 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/enum_setting.h>
+#include <retroforge/core/error.h>
+#include <retroforge/core/text.h>
 #include <retroforge/objective/die_wear.h>
+#include <retroforge/objective/largest_wear.h>
 #include <retroforge/objective/objective_settings.h>
 #include <retroforge/objective/pairs_of_die.h>
+#include <retroforge/objective/sliding_work.h>
 #include <retroforge/solver/contact_pullback.h>
 
 namespace retroforge
 {
-  namespace
-  {
-    template <typename Number>
-    Number sliding_speed(const ContactNode<Number> &node, const Number &v0)
-    {
-      using std::sqrt;
-      const Vector3<Number> dv     = slip(node);
-      const Number          square = dv * dv + v0 * v0;
-      return value_of(square) > 0. ? Number(sqrt(square) - v0) : Number(0.);
-    }
-
-    /// Derivatives of  weight * normal_force * sliding_speed.
-    ContactNodeBar reverse_work(const ContactNode<double> &node, const ContactLaw<double> &law, double weight)
-    {
-      const double   N = normal_force(node, law), speed = sliding_speed(node, law.v0);
-      ContactNodeBar bar = reverse_normal_force(node, law, weight * speed);
-      if (const double root = speed + law.v0; root > 0.)
-      {
-        reverse_kinematics(node, weight * N / root * slip(node), 0., bar);
-        bar.contact.v0 += weight * N * (law.v0 / root - 1.);
-      }
-      return bar;
-    }
-  } // namespace
-
   DieWear::DieWear(const unsigned int                 die,
                    const Wear                         wear,
                    const PathWindow                  &window,
                    const std::optional<SmoothRegion> &region)
       : die_(die), wear_(wear), window_(window), region_(region)
   {
+    Assert(wear != Wear::largest, dealii::ExcMessage("the largest wear is another objective"));
     window.check("Die wear");
     if (region)
       region->check("Die wear");
@@ -70,7 +50,7 @@ namespace retroforge
         const ContactPoint       &point  = stage.contact.pairs[p].point;
         const ContactNode<Number> node   = stage.contact_node(p, view.W, view.active);
         const Number              inside = weight_in(region_, point.position(stage.X));
-        sums[0] += inside * normal_force(node, law) * sliding_speed(node, law.v0);
+        sums[0] += inside * sliding_work(node, law);
         if (point.is_node())
           sums[1] += inside * larger * stage.areas.S[p] * stage.contact.ramps[p];
       }
@@ -88,12 +68,12 @@ namespace retroforge
     for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
       if (is_of_die(view, p, die_))
       {
-        const ContactPoint       &point  = stage.contact.pairs[p].point;
-        const ContactNode<double> node   = stage.contact_node(p, view.W, view.active);
-        const Vec3                x      = point.position(stage.X);
-        const double              inside = weight_in(region_, x);
-        double         inside_bar        = weights[0] * normal_force(node, law) * sliding_speed(node, law.v0);
-        ContactNodeBar node_bar          = reverse_work(node, law, weights[0] * inside);
+        const ContactPoint       &point      = stage.contact.pairs[p].point;
+        const ContactNode<double> node       = stage.contact_node(p, view.W, view.active);
+        const Vec3                x          = point.position(stage.X);
+        const double              inside     = weight_in(region_, x);
+        double                    inside_bar = weights[0] * sliding_work(node, law);
+        ContactNodeBar            node_bar   = reverse_sliding_work(node, law, weights[0] * inside);
         if (point.is_node())
         {
           const double per_area = weights[1] * larger, S = stage.areas.S[p], ramp = stage.contact.ramps[p];
@@ -116,18 +96,29 @@ namespace retroforge
     struct DieWearType : ObjectiveType
     {
       DieSetting     die;
-      Wear           wear = Wear::mean;
+      Wear           wear      = Wear::mean;
+      double         radius    = 0.;
+      double         sharpness = 20.;
       WindowSettings window;
       RegionSettings region;
 
       void add_parameters(dealii::ParameterHandler &prm) override
       {
         die.add_parameters(prm);
-        add_enum<Wear>(prm,
-                       "wear",
-                       wear,
-                       {{"mean", Wear::mean}, {"total", Wear::total}},
-                       "The wear of a die is its mean over the area in contact, or all of it. Units: none.");
+        add_enum<Wear>(
+          prm,
+          "wear",
+          wear,
+          {{"mean", Wear::mean}, {"total", Wear::total}, {"largest", Wear::largest}},
+          "The wear of a die is its mean over the area in contact, all of it, or the largest along "
+          "the die. Units: none.");
+        prm.add_parameter(
+          "wear radius",
+          radius,
+          "The largest wear is one of means over the die within this radius; 0 for two element "
+          "sizes. Units: mm.",
+          dealii::Patterns::Double(0.));
+        add_sharpness(prm, sharpness);
         window.add_parameters(prm);
         region.add_parameters(prm);
       }
@@ -141,9 +132,34 @@ namespace retroforge
                 const ObjectiveContext &context,
                 NamedObjective         &objective) const override
       {
-        objective.scaling = wear == Wear::total ? SymmetryScaling::part : SymmetryScaling::none;
-        objective.path    = std::make_unique<DieWear>(
-          die.find(where, context), wear, window.make(where, context), region.make(where));
+        const unsigned int d  = die.find(where, context);
+        const PathWindow   of = window.make(where, context);
+        objective.scaling     = wear == Wear::total ? SymmetryScaling::part : SymmetryScaling::none;
+        if (wear == Wear::largest)
+          objective.path =
+            std::make_unique<LargestWear>(d,
+                                          DieSites(context.dies[d],
+                                                   context.billet,
+                                                   context.states[context.leading_die].velocity,
+                                                   reach(where, context)),
+                                          sharpness,
+                                          of,
+                                          region.make(where));
+        else
+          objective.path = std::make_unique<DieWear>(d, wear, of, region.make(where));
+      }
+
+    private:
+      double reach(const std::string &where, const ObjectiveContext &context) const
+      {
+        constexpr double in_elements = 2.;
+        if (radius > 0. && radius < context.element_size)
+          throw Error(where + "/wear radius",
+                      "is " + as_text(radius) + " mm",
+                      "metal touches the die at points that are an element size, " +
+                        as_text(context.element_size) + " mm, apart, and within less there may be none",
+                      "use an element size or more, or 0 for two of them");
+        return radius > 0. ? radius : in_elements * context.element_size;
       }
     };
   } // namespace

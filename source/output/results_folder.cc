@@ -22,7 +22,7 @@ namespace retroforge
       "(journal|confirmation)\\.jsonl|optimisation\\.(csv|json)|steps(_.*)?\\.csv|"
       "scene\\.(json|pvd)|scene_(billet|die_.*)\\.vtu|"
       "sensitivity(_die_.*)?(\\.vtu|_nodes\\.csv)|billet\\.msh|forged\\.(msh|stl)|"
-      "die_.*\\.(stl|vtu)|record\\.h5|report\\.html");
+      "die_.*\\.(stl|vtu)|map_.*\\.csv|record\\.h5|report\\.html");
 
     bool is_result(const fs::path &path)
     {

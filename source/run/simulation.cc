@@ -12,6 +12,7 @@
 #include <retroforge/output/console.h>
 #include <retroforge/output/mesh_files.h>
 #include <retroforge/output/nodal_gradients.h>
+#include <retroforge/output/objective_map.h>
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/output/sensitivity.h>
@@ -135,6 +136,9 @@ namespace retroforge
       files.push_back("check.json");
     if (case_.parameters.output.record)
       files.push_back("record.h5");
+    for (const NamedObjective &objective : case_.objectives)
+      if (objective.path && !objective.path->map({}).places.empty())
+        files.push_back(map_file(objective.name));
     for (const Die &die : case_.model.dies)
       if (die.surface())
       {
@@ -196,6 +200,11 @@ namespace retroforge
     const NodalVectors<double> &X    = run_.state().workpiece.X;
     write_msh(path_of("forged.msh"), mesh, X);
     write_boundary_stl(path_of("forged.stl"), mesh, X);
+    for (std::size_t o = 0; o < case_.objectives.size(); ++o)
+      if (const NamedObjective &objective = case_.objectives[o]; objective.path)
+        if (const ObjectiveMap map = objective.path->map(run_.trace().recorded().rows[o]);
+            !map.places.empty())
+          write_objective_map(path_of(map_file(objective.name)), objective.name, objective.unit(), map);
   }
 
   void Simulation::keep_failure()

@@ -13,8 +13,9 @@ namespace retroforge
 {
   enum class Wear
   {
-    mean, ///< over the area of the contact [mJ/mm^2]
-    total ///< of the die [mJ]
+    mean,   ///< over the area of the contact [mJ/mm^2]
+    total,  ///< of the die [mJ]
+    largest ///< along the die [mJ/mm^2]: LargestWear (largest_wear.h)
   };
 
   /// Wear of a die by Archard's law, the work of pressing times sliding: the volume that is worn off is it, times
@@ -32,6 +33,7 @@ namespace retroforge
   public:
     static constexpr unsigned int n_terms = 3;
 
+    /// @param wear  mean or total
     DieWear(unsigned int                       die,
             Wear                               wear,
             const PathWindow                  &window = {},

@@ -16,6 +16,7 @@ namespace retroforge
     double                               stroke;      ///< [mm]
     double                               consistency; ///< K, a stress of the size to expect [MPa]
     const TetMesh                       &billet;
+    double                               element_size; ///< [mm]
     FrictionRamp ramp;               ///< the friction ramp of contact, by which nodes begin to touch
     bool         warms      = false; ///< whether the workpiece has temperatures
     bool         is_damaged = false; ///< whether its damage is followed

@@ -35,6 +35,13 @@ namespace retroforge
   template <typename Number>
   using PathRows = std::vector<PathRow<Number>>;
 
+  /// Values at places, of which an objective makes its own.
+  struct ObjectiveMap
+  {
+    NodalVectors<double> places; ///< [mm]
+    std::vector<double>  values; ///< in the objective's unit
+  };
+
   class PathObjective
   {
   public:
@@ -66,6 +73,9 @@ namespace retroforge
 
     /// Returns other numbers told beside it: the true maximum beside a smooth one.
     virtual std::map<std::string, double> details(const PathRows<double> &) const { return {}; }
+
+    /// Returns what shows where the value comes from; empty for an objective without places.
+    virtual ObjectiveMap map(const PathRows<double> &) const { return {}; }
 
     /// Returns dPhi/d(a_i, dt_i, t_i) of each increment.
     virtual PathRows<double> reverse_value(const PathRows<double> &rows) const = 0;

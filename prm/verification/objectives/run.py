@@ -16,11 +16,12 @@ import case_tools  # noqa: E402
 FLAT = os.path.join(HERE, "..", "tilted_die", "case.prm")
 CURVED = os.path.join(HERE, "..", "..", "reproduction", "laroussi_2003", "tripod", "case.prm")
 PATH = ["energy", "mean effort", "late force", "maximum effort", "fold", "dimensionless fold", "contact pressure",
-        "largest hydrostatic pressure", "largest shear", "die wear"]
+        "largest hydrostatic pressure", "largest shear", "die wear", "largest wear"]
 END = ["mean strain", "strain variance", "maximum strain", "damage", "largest temperature", "least temperature",
        "temperature spread", "die temperature", "volume", "filling", "unfilled volume", "shape distance", "cylinder distance",
        "mean radius"]
-LATE = {"Objective late force/type": "mean effort", "Objective late force/by": "force"}
+NAMED = {"Objective late force/type": "mean effort", "Objective late force/by": "force",
+         "Objective largest wear/type": "die wear", "Objective largest wear/wear": "largest"}
 # Heat that the mechanics does not see: what other objectives are is as without it.
 HOT = {"Material/damage": "Latham-Cockcroft", "Material/temperature": 1000, "Heat/heating": "conduction", "Heat/heat capacity": 0.1,
        "Heat/conductivity": 1, "Heat/contact film": 0.3, "Heat/die effusivity": 0.5, "Heat/contact gap": 1,
@@ -71,11 +72,10 @@ def objectives(names, target, patches, more=None):
             settings.update({f"Objective {name}/patches": patches, f"Objective {name}/axis point": "4, 3, 0"})
         if "temperature" in name:
             settings[f"Objective {name}/temperature smoothing"] = 20
-    if "late force" in names:
-        settings.update(LATE)
+    settings.update({setting: value for setting, value in NAMED.items() if setting.split("/")[0][len("Objective "):] in names})
     if "die temperature" in names:
         settings.update(HOT)
-    if "die wear" in names:
+    if "die wear" in names or "largest wear" in names:
         settings.update(TIGHT)
     return {**settings, **(more or {})}
 

@@ -14,6 +14,7 @@
 
 #include <retroforge/objective/cell_statistics.h>
 #include <retroforge/objective/die_wear.h>
+#include <retroforge/objective/largest_wear.h>
 #include <retroforge/objective/stress_maxima.h>
 
 #include "curved_scenes.h"
@@ -23,7 +24,7 @@ using namespace retroforge;
 
 namespace
 {
-  Objectives objectives()
+  Objectives objectives(const Parameters &p)
   {
     Objectives all;
     const auto add_path = [&](const std::string &name, std::unique_ptr<PathObjective> path) {
@@ -38,6 +39,10 @@ namespace
     add_path("shear", std::make_unique<StressMaximum>(InnerStress::shear, 12., 2., late, region));
     add_path("wear", std::make_unique<DieWear>(1, Wear::mean));
     add_path("wear late", std::make_unique<DieWear>(1, Wear::total, late));
+    add_path(
+      "largest wear",
+      std::make_unique<LargestWear>(
+        1, DieSites(p.dies[1].die(), make_billet(p.billet, MPI_COMM_WORLD), Vec3({0., 0., -1.}), 25.), 12.));
     add_final("damage", std::make_unique<CellStatistics>(CellQuantity::damage, CellStatistic::largest));
     add_final("mean damage", std::make_unique<CellStatistics>(CellQuantity::damage, CellStatistic::mean));
     return all;
@@ -51,7 +56,7 @@ namespace
 
   void check_gradients(const std::string &name, const Parameters &p, const Meshes meshes = Meshes::one)
   {
-    RecordedRun                run(damaged(p), {p.dies[0].die(), p.dies[1].die()}, objectives(), {}, meshes);
+    RecordedRun                run(damaged(p), {p.dies[0].die(), p.dies[1].die()}, objectives(p), {}, meshes);
     const auto                 sweep  = run.sweep(each(run.objectives()));
     const auto                &damage = run.state().workpiece.damage;
     const NodalVectors<double> still(run.scene.mesh.n_nodes());

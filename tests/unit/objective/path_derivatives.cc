@@ -17,6 +17,7 @@
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>
 #include <retroforge/objective/fold.h>
+#include <retroforge/objective/largest_wear.h>
 #include <retroforge/objective/stress_maxima.h>
 #include <retroforge/steps/damage.h>
 
@@ -438,5 +439,12 @@ int main(int argc, char **argv)
   check_of(quadratic, "contact pressure, q = 1", ContactPressure(0, 1., 5.));
   check_of(quadratic, "contact pressure, q = 12", ContactPressure(0, 12., 5.));
   check_stresses(quadratic);
+  const auto check_largest_wear = [&](const PathProblem &problem) {
+    const DieSites sites(problem.scene.dies[0], problem.scene.mesh, Vec3({0., 0., -1.}), 3.);
+    check_of(problem, "die wear, largest, in a window", LargestWear(0, sites, 4., part_of_time));
+    check_of(problem, "die wear, largest, in a box", LargestWear(0, sites, 20., late, inner));
+  };
+  for (const PathProblem *problem : {&flat, &curved, &quadratic})
+    check_largest_wear(*problem);
   std::cout << "FIGURE path_objective_derivative_error " << worst << std::endl;
 }

@@ -25,6 +25,7 @@
 #include <retroforge/objective/effort.h>
 #include <retroforge/objective/energy.h>
 #include <retroforge/objective/fold.h>
+#include <retroforge/objective/largest_wear.h>
 #include <retroforge/objective/stress_maxima.h>
 
 #include "objective_test_tools.h"
@@ -89,6 +90,9 @@ public:
 
   /// That of all nodes in increment i [MPa].
   static double pressure(const int i) { return 10. + 3. * i; }
+
+  /// On the upper die.
+  DieSites sites() const { return {scene_.dies[1], scene_.mesh, Vec3({0., 0., -1.}), 30.}; }
 
   double value(const PathObjective &objective) const { return objective.value(rows(objective)); }
 
@@ -306,8 +310,9 @@ void check_at_rest(const Upsetting &run)
   const ContactPressure                    pressure(0, 8., 1.);
   const StressMaximum                      shear(InnerStress::shear, 8., 1.);
   const DieWear                            wear(1, Wear::mean);
+  const LargestWear                        largest_wear(1, run.sites(), 20.);
   const std::vector<const PathObjective *> objectives = {
-    &energy, &p_norm, &fold, &dimensionless, &pressure, &shear, &wear};
+    &energy, &p_norm, &fold, &dimensionless, &pressure, &shear, &wear, &largest_wear};
   for (const PathObjective *objective : objectives)
   {
     const auto rows   = run.rows(*objective, 0.);
@@ -343,6 +348,7 @@ int main(int argc, char **argv)
   refused([] { StressMaximum(InnerStress::pressure, 8., 0.); });
   refused([] { StressMaximum(InnerStress::pressure, 8., 1., {Over::time, 2., 1.}); });
   refused([] { DieWear(0, Wear::mean, {}, SmoothRegion{{Vec3(), Vec3({1., 1., 1.})}, 0.}); });
+  refused([&] { LargestWear(1, run.sites(), 0.5); });
   refused([] { MaximumEffort(Effort(1), {}, {SmoothMaximum::Kind::p_norm, 0.}); });
   refused([] { MaximumEffort(Effort(1), {}, {SmoothMaximum::Kind::log_sum_exp, 0.}); });
   refused([] { MaximumEffort(Effort(1), {}, {}, 1.5); });
