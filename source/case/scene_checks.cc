@@ -428,6 +428,7 @@ namespace retroforge
                                        const NodalVectors<double> &X)
   {
     std::vector<std::string> warnings;
+    check_waiting(process);
     check_sizes(parameters, scene, X);
     check_depths(parameters, scene);
     const std::vector<DieApproach> approaches = find_approaches(parameters, scene, process, X);

@@ -207,6 +207,12 @@ namespace retroforge
         case Kind::heat:
           number_of(process.heat, parameter.number) = mu[j];
           break;
+        case Kind::transfer:
+          process.operations[parameter.number].waiting.transfer = mu[j];
+          break;
+        case Kind::dwell:
+          process.operations[parameter.number].waiting.dwell = mu[j];
+          break;
         case Kind::friction:
           for (unsigned int d = 0; d < dies_.size(); ++d)
             if (d == parameter.die || (parameter.die == invalid_index && dies_[d].friction > 0.))

@@ -173,6 +173,35 @@ namespace retroforge
     }
   } // namespace
 
+  namespace
+  {
+    bool dwells(const Process<double> &process)
+    {
+      return std::any_of(process.operations.begin(),
+                         process.operations.end(),
+                         [](const Operation<double> &operation) { return operation.waiting.dwell > 0.; });
+    }
+
+    /// Times before strokes: of the first as parameter files have them, of others by their operation.
+    void add_waiting_times(const Process<double> &process, std::vector<DesignParameter> &all)
+    {
+      for (unsigned int o = 0; o < process.operations.size() && process.heat.conducts(); ++o)
+      {
+        const Waiting<double> &waiting = process.operations[o].waiting;
+        const std::string      prefix  = o == 0 ? "heat/" : "operation " + std::to_string(o + 1) + "/";
+        for (const auto &[name, kind, time] :
+             {std::make_tuple("transfer time", Kind::transfer, waiting.transfer),
+              std::make_tuple("dwell time", Kind::dwell, waiting.dwell)})
+          if (time > 0.)
+          {
+            DesignParameter parameter{prefix + name, "s", kind, time, time, invalid_index, o};
+            parameter.may_vanish = true;
+            all.push_back(parameter);
+          }
+      }
+    }
+  } // namespace
+
   NumberInfo Design::friction_of(const unsigned int d) const
   {
     return interface_law(process_.dies[d].interface_law).coefficient();
@@ -209,8 +238,11 @@ namespace retroforge
         process_.heat,
         "heat",
         Kind::heat,
-        [&](const std::string &name) { return process_.heat.reads(name); },
+        [&](const std::string &name) {
+          return process_.heat.reads(name) && (name != "dwell film" || dwells(process_));
+        },
         all);
+    add_waiting_times(process_, all);
     if (process_.heat.conducts())
       for (unsigned int d = 0; d < dies_.size(); ++d)
       {

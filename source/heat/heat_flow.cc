@@ -31,7 +31,7 @@ namespace retroforge
     {
       using std::sqrt;
       const Number metal = sqrt(Number(of.k * of.capacity)),
-                   both  = 1. / (1. / metal + 1. / of.die_effusivity);
+                   both  = joint_effusivity(metal, of.die_effusivity);
       return {both, both / metal};
     }
 

@@ -90,4 +90,15 @@ namespace retroforge
     }
     return {e + h * dt * mean, mean};
   }
+
+  HealedSkin healed_skin(const double e, const double h, const double b2, const double time)
+  {
+    Assert(e >= 0. && h > 0. && b2 > 0. && time > 0., dealii::ExcMessage("a skin heals in a time"));
+    // dG/da = 1 + y,  a = 4/3 e h/b² = y²/(1+y):  a skin that grows takes the time de (1+y)/h.
+    const double y = skin_biot(e, h, b2), scale = b2 / (four_thirds * h * h);
+    const double age = scale * (0.5 * y * y + log_rest(y)), age_e = (1. + y) / h;
+    const double age_h = (age_e * e - 2. * age) / h, age_b2 = (age - age_e * e) / b2;
+    const double whole = age + 2. * time, part = age / whole, by_age = e * 2. * time / (whole * whole);
+    return {e * part, part + by_age * age_e, by_age * age_h, by_age * age_b2, -2. * e * part / whole};
+  }
 } // namespace retroforge

@@ -83,10 +83,9 @@ namespace retroforge
                       dealii::Patterns::Integer(1));
     prm.leave_subsection();
     tag(prm, "Heat", SettingRole::scene);
-    tag(prm, "Heat/waiting steps", SettingRole::numerics);
   }
 
-  HeatLaw<double> HeatParameters::law(const unsigned int resting) const
+  HeatLaw<double> HeatParameters::law() const
   {
     HeatLaw<double> law;
     law.capacity       = capacity;
@@ -99,11 +98,8 @@ namespace retroforge
     law.surroundings   = surroundings;
     law.die_effusivity = die_effusivity;
     law.friction_part  = friction_part;
-    law.transfer       = transfer;
-    law.dwell          = dwell;
     law.gap            = gap;
     law.heating        = static_cast<unsigned int>(heating);
-    law.resting_die    = resting;
     law.waiting_steps  = waiting_steps;
     return law;
   }

@@ -148,6 +148,9 @@ namespace retroforge
                       {"chilled_elements", json_number(heat.elements)}};
       if (std::isfinite(heat.mean_temperature))
         json["heat"]["mean_temperature"] = json_number(heat.mean_temperature);
+      for (const Heat::Wait &wait : heat.waits)
+        json["heat"]["waits"].push_back(
+          {{"transfer", json_number(wait.transfer)}, {"dwell", json_number(wait.dwell)}});
     }
     if (!deepest.die.empty())
       json["deepest"] = {

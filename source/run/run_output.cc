@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/contact/level_gaps.h>
 #include <retroforge/contact/penetration.h>
+#include <retroforge/core/text.h>
 #include <retroforge/mesh/parts_quality.h>
 #include <retroforge/output/console.h>
 #include <retroforge/run/run_output.h>
@@ -170,9 +171,27 @@ namespace retroforge
             balance_.add(event.record)};
   }
 
+  namespace
+  {
+    /// What comes before the stroke of an operation, where heat flows.
+    std::string waits(const Process<double> &process, const unsigned int operation, const Case &of)
+    {
+      std::vector<std::string> parts;
+      const Waiting<double>   &waiting = process.operations[operation].waiting;
+      if (process.heat.conducts() && waiting.transfer > 0.)
+        parts.push_back(as_text(waiting.transfer) + " s in the surroundings");
+      if (process.heat.conducts() && waiting.dwell > 0.)
+        parts.push_back(as_text(waiting.dwell) + " s on die " + of.model.dies[waiting.resting_die].name);
+      return join(parts);
+    }
+  } // namespace
+
   void RunOutput::print(const IncrementEvent &event, const HistoryRow &row)
   {
     const TetMesh &mesh = event.state.epoch->scene.mesh;
+    if (event.record.stroke == 0.)
+      if (const std::string text = waits(case_.process, event.record.operation, case_); !text.empty())
+        std::printf("      before the stroke: %s\n", text.c_str());
     if (event.record.remesh)
       std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());
     if (event.record.cuts > 0 && !case_.parameters.press.steps.empty())

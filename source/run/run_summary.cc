@@ -65,9 +65,10 @@ namespace retroforge
       heat.warms                 = law.warms();
       heat.conducts              = law.conducts();
       heat.warming               = law.fraction * forged.energy.deformation / (law.capacity * volume);
-      heat.seconds               = process.whole_time(forged.stroke, forged.operation);
+      heat.seconds               = process.time_on_dies(forged.stroke, forged.operation);
       if (heat.conducts)
-        heat.seconds += law.dwell;
+        for (unsigned int o = 0; o <= forged.operation; ++o)
+          heat.waits.push_back({process.operations[o].waiting.transfer, process.operations[o].waiting.dwell});
       heat.chilled =
         std::sqrt((heat.conducts ? law.conductivity / law.capacity : diffusivity) * heat.seconds);
       heat.elements = heat.chilled / edge_length;

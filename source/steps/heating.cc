@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/heat/healing.h>
 #include <retroforge/steps/heating.h>
 
 namespace retroforge
@@ -21,6 +22,9 @@ namespace retroforge
       std::vector<bool>   touch; ///< the dies that are there
       Number              time;  ///< [s]
       std::vector<double> parts; ///< of the time
+
+      /// Whether skins heal where nothing touches. Under the press, a contact that opens is one that closes again.
+      bool heals() const { return of != Of::press; }
     };
 
     /// Steps that grow in proportion to their number: what begins does so fast.
@@ -46,18 +50,20 @@ namespace retroforge
     std::vector<Spell<Number>>
     spells_of(const HalfOfIncrement half, const Process<Number> &process, const StrokeStep &at)
     {
-      using Of                        = typename Spell<Number>::Of;
-      const HeatLaw<Number>     &heat = process.heat;
-      const std::size_t          n    = process.dies.size();
+      using Of = typename Spell<Number>::Of;
       std::vector<Spell<Number>> spells;
-      if (half == HalfOfIncrement::first && at.operation == 0 && at.stroke == 0.)
+      if (half == HalfOfIncrement::first && at.stroke == 0.)
       {
-        std::vector<bool> touch(n, false);
-        if (value_of(heat.transfer) > 0.)
-          spells.push_back({Of::transfer, touch, heat.transfer, growing_steps(heat.waiting_steps)});
-        touch[heat.resting_die] = true;
-        if (value_of(heat.dwell) > 0.)
-          spells.push_back({Of::dwell, touch, heat.dwell, growing_steps(heat.waiting_steps)});
+        const Waiting<Number>    &waiting = process.operations[at.operation].waiting;
+        const std::vector<double> steps   = growing_steps(process.heat.waiting_steps);
+        std::vector<bool>         touch(process.dies.size(), false);
+        if (value_of(waiting.transfer) > 0.)
+          spells.push_back({Of::transfer, touch, waiting.transfer, steps});
+        if (value_of(waiting.dwell) > 0.)
+        {
+          touch[waiting.resting_die] = true;
+          spells.push_back({Of::dwell, touch, waiting.dwell, steps});
+        }
       }
       spells.push_back({Of::press, dies_in(process, at), 0.5 * process.duration(at), {1.}});
       return spells;
@@ -93,6 +99,8 @@ namespace retroforge
     for (const auto &spell : spells_of(half, process, at))
     {
       const auto surface = thermal_surface(scene.view(dies, X), spell.touch, gap);
+      if (spell.heals())
+        heal_skins(surface, process.heat, spell.time, state.skin);
       for (const double part : spell.parts)
         heat += conduct({edges, network, surface, process.heat, film_of(process.heat, spell.of), dies},
                         Number(part * spell.time),
@@ -151,10 +159,14 @@ namespace retroforge
     // Temperatures and skins before each step of each spell.
     std::vector<ThermalSurface<double>>                                       surfaces;
     std::vector<std::vector<std::pair<NodeField<double>, NodeField<double>>>> before(spells.size());
+    std::vector<NodeField<double>>                                            not_healed;
     NodeField<double> T = state.temperature, skin = state.skin;
     for (std::size_t i = 0; i < spells.size(); ++i)
     {
       surfaces.push_back(thermal_surface(view, spells[i].touch, gap));
+      not_healed.push_back(skin);
+      if (spells[i].heals())
+        heal_skins(surfaces[i], process.heat, spells[i].time, skin);
       for (const double part : spells[i].parts)
       {
         before[i].emplace_back(T, skin);
@@ -171,7 +183,8 @@ namespace retroforge
         continue;
       PhysicsBar                physics(scene.dies);
       ConductionNetwork<double> network_bar = no_derivatives(network);
-      double                    press_bar   = 0.; // in the increment's time
+      Waiting<double>           waiting_bar;
+      double                    press_bar = 0.; // in the increment's time
       for (std::size_t i = spells.size(); i-- > 0;)
       {
         ThermalSurfaceBar surface_bar(surfaces[i]);
@@ -195,14 +208,21 @@ namespace retroforge
             bar);
           time_bar += spells[i].parts[s] * dt_bar;
         }
+        if (spells[i].heals())
+          reverse_heal_skins(surfaces[i],
+                             process.heat,
+                             spells[i].time,
+                             not_healed[i],
+                             workpiece.skin,
+                             {surface_bar, physics.heat, time_bar});
         reverse_thermal_surface(view, surfaces[i], gap, surface_bar, workpiece.X, physics.dies);
         switch (spells[i].of)
         {
           case Of::transfer:
-            physics.heat.transfer += time_bar;
+            waiting_bar.transfer += time_bar;
             break;
           case Of::dwell:
-            physics.heat.dwell += time_bar;
+            waiting_bar.dwell += time_bar;
             break;
           case Of::press:
             press_bar += 0.5 * time_bar;
@@ -215,6 +235,7 @@ namespace retroforge
         PhysicsBar time(scene.dies);
         time.dt = press_bar;
         reverse_over(process, at, 0., time, part);
+        add_numbers(waiting_bar, part.operations[at.operation].waiting);
       });
     }
   }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/error.h>
+#include <retroforge/core/text.h>
 #include <retroforge/steps/process.h>
+
+#include <cmath>
 
 namespace retroforge
 {
@@ -61,7 +65,17 @@ namespace retroforge
   {
     Number sum = time(stroke, operation);
     for (unsigned int o = 0; o < operation; ++o)
-      sum += time(value_of(operations[o].stroke), o);
+      sum += time(value_of(operations[o].stroke), o) + operations[o + 1].waiting.transfer +
+             operations[o + 1].waiting.dwell;
+    return sum;
+  }
+
+  template <typename Number>
+  Number Process<Number>::time_on_dies(const double stroke, const unsigned int operation) const
+  {
+    Number sum = whole_time(stroke, operation) + operations[0].waiting.dwell;
+    for (unsigned int o = 1; o <= operation; ++o)
+      sum -= operations[o].waiting.transfer;
     return sum;
   }
 
@@ -97,6 +111,36 @@ namespace retroforge
   Physics<Number> Process<Number>::at_stroke(const double stroke, const unsigned int operation) const
   {
     return over({stroke, 0., operation});
+  }
+
+  void check_waiting(const Process<double> &process)
+  {
+    for (unsigned int o = 0; o < process.operations.size(); ++o)
+    {
+      const Operation<double> &operation = process.operations[o];
+      const Waiting<double>   &waiting   = operation.waiting;
+      const std::string        of        = "operation " + std::to_string(o + 1) + ", ";
+      for (const auto &[name, time] :
+           {std::make_pair("transfer time", waiting.transfer), std::make_pair("dwell time", waiting.dwell)})
+        if (!(time >= 0.) || !std::isfinite(time))
+          throw Error(of + name,
+                      "is " + as_text(time) + " s",
+                      "a time is a number that is not negative",
+                      "use 0 where the workpiece does not wait");
+      if (!process.heat.conducts() || waiting.dwell == 0.)
+        continue;
+      if (!operation.has(waiting.resting_die))
+        throw Error(of + "resting die",
+                    "is number " + std::to_string(waiting.resting_die) +
+                      ", which does not stand in the press in this operation",
+                    "a workpiece waits on a die that is there, counted from 0",
+                    "name one of the operation's dies, or leave the dwell time 0");
+      if (process.heat.dwell_film == 0.)
+        throw Error(of + "dwell time",
+                    "is " + as_text(waiting.dwell) + " s, with dwell film = 0",
+                    "a workpiece that waits on a die gives it heat",
+                    "use a transfer time, or a dwell film of 1 to 2");
+    }
   }
 
   template struct Process<double>;

@@ -17,6 +17,8 @@ namespace retroforge
       material,        ///< a number of the material law
       contact,         ///< a number of the contact law
       heat,            ///< a number of the metal's heat
+      transfer,        ///< time in the surroundings before the stroke of one operation
+      dwell,           ///< time on the resting die before it
       friction,        ///< friction coefficient of one die, or of all that have friction
       shear_limit,     ///< bound of one die's friction, where its law has one
       zone_friction,   ///< friction coefficient of one zone of a die
@@ -35,9 +37,9 @@ namespace retroforge
     double       nominal    = 0.;
     double       scale      = 1.;            ///< a length or size that steps are relative to
     unsigned int die        = invalid_index; ///< invalid_index: all
-    unsigned int number     = 0;             ///< in the law, among the modes or zones, or in BilletMap
-    std::string  measure    = {};            ///< measure of a die's shape
-    bool         may_vanish = false;         ///< else it is positive, unless it is free
+    unsigned int number     = 0;     ///< in the law, among operations, modes or zones, or in BilletMap
+    std::string  measure    = {};    ///< measure of a die's shape
+    bool         may_vanish = false; ///< else it is positive, unless it is free
     double       largest    = std::numeric_limits<double>::infinity();
     bool         any_sign   = false; ///< a number of a law that may be negative
 

@@ -59,6 +59,26 @@ namespace retroforge
     return step;
   }
 
+  /// Of metal and die together.
+  template <typename Number>
+  Number joint_effusivity(const Number &of_metal, const Number &of_die)
+  {
+    return 1. / (1. / of_metal + 1. / of_die);
+  }
+
+  /// A skin after a time without contact, and its derivatives.
+  struct HealedSkin
+  {
+    double e;                      ///< [mJ/(mm^2 K)]
+    double e_e, e_h, e_b2, e_time; ///< of e
+  };
+
+  /// Once a contact is open, the layer spreads, and the surface warms again:  e' = e t/(t + 2 time),  t = 3/4 b²/h² G(y)
+  /// the age of a skin that the film h has made.
+  /// @param e, h, b2  as in skin_step()
+  /// @param time      [s], > 0
+  HealedSkin healed_skin(double e, double h, double b2, double time);
+
   /// Returns y of a skin, the drop of temperature within it over that across the film.
   template <typename Number>
   Number skin_biot(const Number &e, const Number &h, const Number &b2)

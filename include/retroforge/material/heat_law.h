@@ -14,6 +14,22 @@ namespace retroforge
     conduction ///< heat flows in the metal, to the dies, and to the surroundings
   };
 
+  /// What the workpiece goes through before a stroke, where heat flows.
+  template <typename Number>
+  struct Waiting
+  {
+    Number       transfer    = Number(0.); ///< time in the surroundings [s]
+    Number       dwell       = Number(0.); ///< time on the resting die after that [s]
+    unsigned int resting_die = 0;          ///< on which it waits
+
+    template <typename Self>
+    static auto members(Self &self)
+    {
+      auto &[transfer, dwell, resting_die] = self;
+      return std::tie(transfer, dwell, resting_die);
+    }
+  };
+
   /// The numbers of the metal's heat and of what it touches. Those after the first two are read where it flows.
   template <typename Number>
   struct HeatLaw
@@ -28,12 +44,9 @@ namespace retroforge
     Number surroundings   = Number(0.); ///< temperature [C]
     Number die_effusivity = Number(0.); ///< sqrt(k rho c) of the dies [mW s^(1/2)/(mm^2 K)]
     Number friction_part  = Number(0.); ///< part of friction's heat that goes into the metal
-    Number transfer       = Number(0.); ///< time in the surroundings before the first stroke [s]
-    Number dwell          = Number(0.); ///< time on the resting die after that [s]
     Number gap            = Number(0.); ///< between metal and die across which contact fades, frozen [mm]
 
     unsigned int heating       = 0; ///< a Heating
-    unsigned int resting_die   = 0; ///< on which the workpiece waits
     unsigned int waiting_steps = 0; ///< steps in time of transfer and of dwell
 
     template <typename Self>
@@ -49,11 +62,8 @@ namespace retroforge
              surroundings,
              die_effusivity,
              friction_part,
-             transfer,
-             dwell,
              gap,
              heating,
-             resting_die,
              waiting_steps] = self;
       return std::tie(capacity,
                       fraction,
@@ -65,11 +75,8 @@ namespace retroforge
                       surroundings,
                       die_effusivity,
                       friction_part,
-                      transfer,
-                      dwell,
                       gap,
                       heating,
-                      resting_die,
                       waiting_steps);
     }
 
@@ -84,20 +91,14 @@ namespace retroforge
               {"emissivity", "", true, 1.},
               {"surroundings", "C", true, std::numeric_limits<double>::infinity(), {}, true},
               {"die effusivity", "mW s^(1/2)/(mm^2 K)"},
-              {"friction part", "", true, 1.},
-              {"transfer time", "s", true},
-              {"dwell time", "s", true}};
+              {"friction part", "", true, 1.}};
     }
 
-    /// Tells whether anything depends on a number of info().
+    /// Tells whether anything depends on a number of info(); on the dwell film, if the workpiece waits on a die.
     bool reads(const std::string &name) const
     {
       if (name == "heat capacity" || name == "fraction of work")
         return warms();
-      if (name == "transfer time")
-        return conducts() && value_of(transfer) > 0.;
-      if (name == "dwell time" || name == "dwell film")
-        return conducts() && value_of(dwell) > 0.;
       return conducts();
     }
 

@@ -31,7 +31,10 @@ namespace retroforge
     void add_parameters(dealii::ParameterHandler &prm);
 
     /// Returns the law of these numbers.
+    HeatLaw<double> law() const;
+
+    /// Returns what comes before the first stroke.
     /// @param resting  number of the die on which the workpiece waits
-    HeatLaw<double> law(unsigned int resting) const;
+    Waiting<double> waiting(unsigned int resting) const { return {transfer, dwell, resting}; }
   };
 } // namespace retroforge

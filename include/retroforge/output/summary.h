@@ -120,6 +120,13 @@ namespace retroforge
       double chilled          = unknown; ///< depth that a chill by the dies reaches, mm
       double elements         = unknown; ///< the same in elements
       double mean_temperature = unknown; ///< of the metal at the end where it is followed, C
+
+      /// Before the stroke of an operation, s.
+      struct Wait
+      {
+        double transfer = 0., dwell = 0.;
+      };
+      std::vector<Wait> waits; ///< of each operation, where heat flows
     };
     Heat heat;
 

@@ -9,11 +9,11 @@
 /// Conduction as a step of an increment. Heat flows for half its time before its mechanics, between nodes and dies
 /// where they are at its start, and for half of it after, where they are at its end (Strang's splitting): with a scheme
 /// of second order in time, both together are of second order, and the stages of mechanics find temperatures of
-/// their own time. Before the first increment, heat flows while the workpiece is transferred in air, and while it waits
-/// on the resting die.
+/// their own time. Before the first increment of an operation, heat flows while the workpiece is transferred in air, and
+/// while it waits on the resting die, where dies stand at its start.
 namespace retroforge
 {
-  /// Where and when of an increment heat flows: half of it, and what comes before the first one.
+  /// Where and when of an increment heat flows: half of it, and what comes before the first one of an operation.
   enum class HalfOfIncrement
   {
     first,

@@ -24,7 +24,7 @@ namespace retroforge
     return {record.stroke, record.step, record.operation};
   }
 
-  /// One stroke of the press: which dies stand in it, and how it goes.
+  /// One stroke of the press: which dies stand in it, how it goes, and what comes before.
   template <typename Number>
   struct Operation
   {
@@ -36,13 +36,14 @@ namespace retroforge
     PressMotion<Number> motion;
     /// How far it goes in the nominal design [mm]. A run divides it into increments by decision: nothing is
     /// differentiated by it.
-    Number stroke = Number(0.);
+    Number          stroke  = Number(0.);
+    Waiting<Number> waiting = {}; ///< before its stroke
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[dies, leading_die, path_scale, motion, stroke] = self;
-      return std::tie(dies, leading_die, path_scale, motion, stroke);
+      auto &[dies, leading_die, path_scale, motion, stroke, waiting] = self;
+      return std::tie(dies, leading_die, path_scale, motion, stroke, waiting);
     }
 
     /// Returns whether a die stands in the press.
@@ -91,8 +92,12 @@ namespace retroforge
     /// Returns the strokes of all operations up to one of an operation [mm].
     Number whole_stroke(double stroke, unsigned int operation) const;
 
-    /// Returns the time from the start of the first operation to a stroke of an operation [s].
+    /// Returns the time from the start of the first stroke to a stroke of an operation, the waiting between them
+    /// included [s].
     Number whole_time(double stroke, unsigned int operation) const;
+
+    /// Returns the time on dies until then: under the press, and waiting before each stroke [s].
+    Number time_on_dies(double stroke, unsigned int operation) const;
 
     /// Returns laws and dies when the leading die has gone `stroke` [mm] in an operation. Their velocities
     /// are those of a press at constant speed.
@@ -102,6 +107,10 @@ namespace retroforge
     /// that are not of its operation are not in the press.
     Physics<Number> over(const StrokeStep &at) const;
   };
+
+  /// Looks at what comes before each stroke.
+  /// @throws Error  for times that are not, and for a die to wait on that does not stand in the operation
+  void check_waiting(const Process<double> &process);
 
   /// Pull-back of over(), dt = duration(), tau = approach dt, and the time at the start: adds to process_bar.
   void reverse_over(const Process<double> &process,

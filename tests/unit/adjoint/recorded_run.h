@@ -81,17 +81,14 @@ namespace retroforge
                 Objectives                   given  = {},
                 const std::optional<Scheme> &scheme = {},
                 const Meshes                 meshes = Meshes::one)
-        : ForwardRun(problem_between(resolved(all, meshes), std::move(dies), std::move(given), scheme),
-                     Keep::increments,
-                     timings_of_runs())
-        , parameters(resolved(all, meshes))
-        , scene(first_epoch().scene)
+        : RecordedRun(problem_between(resolved(all, meshes), std::move(dies), std::move(given), scheme))
     {
-      forge();
-      values(); // objectives of the end choose their features
-      const auto record = recording().access();
-      for (unsigned int i = 0; i < state().increments; ++i)
-        records.push_back(record(i));
+    }
+
+    /// @param problem  whose parameters have their defaults
+    explicit RecordedRun(ForgingProblem problem)
+        : RecordedRun(Parameters(problem.parameters), std::move(problem))
+    {
     }
 
     explicit RecordedRun(const Parameters &all) : RecordedRun(all, {all.dies[0].die(), all.dies[1].die()}) {}
@@ -113,5 +110,18 @@ namespace retroforge
     const Parameters             parameters;
     const Scene                 &scene;
     std::vector<IncrementRecord> records;
+
+  private:
+    RecordedRun(Parameters all, ForgingProblem &&problem)
+        : ForwardRun(std::move(problem), Keep::increments, timings_of_runs())
+        , parameters(std::move(all))
+        , scene(first_epoch().scene)
+    {
+      forge();
+      values(); // objectives of the end choose their features
+      const auto record = recording().access();
+      for (unsigned int i = 0; i < state().increments; ++i)
+        records.push_back(record(i));
+    }
   };
 } // namespace retroforge

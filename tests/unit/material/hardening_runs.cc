@@ -273,9 +273,13 @@ namespace
               [i, of = number_of(law, i)](Process<double> &process) { number_of(process.heat, i) = of; });
     }
     if (p.heat.heating == Heating::conduction)
+    {
+      add("transfer time", [](Process<double> &process) { process.operations[0].waiting.transfer = 0.3; });
+      add("dwell time", [](Process<double> &process) { process.operations[0].waiting.dwell = 0.1; });
       for (unsigned int d = 0; d < 2; ++d)
         add("temperature of die " + run.scene.dies[d].name,
             [d](Process<double> &process) { process.dies[d].temperature = 100.; });
+    }
     WorstErrors worst;
     for (const Way &way : ways)
     {

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+
+// Transfer and dwell before each operation of a process: the tilted block of hot metal under one die, then, after some
+// time in air and some on the lower die, under another one.
+// - The step before a later stroke is that before the first one, to the bit, where metal and dies are the same, and there
+//   is none further along a stroke.
+// - Cooling in air of metal that conducts well, before the second stroke, is  T_a + (T - T_a) exp(-h A t/(rho c V)).
+// - Times go on over the wait; those on dies leave out that in the air; the run without a wait ends hotter.
+// - The derivatives of the energy and of the least temperature by both transfers and dwells, films, temperatures of metal and
+//   dies, speed and offset of the second die and the nodes: by the adjoint and by the direct method to 1e-10, differences of
+//   replays to 1e-6, order 2; on one mesh, and where the mesh is made anew.
+// - A run that is restored in the second operation, or just before it, is the same to the bit, and goes on as one that was not.
+// - The times are design parameters, by their operation.
+// - Times that are none, a die to wait on that is not there, a dwell without a film: one message each.
+
+#include <retroforge/core/error.h>
+#include <retroforge/objective/temperatures.h>
+
+#include <deal.II/base/mpi.h>
+
+#include "../material/hot_metals.h"
+#include "ways.h"
+
+using namespace retroforge;
+
+namespace
+{
+  constexpr unsigned int first = 0, second = 1;
+
+  Parameters scene()
+  {
+    Parameters p = conducting(tilted_block());
+    p.dies.emplace_back("second");
+    p.dies[2].point       = Vec3({0., 0., 30.});
+    p.dies[2].facing      = Vec3({0.029809, -0.049900, -0.998309});
+    p.dies[2].velocity    = Vec3({0., 0., -80.});
+    p.dies[2].friction    = 0.4;
+    p.dies[2].temperature = 60.;
+    p.press.scheme        = "euler";
+    return p;
+  }
+
+  ForgingProblem problem_of(const Parameters &p, const Meshes meshes = Meshes::one)
+  {
+    ForgingProblem problem =
+      problem_between(resolved(p, meshes), {p.dies[0].die(), p.dies[1].die(), p.dies[2].die()}, {}, {});
+    Operation<double> operation = problem.process.operations.front();
+    operation.dies              = {0, 1};
+    operation.leading_die       = 1;
+    operation.stroke            = 3.;
+    problem.process.operations  = {operation, {{0, 2}, 2, 1., {}, 2., {0.4, 0.2, 0}}};
+    problem.objectives.push_back({"coldest",
+                                  1.,
+                                  SymmetryScaling::none,
+                                  invalid_index,
+                                  nullptr,
+                                  std::make_unique<TemperatureObjective>(TemperatureExtreme::least, 5.)});
+    return problem;
+  }
+
+  /// Temperatures and skins after the first half of an increment.
+  WorkpieceState<3, double>
+  conducted(const RecordedRun &run, const Process<double> &process, const StrokeStep &at, const bool uniform)
+  {
+    const NetworkEdges        edges(run.scene.mesh, run.scene.topology);
+    WorkpieceState<3, double> state = run.state().workpiece;
+    state.X                         = run.X_0();
+    if (uniform)
+      state.temperature.assign(state.temperature.size(), 1000.);
+    conduct_over(HalfOfIncrement::first, run.scene, edges, process, at, state.X, state);
+    return state;
+  }
+
+  void check_step(const RecordedRun &run)
+  {
+    Process<double> process       = run.process();
+    process.operations[1]         = process.operations[0];
+    const auto before_first       = conducted(run, process, {0., 0.5, first}, false);
+    const auto before_second      = conducted(run, process, {0., 0.5, second}, false);
+    const auto further            = conducted(run, process, {0.5, 0.5, second}, false);
+    process.operations[1].waiting = {};
+    const auto no_wait            = conducted(run, process, {0., 0.5, second}, false);
+    std::cout << "before the second stroke as before the first: "
+              << yes(before_first.temperature == before_second.temperature &&
+                     before_first.skin == before_second.skin)
+              << ", not further on: " << yes(further.temperature != before_second.temperature)
+              << ", and the wait matters: " << yes(no_wait.temperature != before_second.temperature) << "\n";
+  }
+
+  void check_cooling(const RecordedRun &run)
+  {
+    Process<double> process                = run.process();
+    process.heat.conductivity              = 1e5;
+    process.heat.emissivity                = 0.;
+    process.heat.waiting_steps             = 40;
+    process.operations[second].waiting     = {0.7, 0., 0};
+    process.dies[2].velocity               = Vec3({0., 0., -1e9}); // nothing flows under the press
+    const WorkpieceState<3, double> cooled = conducted(run, process, {0., 0.5, second}, true);
+    const double                    area   = 5. * 900. + 900.,
+                 per_second                = process.heat.air_film * area / (process.heat.capacity * 27000.),
+                 surroundings              = process.heat.surroundings;
+    const double exact = surroundings + (1000. - surroundings) * std::exp(-0.7 * per_second);
+    double       worst = 0.;
+    for (const double T : cooled.temperature)
+      worst = std::max(worst, std::abs(T - exact));
+    std::cout << "cooling in air by " << std::round(1000. - exact)
+              << " K within 1e-3 of it: " << yes(worst < 1e-3 * (1000. - exact)) << "\n";
+    if (worst >= 1e-3 * (1000. - exact))
+      std::cout << "  off by " << worst << " K\n";
+  }
+
+  void check_times()
+  {
+    std::vector<double>       times;
+    std::vector<unsigned int> of;
+    std::array<double, 2>     coldest{};
+    for (const bool waits : {false, true})
+    {
+      ForgingProblem problem = problem_of(scene());
+      if (!waits)
+        problem.process.operations[second].waiting = {};
+      ForwardRun run(std::move(problem), ForwardRun::Keep::nothing, timings_of_runs());
+      times = {0.};
+      of    = {};
+      run.forge([&](const IncrementEvent &event) {
+        times.push_back(event.time);
+        of.push_back(event.record.operation);
+      });
+      coldest[waits]  = run.values()[1];
+      const auto &end = run.state();
+      if (waits)
+        std::cout << "time on dies within 1e-12: "
+                  << yes(std::abs(run.process().time_on_dies(end.stroke, end.operation) -
+                                  (run.process().whole_time(end.stroke, end.operation) + 0.1 - 0.4)) < 1e-12)
+                  << "\n";
+    }
+    double jump = 0.;
+    for (std::size_t i = 1; i < of.size(); ++i)
+      if (of[i] != of[i - 1])
+        jump = times[i + 1] - times[i];
+    std::cout << "time goes on over the wait: " << yes(jump > 0.6 && jump < 0.65)
+              << ", metal that waits ends colder: " << yes(coldest[1] < coldest[0] - 1.) << "\n";
+  }
+
+  void check_derivatives(const std::string &name, const Parameters &p, const Meshes meshes)
+  {
+    RecordedRun                run(problem_of(p, meshes));
+    const auto                 sweep = run.sweep(each(run.objectives()));
+    const NodalVectors<double> still(run.scene.mesh.n_nodes());
+    std::vector<Way>           ways = {Way{{"random X_0", random_vectors(still.size()), 0., 0., {}}},
+                                       Way{{"speed of the first die", still, 1., 0., {}}},
+                                       Way{{"offset of the first die", still, 0., 1., {}}}};
+    const auto add = [&](const std::string &of, const std::function<void(Process<double> &)> &dots) {
+      ways.push_back({{of, still, 0., 0., {}}, dots});
+    };
+    add("speed of the second die", [](Process<double> &dot) { dot.dies[2].velocity[2] = -80.; });
+    add("offset of the second die", [](Process<double> &dot) { dot.dies[2].displacement[2] = 1.; });
+    add("temperature of the second die", [](Process<double> &dot) { dot.dies[2].temperature = 100.; });
+    add("temperature of the lower die", [](Process<double> &dot) { dot.dies[0].temperature = 100.; });
+    add("T_0", [](Process<double> &dot) { dot.material.initial.temperature = 100.; });
+    for (const unsigned int o : {first, second})
+    {
+      add("transfer", [o](Process<double> &dot) { dot.operations[o].waiting.transfer = 0.4; });
+      add("dwell", [o](Process<double> &dot) { dot.operations[o].waiting.dwell = 0.2; });
+    }
+    const HeatLaw<double> heat = run.process().heat;
+    add("contact film", [heat](Process<double> &dot) { dot.heat.contact_film = heat.contact_film; });
+    add("dwell film", [heat](Process<double> &dot) { dot.heat.dwell_film = heat.dwell_film; });
+    add("air film", [heat](Process<double> &dot) { dot.heat.air_film = heat.air_film; });
+    add("heat capacity", [heat](Process<double> &dot) { dot.heat.capacity = heat.capacity; });
+    add("conductivity", [heat](Process<double> &dot) { dot.heat.conductivity = heat.conductivity; });
+    add("die effusivity", [heat](Process<double> &dot) { dot.heat.die_effusivity = heat.die_effusivity; });
+    WorstErrors worst;
+    for (const Way &way : ways)
+    {
+      const auto errors = slope_errors(run, way, sweep.gradients, 1e-5);
+      for (std::size_t o = 0; o < errors.size(); ++o)
+        worst.take(errors[o], run.objectives()[o].name + " by " + way.direction.name);
+    }
+    worst.print(name + ": meshes made anew: " + (run.state().remeshed.empty() ? "none" : "some") + ", ");
+  }
+
+  void check_restored(const RecordedRun &run)
+  {
+    for (const unsigned int beyond : {0u, 1u})
+    {
+      unsigned int n = beyond;
+      for (const IncrementRecord &record : run.records)
+        n += record.operation == first ? 1 : 0;
+      ForwardRun again(problem_of(scene()), ForwardRun::Keep::increments, timings_of_runs());
+      again.restore(n, run.recording().access(), [](const IncrementEvent &) {});
+      std::cout << "restored with " << beyond << " increments of the second operation, ";
+      again.forge();
+      std::cout << "goes on as if nothing had been: "
+                << yes(again.state().workpiece.X == run.state().workpiece.X &&
+                       again.state().workpiece.temperature == run.state().workpiece.temperature)
+                << "\n";
+    }
+  }
+
+  void check_design(const RecordedRun &run)
+  {
+    const Parameters &p      = run.parameters;
+    const double      height = p.billet.size[2];
+    const Design      design({"heat/transfer time", "operation 2/dwell time", "operation 2/transfer time"},
+                        p.billet,
+                        p.dies,
+                        run.process(),
+                        p.open_contact({height, height}),
+                        first_mesh(p.billet, run.scene.mesh));
+    const Process<double> changed = design.process(std::vector<double>{1., 2., 3.});
+    const auto            bar     = run.sweep(each(run.objectives())).gradients[0];
+    const auto            slopes  = design.pull_back(design.nominal(), bar.X_0, bar.process);
+    std::cout << "design parameters:";
+    for (unsigned int j = 0; j < 3; ++j)
+      std::cout << ' ' << design.parameters()[j].name << " = " << design.nominal()[j] << ' '
+                << design.parameters()[j].unit << (j < 2 ? "," : "\n");
+    std::cout << "  set: "
+              << yes(changed.operations[0].waiting.transfer == 1. &&
+                     changed.operations[1].waiting.dwell == 2. &&
+                     changed.operations[1].waiting.transfer == 3. &&
+                     changed.operations[0].waiting.dwell == 0.1)
+              << ", pulled back: "
+              << yes(slopes[0] == bar.process.operations[0].waiting.transfer &&
+                     slopes[1] == bar.process.operations[1].waiting.dwell &&
+                     slopes[2] == bar.process.operations[1].waiting.transfer)
+              << ", a later wait makes the forging harder: " << yes(slopes[1] > 0. && slopes[2] > 0.) << "\n";
+  }
+
+  void check_refusals()
+  {
+    const auto refuse = [](const std::function<void(Process<double> &)> &spoil) {
+      ForgingProblem problem = problem_of(scene());
+      spoil(problem.process);
+      try
+      {
+        ForwardRun(std::move(problem), ForwardRun::Keep::nothing, timings_of_runs()).check();
+        std::cout << "not refused: NO\n";
+      }
+      catch (const Error &error)
+      {
+        std::cout << error.what() << "\n";
+      }
+    };
+    refuse([](Process<double> &process) { process.operations[1].waiting.transfer = -1.; });
+    refuse([](Process<double> &process) { process.operations[1].waiting.dwell = std::nan(""); });
+    refuse([](Process<double> &process) { process.operations[1].waiting.resting_die = 1; });
+    refuse([](Process<double> &process) { process.operations[1].waiting.resting_die = 7; });
+    refuse([](Process<double> &process) { process.heat.dwell_film = 0.; });
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
+    std::cout.setstate(std::ios::failbit);
+  const RecordedRun run(problem_of(scene()));
+  check_step(run);
+  check_cooling(run);
+  check_times();
+  check_restored(run);
+  check_design(run);
+  check_refusals();
+  check_derivatives("one mesh", scene(), Meshes::one);
+  Parameters remeshed       = scene();
+  remeshed.remeshing.when   = RemesherParameters::When::increments;
+  remeshed.remeshing.every  = 2;
+  remeshed.remeshing.method = RemesherParameters::Method::rebuild;
+  remeshed.press.increments = 5;
+  check_derivatives("remeshed", remeshed, Meshes::anew);
+}
