@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/contact/level_gaps.h>
 #include <retroforge/contact/penetration.h>
+#include <retroforge/core/nearest_name.h>
 #include <retroforge/core/text.h>
 #include <retroforge/mesh/parts_quality.h>
 #include <retroforge/output/console.h>

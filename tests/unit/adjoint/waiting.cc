@@ -5,12 +5,14 @@
 // time in air and some on the lower die, under another one.
 // - The step before a later stroke is that before the first one, to the bit, where metal and dies are the same, and there
 //   is none further along a stroke.
-// - Cooling in air of metal that conducts well, before the second stroke, is  T_a + (T - T_a) exp(-h A t/(rho c V)).
+// - Cooling in air of metal that conducts well, before the second stroke, is  T_a + (T - T_a) exp(-h A t/(rho c V))  on the
+//   mean; the surface is colder than that by h L/(3 k) = 1e-3 of T - T_a, L half the edge of the block.
 // - Times go on over the wait; those on dies leave out that in the air; the run without a wait ends hotter.
 // - The derivatives of the energy and of the least temperature by both transfers and dwells, films, temperatures of metal and
 //   dies, speed and offset of the second die and the nodes: by the adjoint and by the direct method to 1e-10, differences of
 //   replays to 1e-6, order 2; on one mesh, and where the mesh is made anew.
-// - A run that is restored in the second operation, or just before it, is the same to the bit, and goes on as one that was not.
+// - A run that is restored in the second operation, or just before it, is the same to the bit, and goes on as one that was
+//   not (a direct solver on two ranks leaves rounding).
 // - The times are design parameters, by their operation.
 // - Times that are none, a die to wait on that is not there, a dwell without a film: one message each.
 
@@ -91,7 +93,7 @@ namespace
   void check_cooling(const RecordedRun &run)
   {
     Process<double> process                = run.process();
-    process.heat.conductivity              = 1e5;
+    process.heat.conductivity              = 100.;
     process.heat.emissivity                = 0.;
     process.heat.waiting_steps             = 40;
     process.operations[second].waiting     = {0.7, 0., 0};
@@ -101,13 +103,16 @@ namespace
                  per_second                = process.heat.air_film * area / (process.heat.capacity * 27000.),
                  surroundings              = process.heat.surroundings;
     const double exact = surroundings + (1000. - surroundings) * std::exp(-0.7 * per_second);
-    double       worst = 0.;
-    for (const double T : cooled.temperature)
-      worst = std::max(worst, std::abs(T - exact));
+    const auto   volumes =
+      conduction_network(run.scene.mesh, NetworkEdges(run.scene.mesh, run.scene.topology), run.X_0()).volumes;
+    double mean = 0.;
+    for (std::size_t k = 0; k < volumes.size(); ++k)
+      mean += volumes[k] * cooled.temperature[k] / 27000.;
+    const double error = std::abs(mean - exact) / (1000. - exact);
     std::cout << "cooling in air by " << std::round(1000. - exact)
-              << " K within 1e-3 of it: " << yes(worst < 1e-3 * (1000. - exact)) << "\n";
-    if (worst >= 1e-3 * (1000. - exact))
-      std::cout << "  off by " << worst << " K\n";
+              << " K on the mean, within 3e-3 of it: " << yes(error < 3e-3) << "\n";
+    if (error >= 3e-3)
+      std::cout << "  off by " << error << "\n";
   }
 
   void check_times()
@@ -190,12 +195,18 @@ namespace
         n += record.operation == first ? 1 : 0;
       ForwardRun again(problem_of(scene()), ForwardRun::Keep::increments, timings_of_runs());
       again.restore(n, run.recording().access(), [](const IncrementEvent &) {});
-      std::cout << "restored with " << beyond << " increments of the second operation, ";
+      const auto &before = run.state().remembered[n].start;
+      std::cout << "restored with " << beyond << " increments of the second operation to the bit: "
+                << yes(again.state().workpiece.temperature == before.temperature &&
+                       again.state().workpiece.skin == before.skin &&
+                       again.state().workpiece.strain == before.strain);
       again.forge();
-      std::cout << "goes on as if nothing had been: "
-                << yes(again.state().workpiece.X == run.state().workpiece.X &&
-                       again.state().workpiece.temperature == run.state().workpiece.temperature)
-                << "\n";
+      double      apart = 0.;
+      const auto &end = again.state().workpiece, &whole = run.state().workpiece;
+      for (std::size_t k = 0; k < end.temperature.size(); ++k)
+        apart = std::max(
+          {apart, std::abs(end.temperature[k] - whole.temperature[k]), (end.X[k] - whole.X[k]).norm()});
+      std::cout << ", goes on as if nothing had been, within 1e-11 K and mm: " << yes(apart < 1e-11) << "\n";
     }
   }
 

@@ -7,8 +7,8 @@
 // - On a shaken box that touches a die in part: <A x_dot, y> = <x_dot, A^T y>, A from dual numbers, by weights, numbers of
 //   heat, time and skins.
 // - A half space of steel that touches a die for a time t, is in air for another, and touches a die again: heat that the
-//   second contact takes, on elements of 4 mm, beside fine finite differences in one dimension; within 12 %, where a skin that stays as
-//   it was takes up to 40 % less.
+//   second contact takes, on elements of 4 mm, beside fine finite differences in one dimension; within 10 %, where a skin that stays as
+//   it was takes up to 24 % less.
 
 #include <retroforge/heat/healing.h>
 #include <retroforge/heat/skin.h>
@@ -76,7 +76,7 @@ namespace
     Body body(box_mesh(Vec3({10., 10., 6.}), {{3, 3, 2}}), {Die("lower", Vec3(), Vec3({0., 0., 1.}))});
     for (Vec3 &x : body.mesh.X)
       x += 0.2 * numbers.vector();
-    const auto    surface = body.surface(body.states, body.mesh.X, 0.5);
+    const auto    surface = body.surface(body.states, body.mesh.X, 0.3);
     State<double> s{{}, std::vector<double>(body.mesh.n_nodes()), steel(), 0.6};
     s.law.contact_film   = 12.;
     unsigned int in_part = 0;
@@ -105,8 +105,17 @@ namespace
     for (std::size_t k = 0; k < y.size(); ++k)
       forward += y[k] * at.skin[k].dx(0);
     for_each_number([&](const double a, const double b) { reverse += a * b; }, x_dot, bar);
-    std::cout << "touched in part: " << yes(in_part > 3)
-              << ", transpose within 1e-12: " << yes(std::abs(forward / reverse - 1.) < 1e-12) << "\n";
+    // Each kind of argument counts: left out, the transpose would be seen to fail.
+    const auto part = [&](const auto &dot, const auto &of) {
+      double sum = 0.;
+      for_each_number([&](const double a, const double b) { sum += a * b; }, dot, of);
+      return std::abs(sum / reverse) > 1e-6;
+    };
+    std::cout << "touched in part: " << yes(in_part > 2)
+              << ", transpose within 1e-12: " << yes(std::abs(forward / reverse - 1.) < 1e-12)
+              << ", by weights, skins, numbers, time: " << yes(part(x_dot.weights, bar.weights)) << ' '
+              << yes(part(x_dot.skin, bar.skin)) << ' ' << yes(part(x_dot.law, bar.law)) << ' '
+              << yes(part(x_dot.time, bar.time)) << "\n";
   }
 
   constexpr double T_0 = 1200., T_d = 200., b_d = 10.;
@@ -221,5 +230,5 @@ int main()
         healed = std::max(healed, std::abs(with));
         kept   = std::max(kept, std::abs(without));
       }
-  std::cout << "within 12 %: " << yes(healed < 0.12) << ", needed: " << yes(kept > 0.25) << "\n";
+  std::cout << "within 10 %: " << yes(healed < 0.1) << ", needed: " << yes(kept > 0.2) << "\n";
 }
