@@ -219,12 +219,14 @@ namespace
         if (std::abs(found - 2.) < std::abs(order - 2.))
           order = found;
       }
-      const double error = std::abs(tangent - adjoint) / std::max(std::abs(adjoint), 1e-300);
+      double squares = 0.; // what a sum of these terms with random signs is like: it may be small by chance
+      for_each_number([&](const double g, const double d) { squares += g * d * g * d; }, gradient, x_dot);
+      const double error = std::abs(tangent - adjoint) / std::max(std::sqrt(squares), 1e-300);
       std::cout << dt << " s, " << (kind < 0 ? "all" : kinds[kind])
                 << ": direct method within 1e-11: " << yes(error < 1e-11)
                 << ", remainder of second order: " << yes(std::abs(order - 2.) < 0.1) << "\n";
       if (error >= 1e-11 || std::abs(order - 2.) >= 0.1)
-        std::cout << "  " << error << ' ' << order << ' ' << adjoint << "\n";
+        std::cout << "  " << error << ' ' << order << ' ' << adjoint << ' ' << squares << "\n";
     }
   }
 
