@@ -142,12 +142,13 @@ namespace retroforge
     operation.leading_die        = leading_die();
     operation.motion             = press.motion();
     operation.stroke             = press.stroke;
-    operation.waiting            = heat.waiting(resting_die());
     for (unsigned int d = 0; d < process.dies.size(); ++d)
       operation.dies.push_back(d);
     const double speed = closing_speed(process.dies);
     process.material   = material.metal(speed / size.height);
     process.heat       = heat.law();
+    if (process.heat.conducts())
+      operation.waiting = heat.waiting(resting_die());
     process.contact    = open_contact(size).law(process.material.initial_law(), speed);
     return process;
   }

@@ -171,10 +171,7 @@ namespace retroforge
         all.push_back(
           {prefix + "free form " + std::to_string(i + 1), "mm", Kind::die_free_form, 0., width, d, i});
     }
-  } // namespace
 
-  namespace
-  {
     bool dwells(const Process<double> &process)
     {
       return std::any_of(process.operations.begin(),
