@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 
-// Every term of the backward sweep by which metal hardens, warms by its work and by friction, and by which heat flows, is
-// needed, and tests of this kind see it: on the block under a tilted die of dropped_terms.cc, of metal that hardens and
-// softens as it warms, with friction after Tresca and conduction, the adjoint of the largest temperature at the end agrees with
-// replayed central differences along the nodes at random, the speed of the die and the numbers of heat; and a sweep that
-// leaves out any one term does not. The sweep with omissions is made of the library's steps as Increment::reverse is:
-// complete, it agrees with adjoint_sweep. What depends on positions and velocities must show along the nodes,
-// what on times along the speed, what on numbers along these.
+// Every term of the backward sweep by which metal hardens, warms by its work and by friction, by which heat flows and skins heal,
+// is needed, and tests of this kind see it: on the block under a tilted die of dropped_terms.cc, and then under another one,
+// of metal that hardens and softens as it warms, with friction after Tresca and conduction, the adjoint of the spread of
+// temperatures at the end agrees with replayed central differences along the nodes at random, the speed of the die, the numbers
+// of heat and the times of waiting; and a sweep that leaves out any one term does not. The sweep with omissions is made of the
+// library's steps as Increment::reverse is: complete, it agrees with adjoint_sweep. What depends on positions and velocities
+// must show along the nodes, what on times along the speed or the times of waiting, what on numbers along these.
 
 #include <deal.II/base/mpi.h>
 
 #include <retroforge/discretization/strain_history.h>
+#include <retroforge/heat/healing.h>
 #include <retroforge/objective/temperatures.h>
 #include <retroforge/steps/friction_heat.h>
 #include <retroforge/steps/warming.h>
 
-#include "../material/hot_metals.h"
+#include "two_strokes.h"
 #include "ways.h"
 
 using namespace retroforge;
@@ -26,12 +27,14 @@ namespace
   enum class Piece
   {
     none,
-    strain,     // accumulation of strain
-    warming,    // work of deformation
-    friction,   // heat of friction
-    law,        // law of the metal by strain and temperature
-    first_half, // conduction before mechanics
-    second_half // and after it
+    strain,      // accumulation of strain
+    warming,     // work of deformation
+    friction,    // heat of friction
+    law,         // law of the metal by strain and temperature
+    first_half,  // conduction before mechanics
+    second_half, // and after it
+    waiting,     // conduction before a stroke
+    healing      // of skins meanwhile
   };
 
   enum class Part
@@ -74,7 +77,12 @@ namespace
     {"first half of conduction by process", Piece::first_half, Part::number, 2},
     {"second half of conduction by position", Piece::second_half, Part::position, 0},
     {"second half of conduction by temperature and skin", Piece::second_half, Part::state, 0},
-    {"second half of conduction by process", Piece::second_half, Part::number, 2}};
+    {"second half of conduction by process", Piece::second_half, Part::number, 2},
+    {"conduction before strokes by its time", Piece::waiting, Part::time, 3},
+    {"healing by position", Piece::healing, Part::position, 0},
+    {"healing by the skin", Piece::healing, Part::state, 0},
+    {"healing by numbers", Piece::healing, Part::number, 2},
+    {"healing by its time", Piece::healing, Part::time, 3}};
 
   /// What a stage's history takes back, without the omitted part of one piece.
   class ReverseHistory
@@ -172,6 +180,137 @@ namespace
     }
   }
 
+  /// A time before a stroke: in the surroundings, or on the resting die.
+  struct Spell
+  {
+    std::vector<bool> touch;
+    double            time;
+
+    ThermalSurface<double>                                       surface    = {};
+    NodeField<double>                                            not_healed = {};
+    std::vector<std::pair<NodeField<double>, NodeField<double>>> before     = {}; // temperatures and skins
+  };
+
+  /// What comes before the stroke of an operation, as conduct_over() has it, to be gone back over without a term.
+  class Wait
+  {
+  public:
+    /// @param start  of the operation; its temperatures and skins are taken over the wait
+    Wait(const RecordedRun         &run,
+         const NetworkEdges        &edges,
+         const StrokeStep          &at,
+         WorkpieceState<3, double> &start)
+        : process_(run.process())
+        , operation_(at.operation)
+        , dies_(process_.over({0., 0., operation_}).dies)
+        , view_(run.scene.view(dies_, start.X))
+        , edges_(edges)
+        , network_(conduction_network(run.scene.mesh, edges, start.X))
+    {
+      const Waiting<double> &waiting = process_.operations[operation_].waiting;
+      std::vector<bool>      touch(dies_.size(), false);
+      spells_.push_back({touch, waiting.transfer});
+      touch[waiting.resting_die] = true;
+      spells_.push_back({touch, waiting.dwell});
+      for (Spell &spell : spells_)
+      {
+        spell.surface    = thermal_surface(view_, spell.touch, process_.heat.gap);
+        spell.not_healed = start.skin;
+        heal_skins(spell.surface, process_.heat, spell.time, start.skin);
+        for (unsigned int s = 0; s < process_.heat.waiting_steps; ++s)
+        {
+          spell.before.emplace_back(start.temperature, start.skin);
+          conduct(flow(spell), part(s) * spell.time, start.temperature, start.skin);
+        }
+      }
+    }
+
+    void reverse(const Omission &omission, Costate &costate) const
+    {
+      WorkpieceState<3, double> &workpiece   = costate.workpiece;
+      ConductionNetwork<double>  network_bar = no_derivatives(network_);
+      PhysicsBar                 physics(view_.dies);
+      Waiting<double>            times;
+      for (const bool dwells : {true, false})
+      {
+        const Spell      &spell = spells_[dwells];
+        ThermalSurfaceBar surface_bar(spell.surface), healing_bar(spell.surface);
+        PhysicsBar        healing(view_.dies);
+        double           &time         = dwells ? times.dwell : times.transfer;
+        double            healing_time = 0.;
+        for (unsigned int s = process_.heat.waiting_steps; s-- > 0;)
+        {
+          double      dt_bar = 0.;
+          HeatFlowBar bar{network_bar,
+                          surface_bar,
+                          physics.heat,
+                          dwells ? physics.heat.dwell_film : physics.heat.contact_film,
+                          physics.dies,
+                          dt_bar};
+          reverse_conduct(flow(spell),
+                          part(s) * spell.time,
+                          spell.before[s].first,
+                          spell.before[s].second,
+                          workpiece.temperature,
+                          workpiece.skin,
+                          bar);
+          if (omission.piece != Piece::waiting || omission.part != Part::time)
+            time += part(s) * dt_bar;
+        }
+        const auto keeps = [&](const Part of) {
+          return omission.piece != Piece::healing || omission.part != of;
+        };
+        const NodeField<double> skin_bar = workpiece.skin;
+        reverse_heal_skins(spell.surface,
+                           process_.heat,
+                           spell.time,
+                           spell.not_healed,
+                           workpiece.skin,
+                           {healing_bar, healing.heat, healing_time});
+        if (!keeps(Part::state))
+          workpiece.skin = skin_bar;
+        if (keeps(Part::position))
+          add_numbers(healing_bar.weight, surface_bar.weight);
+        if (keeps(Part::number))
+          add_numbers(healing.heat, physics.heat);
+        if (keeps(Part::time))
+          time += healing_time;
+        reverse_thermal_surface(
+          view_, spell.surface, process_.heat.gap, surface_bar, workpiece.X, physics.dies);
+      }
+      reverse_conduction_network(view_.mesh, edges_, view_.X, network_bar, workpiece.X);
+      costate.process.add_once([&](Process<double> &of) {
+        reverse_over(process_, {0., 0., operation_}, 0., physics, of);
+        add_numbers(times, of.operations[operation_].waiting);
+      });
+    }
+
+  private:
+    HeatFlow<double> flow(const Spell &spell) const
+    {
+      const bool dwells = &spell == &spells_.back();
+      return {edges_,
+              network_,
+              spell.surface,
+              process_.heat,
+              dwells ? process_.heat.dwell_film : process_.heat.contact_film,
+              dies_};
+    }
+
+    double part(const unsigned int s) const
+    {
+      return (2. * s + 1.) / (double(process_.heat.waiting_steps) * process_.heat.waiting_steps);
+    }
+
+    const Process<double>              &process_;
+    const unsigned int                  operation_;
+    const std::vector<DieState<double>> dies_;
+    const ContactView<double>           view_;
+    const NetworkEdges                 &edges_;
+    const ConductionNetwork<double>     network_;
+    std::vector<Spell>                  spells_;
+  };
+
   /// The sweep of the first objective, one of the end, on one mesh.
   AdjointResult sweep(RecordedRun &run, const Omission &omission)
   {
@@ -199,7 +338,17 @@ namespace
                                   const WorkpieceState<3, double> &before) {
       const Piece piece = half == HalfOfIncrement::first ? Piece::first_half : Piece::second_half;
       without(omission.piece == piece, omission.part, costate, [&] {
-        reverse_conduct_over(half, run.scene, edges, run.process(), place(record), X, before, costates);
+        Process<double>           process = run.process();
+        WorkpieceState<3, double> waited  = before;
+        std::optional<Wait>       wait;
+        if (half == HalfOfIncrement::first && record.stroke == 0.)
+        {
+          wait.emplace(run, edges, place(record), waited);
+          process.operations[record.operation].waiting = {};
+        }
+        reverse_conduct_over(half, run.scene, edges, process, place(record), X, waited, costates);
+        if (wait)
+          wait->reverse(omission, costate);
       });
     };
     for (unsigned int i = run.records.size(); i-- > 0;)
@@ -209,7 +358,9 @@ namespace
       const NodalVectors<double> X_end  = state.X;
       state                             = end.remembered[i].start;
       state.X                           = mechanics.retreat(run.process(), X_end, record);
-      state.velocity = i > 0 ? mechanics.mean_velocity(run.records[i - 1]) : NodalVectors<double>();
+      state.velocity.clear(); // an operation begins at rest
+      if (i > 0 && run.records[i - 1].operation == record.operation)
+        state.velocity = mechanics.mean_velocity(run.records[i - 1]);
       conduct_back(HalfOfIncrement::second, record, X_end, end.remembered[i].worked);
       WorkpieceState<3, double> half = state;
       conduct_over(HalfOfIncrement::first, run.scene, edges, run.process(), place(record), state.X, half);
@@ -232,8 +383,8 @@ namespace
 int main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  Parameters                               p = conducting(tilted_block());
-  p.press.scheme                             = "euler";
+  Parameters                               p = block_of_two_strokes();
+  p.press.increments                         = 2;
   for (DieParameters &die : p.dies)
     die.friction_law = "Tresca";
   Objectives hottest;
@@ -243,15 +394,24 @@ int main(int argc, char **argv)
                      invalid_index,
                      nullptr,
                      std::make_unique<TemperatureObjective>(TemperatureExtreme::spread, 5.)});
-  RecordedRun                run(p, {p.dies[0].die(), p.dies[1].die()}, std::move(hottest));
+  ForgingProblem problem                            = two_strokes(p, Meshes::one, std::move(hottest));
+  problem.process.operations[1].waiting.resting_die = 2; // a tilted one, which nodes touch in part
+  RecordedRun                run(std::move(problem));
   const NodalVectors<double> still(run.scene.mesh.n_nodes());
   const std::vector<Way>     ways    = {{{"random X_0", random_vectors(still.size()), 0., 0., {}}},
                                         {{"die speed", still, 1., 0., {}}},
-                                        {{"numbers of heat", still, 0., 0., {}}, [&](Process<double> &dot) {
+                                        {{"numbers of heat", still, 0., 0., {}},
+                                         [&](Process<double> &dot) {
                                     HeatLaw<double> heat = run.process().heat;
                                     for (unsigned int i = 0; i < heat.info().size(); ++i)
                                       number_of(dot.heat, i) =
                                         number_of(heat, i) / (1. + i); // not in proportion
+                                  }},
+                                        {{"times of waiting", still, 0., 0., {}}, [](Process<double> &dot) {
+                                    dot.operations[0].waiting.transfer = 0.3;
+                                    dot.operations[0].waiting.dwell    = 0.05;
+                                    dot.operations[1].waiting.transfer = 0.1;
+                                    dot.operations[1].waiting.dwell    = 0.2;
                                   }}};
   const AdjointResult        library = run.adjoint(), complete = sweep(run, {"", Piece::none});
   std::vector<double>        differences;
