@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""Every objective by every parameter:  run.py BUILD flat | curved | quick | ranks | several | many | methods
+"""Every objective by every parameter:  run.py BUILD flat | curved | turned | quick | ranks | several | many | methods
 
-flat: a tilted plane, nodes that arrive. curved: the tripod, contact that changes, two remeshings. quick: the same with
+flat: a tilted plane, nodes that arrive. curved: the tripod, contact that changes, two remeshings. turned: the least temperature, no node of
+a plane of symmetry over an edge of a die. quick: the same with
 fewer parameters and steps. ranks: on one, two and three. several: what three objectives at once cost. many: what many
 parameters cost. methods: adjoint against direct method by the number of parameters."""
 import os
@@ -170,6 +171,10 @@ def main():
     if what == "curved":
         curved(build, "curved", PATH + END, CURVED_PARAMETERS + HOT_PARAMETERS, "1e-3, 1e-4, 3e-5, 1e-5, 1e-6",
                {"Press/stroke": 18, "Press/increments": 18, "Remeshing/every": 7})
+    elif what == "turned":
+        curved(build, "turned", ["least temperature"], HOT_PARAMETERS, "1e-5, 1e-6",
+               {**HOT, **TIGHT, "Press/stroke": 18, "Press/increments": 18, "Remeshing/when": "never", "Die upper/rotation angle": 2.3,
+                "Die lower/rotation angle": 2.3})
     elif what == "quick":
         curved(build, "quick", ["energy", "late force", "dimensionless fold", "mean strain", "filling"],
                ["billet/radius", "die upper/depth"], "1e-4, 1e-5, 1e-6", {})
