@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
 """Conduction in whole runs: the heat of a closed body, temperatures that stay within what they are made of on twenty
-random scenes, the order in time, derivatives, and what heat costs. run.py BUILD balance | bounds | order | derivatives | cost"""
+random scenes, the order in time, derivatives, slopes against the trend, and what heat costs.
+run.py BUILD balance | bounds | order | derivatives | trend | cost"""
 import csv
 import math
 import os
@@ -18,6 +19,7 @@ import case_tools  # noqa: E402
 BUILD = sys.argv[1]
 UPSETTING = os.path.join(HERE, "upsetting.prm")
 HUB = os.path.join(PRM, "tutorial", "hub", "hub.prm")
+HOT_HUB = os.path.join(PRM, "verification", "optimisation", "hot_hub.prm")
 CLOSED = {"Heat/contact film": 0, "Heat/air film": 0, "Heat/emissivity": 0}
 
 
@@ -104,10 +106,40 @@ def derivatives():
     case_tools.judge_check(BUILD, UPSETTING, settings, "heat")
 
 
+def trend():
+    """The hot hub by the exponent of hardening, twelve designs within 20 %, meshes decided anew: the mean of their gradients against the slope of a parabola
+    through their energies, and the standard deviation of that. Narrow intervals mislead: slopes through neighbours are printed, too."""
+    settings = {"Material/law": "power", "Material/consistency": 32, "Material/strain rate sensitivity": 0.15,
+                "Material/further numbers": "n: 0.15, q0: 0.05, beta: 0.0025, T0: 1100", "Objectives/names": "energy", "Design/parameters": "material/n",
+                "Optimisation/objective": "", "Optimisation/at most": "", "Optimisation/lower bounds": "", "Optimisation/upper bounds": "",
+                "Optimisation/scales": "", "Scan/points": 12, "Scan/range": 0.2, "Scan/fit degree": 2, "Output/fields every": 0}
+    _, text = case_tools.run(BUILD, "scan", HOT_HUB, settings, "trend", may_fail=True)
+    if not os.path.exists(os.path.join("trend", "scan.csv")):
+        sys.exit(text)
+    with open(os.path.join("trend", "scan.csv"), encoding="utf-8") as table:
+        rows = [[float(row[name]) for name in ("value", "energy [mJ]", "energy: gradient", "energy: fit", "energy: slope of the fit")]
+                for row in csv.DictReader(table) if not row["failure"]]
+    n, energies, gradients, fit, slopes = zip(*rows)
+    mean, slope = statistics.mean(gradients), statistics.mean(slopes)  # of a parabola, at the middle
+    off = [energy - on_it for energy, on_it in zip(energies, fit)]
+    squares = sum((x - statistics.mean(n)) ** 2 for x in n)
+    scatter = math.sqrt(sum(x * x for x in off) / (len(off) - 3))
+    print(f"{len(n)} designs: gradients {mean:.0f}, standard deviation {statistics.stdev(gradients):.0f}; trend {slope:.0f} +- {scatter / math.sqrt(squares):.0f}; "
+          f"energies scatter by {scatter / statistics.mean(energies):.1e}")
+    fours = [chord(n[i:i + 4], energies[i:i + 4]) for i in range(len(n) - 3)]
+    print(f"slopes through four neighbours: {min(fours):.0f} to {max(fours):.0f}")
+    case_tools.figure("trend_by_n", abs(mean / slope - 1))
+
+
+def chord(x, y):
+    """Slope of the line through some points."""
+    middle = statistics.mean(x)
+    return sum((a - middle) * b for a, b in zip(x, y)) / sum((a - middle) ** 2 for a in x)
+
+
 def cost():
     """Seconds of a hub of 40 increments with Tresca's friction, of the metal at its first temperature, warmed by work, and with conduction;
     and of the backward sweep over the forward run."""
-    case = os.path.join(PRM, "verification", "optimisation", "hot_hub.prm")
     modes = {"none": {"Heat/heating": "none", "Heat/transfer time": 0, "Heat/dwell time": 0},
              "adiabatic": {"Heat/heating": "adiabatic", "Heat/transfer time": 0, "Heat/dwell time": 0}, "conduction": {}}
     settings = {"Press/stroke": 16, "Press/increments": 40, "Objectives/names": "energy", "Optimisation/objective": "", "Optimisation/at most": "",
@@ -115,7 +147,7 @@ def cost():
     seconds = {name: [] for name in modes}
     for repeat in range(3):
         for name, heat in modes.items():
-            summary, _ = case_tools.run(BUILD, "gradient", case, {**settings, **heat}, "run_cost")
+            summary, _ = case_tools.run(BUILD, "gradient", HOT_HUB, {**settings, **heat}, "run_cost")
             wall = summary["wall_seconds"]
             seconds[name].append((wall["total"] - wall["adjoint"], wall["adjoint"]))
     forward = {name: statistics.median(pair[0] for pair in pairs) for name, pairs in seconds.items()}
@@ -128,4 +160,4 @@ def cost():
 
 
 if __name__ == "__main__":
-    {"balance": balance, "bounds": bounds, "order": order, "derivatives": derivatives, "cost": cost}[sys.argv[2]]()
+    {"balance": balance, "bounds": bounds, "order": order, "derivatives": derivatives, "trend": trend, "cost": cost}[sys.argv[2]]()
