@@ -150,7 +150,8 @@ namespace retroforge
         velocity                       = epoch->increment.mechanics.mean_velocity(earlier);
         operation                      = earlier.operation;
       }
-      const IncrementRecord &record = run.record(i);
+      // Its own: of a recording on the disk the next one that is read takes the place of this one.
+      const IncrementRecord record = run.record(i);
       if (record.operation != operation)
         velocity.clear();
       const unsigned int         before = epoch->system.n_solves;
