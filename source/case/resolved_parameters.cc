@@ -149,7 +149,7 @@ namespace retroforge
     process.heat       = heat.law();
     if (process.heat.conducts())
       operation.waiting = heat.waiting(resting_die());
-    process.contact    = open_contact(size).law(process.material.initial_law(), speed);
+    process.contact = open_contact(size).law(process.material.initial_law(), speed);
     return process;
   }
 
