@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/adjoint/sweep.h>
 #include <retroforge/steps/change_of_mesh.h>
+#include <retroforge/steps/moved_ends.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -92,23 +93,56 @@ namespace retroforge
     }
 
     /// What they take from the times of the increment, which all ranks know.
+    /// @param of_length  gets what they take from its length; the costate itself, or that of moved ends
     void reverse_times(const RecordedForging               &run,
                        const std::vector<PathRows<double>> &rows_bar,
                        const Combination                   &combination,
                        const unsigned int                   i,
                        const IncrementRecord               &record,
-                       Costate                             &costate)
+                       Costate                             &costate,
+                       Costate                             &of_length)
     {
-      PhysicsBar bar(run.model.dies);
+      PhysicsBar length(run.model.dies), time(run.model.dies);
       for (std::size_t o = 0; o < run.objectives.size(); ++o)
         if (run.objectives[o].path)
         {
-          bar.dt += combination.weights[o] * rows_bar[o][i].dt;
-          bar.time += combination.weights[o] * rows_bar[o][i].time;
+          length.dt += combination.weights[o] * rows_bar[o][i].dt;
+          time.time += combination.weights[o] * rows_bar[o][i].time;
         }
-      if (bar.dt != 0. || bar.time != 0.)
-        costate.process.add_once(
-          [&](Process<double> &part) { reverse_over(run.process, place(record), 0., bar, part); });
+      const auto add = [&](const PhysicsBar &bar, Costate &to) {
+        to.process.add_once([&](Process<double> &part) { reverse_over(run.process, place(record), 0., bar, part); });
+      };
+      if (length.dt != 0.)
+        add(length, of_length);
+      if (time.time != 0.)
+        add(time, costate);
+    }
+
+    /// What the way back knows of the increment after the one at hand.
+    struct LaterIncrement
+    {
+      unsigned int operation = 0;
+      double       step      = 0.; // [mm]; none, 0
+    };
+
+    /// Costates that take what falls on an increment apart from what fell on the process before.
+    std::vector<Costate> apart(const RecordedForging &run, std::vector<Costate> &costates)
+    {
+      std::vector<Costate> parts;
+      for (Costate &costate : costates)
+        parts.push_back({std::move(costate.workpiece),
+                         {no_process_derivatives(run.process, run.model.dies), run.model.comm}});
+      return parts;
+    }
+
+    /// Takes such costates together again. Returns what fell on the ends of the increment.
+    MovedEnds<double>
+    together(const RecordedForging &run, const IncrementRecord &record, Costate &&part, Costate &costate)
+    {
+      costate.workpiece         = std::move(part.workpiece);
+      const Process<double> bar = part.process.complete();
+      costate.process.add_once([&](Process<double> &to) { add<Process<double>>(1., bar, to); });
+      return reverse_moved_ends(run.process, place(record), bar);
     }
   } // namespace
 
@@ -137,6 +171,10 @@ namespace retroforge
     std::shared_ptr<MeshEpoch> epoch    = end.epoch;
     AdjointSweep               sweep;
 
+    // Derivatives in how far the end of the increment at hand moves; 0 where it does not.
+    std::vector<double> end_bar(costates.size(), 0.);
+    LaterIncrement      later;
+
     const WorkpieceState<3, double> no_history;
     epoch->increment.mechanics.forget();
     for (unsigned int i = end.increments; i-- > 0;)
@@ -162,14 +200,38 @@ namespace retroforge
       state.velocity = velocity;
       if (record.remesh && !velocity.empty())
         state.velocity = record.remesh->transfer.apply<Vec3>(velocity);
+      const bool moves_end =
+        run.ends_follow && later.step > 0. && later.operation == record.operation;
+      const bool moves_start = run.ends_follow && i > 0 && record.operation == operation;
+      std::vector<Costate> parts;
+      if (moves_end || moves_start)
+        parts = apart(run, costates);
+      std::vector<Costate> &of_increment = parts.empty() ? costates : parts;
       epoch->increment.reverse(run.process,
                                state,
                                end.remembered.empty() ? no_history : end.remembered[i].worked,
                                record,
                                source_of(run, rows_bar, combinations, i),
-                               costates);
+                               of_increment);
       for (std::size_t j = 0; j < costates.size(); ++j)
-        reverse_times(run, rows_bar, combinations[j], i, record, costates[j]);
+        reverse_times(run, rows_bar, combinations[j], i, record, costates[j], of_increment[j]);
+      for (std::size_t j = 0; j < parts.size(); ++j)
+      {
+        const MovedEnds<double> ends_bar = together(run, record, std::move(parts[j]), costates[j]);
+        if (moves_end)
+        {
+          end_bar[j] += ends_bar.end;
+          FollowingEnd(epoch->scene.mesh,
+                          X,
+                          epoch->increment.mechanics.mean_velocity(record),
+                          run.process,
+                          place(record),
+                          later.step)
+            .reverse_moved(end_bar[j], costates[j].workpiece.X);
+        }
+        end_bar[j] = moves_start ? end_bar[j] + ends_bar.start : 0.;
+      }
+      later = {record.operation, record.step};
       sweep.linear_solves += epoch->system.n_solves - before;
       if (record.remesh)
       {
@@ -185,13 +247,19 @@ namespace retroforge
         state.velocity = velocity;
         const StrokeStep at{record.stroke, 0., record.operation};
         const auto       states = run.process.over(at).dies;
-        for (Costate &costate : costates)
+        for (std::size_t j = 0; j < costates.size(); ++j)
         {
           PhysicsBar bar(run.model.dies);
-          costate.workpiece = reverse_change_mesh(
-            epoch->scene.mesh, *remesh, state, run.model.dies, states, costate.workpiece, bar.dies);
-          costate.process.add_once(
+          costates[j].workpiece = reverse_change_mesh(
+            epoch->scene.mesh, *remesh, state, run.model.dies, states, costates[j].workpiece, bar.dies);
+          costates[j].process.add_once(
             [&](Process<double> &part) { reverse_over(run.process, at, 0., bar, part); });
+          if (moves_start)
+          {
+            Process<double> process_bar = no_process_derivatives(run.process, run.model.dies);
+            reverse_over(run.process, at, 0., bar, process_bar);
+            end_bar[j] += reverse_moved_ends(run.process, at, process_bar).start;
+          }
         }
       }
     }
@@ -205,6 +273,28 @@ namespace retroforge
     return sweep;
   }
 
+  namespace
+  {
+    /// That of an increment which begins at X, values nominal.
+    FollowingEnd end_of(const RecordedForging    &run,
+                                 const MeshEpoch          &epoch,
+                                 const IncrementRecord    &record,
+                                 const double              next,
+                                 const NodalVectors<Dual> &X)
+    {
+      NodalVectors<double> at(X.size());
+      for (std::size_t k = 0; k < X.size(); ++k)
+        for (unsigned int i = 0; i < 3; ++i)
+          at[k][i] = value_of(X[k][i]);
+      return {epoch.scene.mesh,
+              at,
+              epoch.increment.mechanics.mean_velocity(record),
+              run.process,
+              place(record),
+              next};
+    }
+  } // namespace
+
   std::vector<Dual>
   tangent_sweep(const RecordedForging &run, const Process<Dual> &process, NodalVectors<Dual> X)
   {
@@ -214,22 +304,32 @@ namespace retroforge
     std::vector<PathRows<Dual>> rows(run.objectives.size());
     auto                        state = workpiece_before(process, std::move(X), epoch->scene.mesh.n_cells());
     StrokeStep                  end{0., 0.};
+    MovedEnds<Dual>             ends;
     for (unsigned int i = 0; i < run.n; ++i)
     {
+      const StrokeStep       after  = run.ends_follow && i + 1 < run.n ? place(run.record(i + 1)) : StrokeStep{0., 0.};
       const IncrementRecord &record = run.record(i);
       if (record.operation != end.operation)
         state.velocity.clear();
       if (record.remesh)
       {
-        const auto dies = process.at_stroke(record.stroke, record.operation).dies;
-        state           = change_mesh(epoch->scene.mesh, *record.remesh, state, run.model.dies, dies);
+        const StrokeStep at{record.stroke, 0., record.operation};
+        const auto       dies = with_moved_ends(process, at, {ends.end, ends.end}).over(at).dies;
+        state                 = change_mesh(epoch->scene.mesh, *record.remesh, state, run.model.dies, dies);
         epoch           = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model, run.timings);
       }
-      end = place(record);
+      end  = place(record);
+      ends = {ends.end, Dual(0.)};
+      if (after.step > 0. && after.operation == record.operation)
+        ends.end = end_of(run, *epoch, record, after.step, state.X).moved(ends.start, state.X);
+      const Process<Dual> moved = with_moved_ends(process, end, ends);
       for (auto &of_objective : rows)
+      {
         of_objective.push_back(row_of(record, process));
+        of_objective.back().dt = moved.duration(end);
+      }
       epoch->increment.tangent(
-        process,
+        moved,
         record,
         [&](const EquilibriumView<Dual> &view, const Dual &) {
           for (std::size_t o = 0; o < run.objectives.size(); ++o)

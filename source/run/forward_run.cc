@@ -153,6 +153,13 @@ namespace retroforge
     Forging::change_numerics(segment.input.parameters, state_);
   }
 
+  bool ForwardRun::ends_follow() const
+  {
+    return problem_.parameters.adjoint.increments == AdjointParameters::Increments::follow &&
+           problem_.parameters.remeshing.when == RemesherParameters::When::quality &&
+           !state_.remeshed.empty() && state_.remeshed.back() > 0;
+  }
+
   bool ForwardRun::is_left() const
   {
     return segment_ + 1 < problem_.segments.size() || running_->forging.is_left(state_);
@@ -215,7 +222,8 @@ namespace retroforge
             state_.increments,
             problem_.objectives,
             trace_.recorded(),
-            timings_};
+            timings_,
+            ends_follow()};
   }
 
   AdjointSweep ForwardRun::sweep(const std::vector<Combination> &combinations) const
@@ -233,7 +241,15 @@ namespace retroforge
                                   const Forging::Observer    &observer) const
   {
     ForgingState state = Forging::start(first_epoch_, process, X_0);
-    running_->forging.replay(process, state_.increments, recorded().record, state, observer);
+    std::optional<Forging::Nominal> nominal;
+    if (ends_follow())
+      nominal.emplace(Forging::Nominal{problem_.process, problem_.X_0});
+    running_->forging.replay(process,
+                             nominal ? &*nominal : nullptr,
+                             state_.increments,
+                             recorded().record,
+                             state,
+                             observer);
     return state;
   }
 

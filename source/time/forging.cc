@@ -5,6 +5,7 @@
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/self_crossing.h>
 #include <retroforge/steps/change_of_mesh.h>
+#include <retroforge/steps/moved_ends.h>
 #include <retroforge/time/forging.h>
 
 #include <algorithm>
@@ -103,7 +104,7 @@ namespace retroforge
   } // namespace
 
   void
-  Forging::change_mesh(const Process<double> &process, const RemeshRecord &remesh, ForgingState &state) const
+  Forging::change_mesh(const std::vector<DieState<double>> &dies, const RemeshRecord &remesh, ForgingState &state) const
   {
     state.removed_volume += remesh.removed_volume;
     const TransferOperator          &J           = remesh.transfer;
@@ -117,11 +118,7 @@ namespace retroforge
       return interpolated(
         state.epoch->scene.discretization, J.apply(V), J.apply(W.P.complete(*old.pressure_nodes())));
     };
-    auto workpiece = retroforge::change_mesh(before->scene.mesh,
-                                             remesh,
-                                             state.workpiece,
-                                             model_.dies,
-                                             process.at_stroke(state.stroke, state.operation).dies);
+    auto workpiece = retroforge::change_mesh(before->scene.mesh, remesh, state.workpiece, model_.dies, dies);
     state.left_behind.push_back(without_motion(std::exchange(state.workpiece, std::move(workpiece))));
     state.epoch  = std::make_shared<MeshEpoch>(remesh.mesh, model_, timings_);
     state.next.W = transferred(state.next.W);
@@ -161,13 +158,10 @@ namespace retroforge
   {
     const auto   timing     = timings_.scope("remeshing");
     const double repairable = remesher_.largest_repair() * state.volume - state.removed_volume;
-    record.remesh           = remesher_.remesh(state.epoch->scene.mesh,
-                                     state.workpiece.X,
-                                     process.at_stroke(state.stroke, state.operation).dies,
-                                     error_sizes(process, state),
-                                     repairable,
-                                     timings_);
-    change_mesh(process, *record.remesh, state);
+    const auto   dies       = process.at_stroke(state.stroke, state.operation).dies;
+    record.remesh           = remesher_.remesh(
+      state.epoch->scene.mesh, state.workpiece.X, dies, error_sizes(process, state), repairable, timings_);
+    change_mesh(dies, *record.remesh, state);
   }
 
   void Forging::finish_increment(const Process<double> &process,
@@ -413,31 +407,51 @@ namespace retroforge
       if (record.parameters)
         change_numerics({}, state);
       if (record.remesh)
-      {
-        change_mesh(process, *record.remesh, state);
-      }
+        change_mesh(process.at_stroke(state.stroke, state.operation).dies, *record.remesh, state);
       finish_increment(
         process, record, state.epoch->increment.recorded(process, state.workpiece, record), state, observer);
     }
   }
 
   void Forging::replay(const Process<double> &process,
+                       const Nominal         *nominal,
                        const unsigned int     n,
                        const RecordAccess    &access,
                        ForgingState          &state,
                        const Observer        &observer) const
   {
+    MovedEnds<double>    ends;
+    NodalVectors<double> X_nominal;
+    if (nominal != nullptr)
+      X_nominal = nominal->X_0;
     for (unsigned int i = 0; i < n; ++i)
     {
-      IncrementRecord record = access(i);
+      const StrokeStep after  = nominal != nullptr && i + 1 < n ? place(access(i + 1)) : StrokeStep{0., 0.};
+      IncrementRecord  record = access(i);
       record.newton = record.krylov = record.linear_solves = 0;
       enter(record.operation, state);
       if (record.remesh)
-        change_mesh(process, *record.remesh, state);
-      const InitialGuess    guess = state.epoch->increment.mechanics.recorded_guess(record);
-      const SolvedIncrement solved =
-        state.epoch->increment.forward(process, state.workpiece, true, guess, record);
-      finish_increment(process, record, solved, state, observer);
+      {
+        const StrokeStep at{record.stroke, 0., record.operation};
+        change_mesh(with_moved_ends(process, at, {ends.end, ends.end}).over(at).dies, *record.remesh, state);
+        X_nominal = record.remesh->mesh.X;
+      }
+      Mechanics &mechanics = state.epoch->increment.mechanics;
+      ends                 = {ends.end, 0.};
+      if (nominal != nullptr)
+      {
+        const NodalVectors<double> V = mechanics.mean_velocity(record);
+        if (after.step > 0. && after.operation == record.operation)
+          ends.end = FollowingEnd(state.epoch->scene.mesh, X_nominal, V, nominal->process, place(record), after.step)
+                       .moved(ends.start, state.workpiece.X);
+        const double dt = nominal->process.duration(place(record));
+        for (std::size_t k = 0; k < X_nominal.size(); ++k)
+          X_nominal[k] += dt * V[k];
+      }
+      const Process<double> moved  = with_moved_ends(process, place(record), ends);
+      const InitialGuess    guess  = mechanics.recorded_guess(record);
+      const SolvedIncrement solved = state.epoch->increment.forward(moved, state.workpiece, true, guess, record);
+      finish_increment(moved, record, solved, state, observer);
     }
   }
 } // namespace retroforge

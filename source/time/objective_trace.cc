@@ -65,6 +65,7 @@ namespace retroforge
       if (const auto &objective = objectives_[j].path)
       {
         recorded_.rows[j].push_back(row_of<double>(event.record, process_));
+        recorded_.rows[j].back().dt = event.solved.start->dt; // its end may have moved
         for (const auto &stage : event.solved.stages)
           add_integrals(*objective, stage->view(), recorded_.rows[j].back());
       }

@@ -17,8 +17,15 @@ namespace retroforge
       direct   ///< one forward sweep per parameter
     };
 
-    Method           method    = Method::adjoint;
-    double           tolerance = 1e-6;
+    enum class Increments
+    {
+      follow, ///< they end where the state does that they end at
+      hold    ///< they end at their strokes
+    };
+
+    Method           method     = Method::adjoint;
+    double           tolerance  = 1e-6;
+    Increments       increments = Increments::follow;
     ShapeDerivatives shape_derivatives;
 
     void add_parameters(dealii::ParameterHandler &prm);

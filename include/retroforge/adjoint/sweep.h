@@ -17,6 +17,8 @@ namespace retroforge
     const Objectives          &objectives;
     const RecordedObjectives  &traced; ///< of these; they have decided
     Timings                   &timings;
+    /// Whether ends of increments follow the state (steps/moved_ends.h).
+    bool ends_follow = false;
   };
 
   /// dPhi/dX_0 and dPhi/d(process) of one combination of objectives.

@@ -128,6 +128,10 @@ namespace retroforge
     Recording                  &recording() { return recording_; }
     const Recording            &recording() const { return recording_; }
 
+    /// Returns whether ends of increments follow the state in derivatives and replays (steps/moved_ends.h): where its quality
+    /// had the mesh made anew on the way.
+    bool ends_follow() const;
+
     /// Returns whether the mesh may be made anew.
     bool remeshes() const
     {

@@ -25,6 +25,13 @@ namespace retroforge
     using Observer     = std::function<void(const IncrementEvent &)>;
     using RecordAccess = std::function<const IncrementRecord &(unsigned int)>;
 
+    /// What a replay whose increments follow the state must know of the recorded run (steps/moved_ends.h).
+    struct Nominal
+    {
+      const Process<double>      &process;
+      const NodalVectors<double> &X_0;
+    };
+
     /// @param end  where the run goes: that of the process, or where other numerics begin to hold
     Forging(const ForgingModel    &model,
             const PressParameters &press,
@@ -55,14 +62,17 @@ namespace retroforge
                  const Observer        &observer) const;
 
     /// Obeys the decisions of n recorded increments, and starts each solve from the recorded one.
+    /// @param nominal  the recorded run, where ends of increments follow the state; null: they stay
     void replay(const Process<double> &process,
+                const Nominal         *nominal,
                 unsigned int           n,
                 const RecordAccess    &access,
                 ForgingState          &state,
                 const Observer        &observer = {}) const;
 
     /// Takes the state to another mesh as recorded: the workpiece by the step steps/change_of_mesh.h.
-    void change_mesh(const Process<double> &process, const RemeshRecord &remesh, ForgingState &state) const;
+    /// @param dies  at its stroke
+    void change_mesh(const std::vector<DieState<double>> &dies, const RemeshRecord &remesh, ForgingState &state) const;
 
   private:
     /// Takes the state to the start of an operation, unless it is in it: other dies, which have not met the

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/mesh/mesh_quality.h>
+#include <retroforge/steps/process.h>
+
+/// @file
+/// Where increments end at other values of the design.
+///
+/// A mesh is made anew for what the metal did to it, so that a forging that is ahead of another by some stroke
+/// has its new mesh by that stroke sooner. The force jumps there, from that of a mesh that is drawn out to that
+/// of a better one, mostly down. Were the strokes of remeshings held while the design moves, all that forces
+/// grow within a mesh would count in a derivative, and nothing of what they fall between two: that of
+/// the energy by the offset of a die would be the force at the end and the sum of these jumps, up to 14 % of it.
+/// So, where meshes are made anew by their quality, each increment but the last ends sooner as the state at its start is ahead,
+///   s'_end = s_end + b t/(b^2 + t^2)^(1/2),
+///   t = s'_start - s_start - step (e(U), e(X - X_nominal)) / (e(U), e(U)),   e(U) = dev sym grad U,
+/// U the motion of the nominal increment, integrals over its mesh: the last term is the stroke by which the cells are
+/// strained farther than in the nominal run, along the strains of that increment. b, half of the shorter one of the
+/// increments that meet there, keeps steps positive. Were only those ends moved at which a mesh is made anew, the two increments
+/// there would become longer and shorter by all of it, and what arrives at dies in these would make slopes rough.
+/// The nominal run is as it was: all this is for replays and derivatives. A run that decides anew remeshes between its
+/// own increments: its energies jump where that falls into another one, and this derivative is that of the trend across
+/// these jumps, not that between two.
+namespace retroforge
+{
+  /// By how much an increment begins and ends beside the strokes of its record [mm].
+  template <typename Number>
+  struct MovedEnds
+  {
+    Number start = Number(0.), end = Number(0.);
+  };
+
+  /// Returns the process in which a recorded increment, at its recorded place, is that with moved ends: its dies
+  /// begin where the stroke has them that it begins at, and its time is in proportion to its length.
+  /// With no length, that of the dies at the start of it.
+  template <typename Number>
+  Process<Number>
+  with_moved_ends(const Process<Number> &process, const StrokeStep &at, const MovedEnds<Number> &moved);
+
+  /// Returns the derivatives in the ends, where they have not moved, of a scalar whose derivatives in
+  /// with_moved_ends() are `bar`. Those in the process itself are `bar`, too.
+  MovedEnds<double>
+  reverse_moved_ends(const Process<double> &process, const StrokeStep &at, const Process<double> &bar);
+
+  /// How the end of an increment follows the positions at its start.
+  class FollowingEnd
+  {
+  public:
+    /// @param mesh      of the increment
+    /// @param X         nominal positions at its start [mm]
+    /// @param V         nominal mean velocity of nodes over it [mm/s]
+    /// @param nominal   the process of the nominal run
+    /// @param at        the increment
+    /// @param next      length of the next one [mm]
+    FollowingEnd(const TetMesh              &mesh,
+                 const NodalVectors<double> &X,
+                 const NodalVectors<double> &V,
+                 const Process<double>      &nominal,
+                 const StrokeStep           &at,
+                 double                      next);
+
+    /// Returns by how much the increment ends beside its record [mm].
+    /// @param start  by how much it begins there
+    template <typename Number>
+    Number moved(const Number &start, const NodalVectors<Number> &X) const;
+
+    /// Adds the derivatives of  bar * moved()  in X, at the nominal positions; that in the start is bar.
+    void reverse_moved(double bar, NodalVectors<double> &X_bar) const;
+
+  private:
+    const NodalVectors<double> X_;
+    NodalVectors<double>       gradient_; ///< of t in X [mm/mm]
+    const double               most_;     ///< b
+  };
+} // namespace retroforge
