@@ -93,29 +93,31 @@ namespace retroforge
     }
 
     /// What they take from the times of the increment, which all ranks know.
-    /// @param of_length  gets what they take from its length; the costate itself, or that of moved ends
-    void reverse_times(const RecordedForging               &run,
-                       const std::vector<PathRows<double>> &rows_bar,
-                       const Combination                   &combination,
-                       const unsigned int                   i,
-                       const IncrementRecord               &record,
-                       Costate                             &costate,
-                       Costate                             &of_length)
+    /// @return what they take from its ends
+    MovedEnds<double> reverse_rows(const RecordedForging               &run,
+                                   const std::vector<PathRows<double>> &rows_bar,
+                                   const Combination                   &combination,
+                                   const unsigned int                   i,
+                                   const IncrementRecord               &record,
+                                   Costate                             &costate)
     {
-      PhysicsBar length(run.model.dies), time(run.model.dies);
+      PhysicsBar        bar(run.model.dies);
+      MovedEnds<double> ends_bar;
+      const double      dt = run.process.duration(place(record));
       for (std::size_t o = 0; o < run.objectives.size(); ++o)
         if (run.objectives[o].path)
         {
-          length.dt += combination.weights[o] * rows_bar[o][i].dt;
-          time.time += combination.weights[o] * rows_bar[o][i].time;
+          const double weight = combination.weights[o];
+          bar.dt += weight * rows_bar[o][i].dt;
+          bar.time += weight * rows_bar[o][i].time;
+          const MovedEnds<double> of_row = reverse_row(record, dt, rows_bar[o][i]);
+          ends_bar.start += weight * of_row.start;
+          ends_bar.end += weight * of_row.end;
         }
-      const auto add = [&](const PhysicsBar &bar, Costate &to) {
-        to.process.add_once([&](Process<double> &part) { reverse_over(run.process, place(record), 0., bar, part); });
-      };
-      if (length.dt != 0.)
-        add(length, of_length);
-      if (time.time != 0.)
-        add(time, costate);
+      if (bar.dt != 0. || bar.time != 0.)
+        costate.process.add_once(
+          [&](Process<double> &part) { reverse_over(run.process, place(record), 0., bar, part); });
+      return ends_bar;
     }
 
     /// What the way back knows of the increment after the one at hand.
@@ -200,8 +202,7 @@ namespace retroforge
       state.velocity = velocity;
       if (record.remesh && !velocity.empty())
         state.velocity = record.remesh->transfer.apply<Vec3>(velocity);
-      const bool moves_end =
-        run.ends_follow && later.step > 0. && later.operation == record.operation;
+      const bool moves_end   = run.ends_follow && later.step > 0. && later.operation == record.operation;
       const bool moves_start = run.ends_follow && i > 0 && record.operation == operation;
       std::vector<Costate> parts;
       if (moves_end || moves_start)
@@ -214,22 +215,24 @@ namespace retroforge
                                source_of(run, rows_bar, combinations, i),
                                of_increment);
       for (std::size_t j = 0; j < costates.size(); ++j)
-        reverse_times(run, rows_bar, combinations[j], i, record, costates[j], of_increment[j]);
-      for (std::size_t j = 0; j < parts.size(); ++j)
       {
-        const MovedEnds<double> ends_bar = together(run, record, std::move(parts[j]), costates[j]);
+        const MovedEnds<double> of_rows =
+          reverse_rows(run, rows_bar, combinations[j], i, record, costates[j]);
+        if (parts.empty())
+          continue;
+        const MovedEnds<double> of_work = together(run, record, std::move(parts[j]), costates[j]);
         if (moves_end)
         {
-          end_bar[j] += ends_bar.end;
+          end_bar[j] += of_rows.end + of_work.end;
           FollowingEnd(epoch->scene.mesh,
-                          X,
-                          epoch->increment.mechanics.mean_velocity(record),
-                          run.process,
-                          place(record),
-                          later.step)
+                       X,
+                       epoch->increment.mechanics.mean_velocity(record),
+                       run.process,
+                       place(record),
+                       later.step)
             .reverse_moved(end_bar[j], costates[j].workpiece.X);
         }
-        end_bar[j] = moves_start ? end_bar[j] + ends_bar.start : 0.;
+        end_bar[j] = moves_start ? end_bar[j] + of_rows.start + of_work.start : 0.;
       }
       later = {record.operation, record.step};
       sweep.linear_solves += epoch->system.n_solves - before;
@@ -277,10 +280,10 @@ namespace retroforge
   {
     /// That of an increment which begins at X, values nominal.
     FollowingEnd end_of(const RecordedForging    &run,
-                                 const MeshEpoch          &epoch,
-                                 const IncrementRecord    &record,
-                                 const double              next,
-                                 const NodalVectors<Dual> &X)
+                        const MeshEpoch          &epoch,
+                        const IncrementRecord    &record,
+                        const double              next,
+                        const NodalVectors<Dual> &X)
     {
       NodalVectors<double> at(X.size());
       for (std::size_t k = 0; k < X.size(); ++k)
@@ -307,7 +310,8 @@ namespace retroforge
     MovedEnds<Dual>             ends;
     for (unsigned int i = 0; i < run.n; ++i)
     {
-      const StrokeStep       after  = run.ends_follow && i + 1 < run.n ? place(run.record(i + 1)) : StrokeStep{0., 0.};
+      const StrokeStep after =
+        run.ends_follow && i + 1 < run.n ? place(run.record(i + 1)) : StrokeStep{0., 0.};
       const IncrementRecord &record = run.record(i);
       if (record.operation != end.operation)
         state.velocity.clear();
@@ -316,7 +320,7 @@ namespace retroforge
         const StrokeStep at{record.stroke, 0., record.operation};
         const auto       dies = with_moved_ends(process, at, {ends.end, ends.end}).over(at).dies;
         state                 = change_mesh(epoch->scene.mesh, *record.remesh, state, run.model.dies, dies);
-        epoch           = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model, run.timings);
+        epoch                 = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model, run.timings);
       }
       end  = place(record);
       ends = {ends.end, Dual(0.)};
@@ -324,10 +328,7 @@ namespace retroforge
         ends.end = end_of(run, *epoch, record, after.step, state.X).moved(ends.start, state.X);
       const Process<Dual> moved = with_moved_ends(process, end, ends);
       for (auto &of_objective : rows)
-      {
-        of_objective.push_back(row_of(record, process));
-        of_objective.back().dt = moved.duration(end);
-      }
+        of_objective.push_back(row_of(record, process, ends));
       epoch->increment.tangent(
         moved,
         record,

@@ -86,7 +86,7 @@ namespace retroforge
   template <typename Number>
   Number PathWindow::overlap(const PathRow<Number> &row) const
   {
-    const Number from = over == Over::time ? row.time : Number(row.stroke);
+    const Number from = over == Over::time ? row.time : row.stroke;
     const Number to   = over == Over::time ? Number(row.time + row.dt) : Number(row.stroke + row.step);
     const Number low  = value_of(from) < begin ? Number(begin) : from;
     const Number high = value_of(to) > end ? Number(end) : to;
@@ -97,7 +97,7 @@ namespace retroforge
   Number PathWindow::time_inside(const PathRow<Number> &row) const
   {
     const Number length = overlap(row);
-    return over == Over::time || row.step == 0. ? length : Number(row.dt * length / row.step);
+    return over == Over::time || value_of(row.step) == 0. ? length : Number(row.dt * length / row.step);
   }
 
   namespace
@@ -207,22 +207,23 @@ namespace retroforge
   template <typename Number>
   ForcePath<Number> MaximumEffort::path_of(const PathRows<Number> &rows) const
   {
-    ForcePath<Number> path{{}, {}, {}, 0.};
+    ForcePath<Number> path{{}, {}, {}, {}, 0.};
     double            end = 0., offset = 0., whole = 0.;
     for (const PathRow<Number> &row : rows)
-      whole += row.step;
+      whole += row.length;
     for (const PathRow<Number> &row : rows)
     {
-      if (row.stroke < end) // another operation, which nothing is fitted across to
+      if (row.place < end) // another operation, which nothing is fitted across to
         offset += 3. * whole;
-      end                 = row.stroke + 0.5 * row.step;
+      end                 = row.place;
       const Number length = window_.overlap(row);
       if (value_of(length) == 0.)
         continue;
       path.force.push_back(effort_.force(row.integrals));
       path.length.push_back(length);
       path.place.push_back(offset + row.stroke + 0.5 * row.step);
-      path.reach += reach_ * row.step;
+      path.recorded.push_back(offset + row.place);
+      path.reach += reach_ * row.length;
     }
     return path;
   }
@@ -242,20 +243,15 @@ namespace retroforge
     std::size_t             i = 0; // of those in the window
     for (const PathRow<double> &row : rows)
     {
-      PathRow<Dual> at         = constant(row);
-      const bool    is_inside  = window_.overlap(row) > 0.;
-      const auto    derivative = [&](Dual &input) {
-        if (!is_inside)
-          return 0.;
-        input.fastAccessDx(0) = 1.;
-        const double sum =
-          bar.force[i] * effort_.force(at.integrals).dx(0) + bar.length[i] * window_.overlap(at).dx(0);
-        input.fastAccessDx(0) = 0.;
-        return sum;
-      };
-      rows_bar.push_back({{}, derivative(at.dt), derivative(at.time), row.stroke, row.step});
-      for (Dual &integral : at.integrals)
-        rows_bar.back().integrals.push_back(derivative(integral));
+      const bool is_inside = window_.overlap(row) > 0.;
+      rows_bar.push_back(derivatives_of(
+        [&](const PathRow<Dual> &at) {
+          return is_inside
+                   ? Dual(bar.force[i] * effort_.force(at.integrals) + bar.length[i] * window_.overlap(at) +
+                          bar.place[i] * (at.stroke + 0.5 * at.step))
+                   : Dual(0.);
+        },
+        row));
       i += is_inside;
     }
     return rows_bar;

@@ -20,7 +20,7 @@ namespace retroforge
     /// Of the determinant over the square of the first moment, below which there is one point to fit.
     constexpr double one_point = 1e-12;
 
-    /// Sums of l (1 - D²) times F^4, F^4 D, F^4 D², F^3, F^3 D.
+    /// Sums of l (1 - D_r²) times F^4, F^4 D, F^4 D², F^3, F^3 D.
     template <typename Number>
     using Moments = std::array<Number, 5>;
 
@@ -29,17 +29,28 @@ namespace retroforge
       return std::abs(D) < 1. ? 1. - D * D : 0.;
     }
 
+    /// D and 1 - D_r² of increment j in the fit at i.
+    template <typename Number>
+    Number distance(const std::size_t i, const std::size_t j, const ForcePath<Number> &path)
+    {
+      return (path.place[j] - path.recorded[i]) / path.reach;
+    }
+    template <typename Number>
+    double weight(const std::size_t i, const std::size_t j, const ForcePath<Number> &path)
+    {
+      return kernel((path.recorded[j] - path.recorded[i]) / path.reach);
+    }
+
     template <typename Number>
     Moments<Number> moments_at(const std::size_t i, const ForcePath<Number> &path, const double scale)
     {
       Moments<Number> m;
       m.fill(Number(0.));
       for (std::size_t j = 0; j < path.size(); ++j)
-        if (const double D = (path.place[j] - path.place[i]) / path.reach;
-            kernel(D) > 0. && value_of(path.force[j]) > 0.)
+        if (const double w = weight(i, j, path); w > 0. && value_of(path.force[j]) > 0.)
         {
-          const Number F  = path.force[j] / scale;
-          const Number w3 = kernel(D) * path.length[j] * F * F * F, w4 = w3 * F;
+          const Number D = distance(i, j, path), F = path.force[j] / scale;
+          const Number w3 = w * path.length[j] * F * F * F, w4 = w3 * F;
           m[0] += w4;
           m[1] += w4 * D;
           m[2] += w4 * D * D;
@@ -56,13 +67,14 @@ namespace retroforge
                          ForcePath<double>       &path_bar)
     {
       for (std::size_t j = 0; j < path.size(); ++j)
-        if (const double D = (path.place[j] - path.place[i]) / path.reach;
-            kernel(D) > 0. && path.force[j] > 0.)
+        if (const double w = weight(i, j, path); w > 0. && path.force[j] > 0.)
         {
-          const double F     = path.force[j] / scale;
+          const double D = distance(i, j, path), F = path.force[j] / scale, F3 = F * F * F;
           const double of_w4 = bar[0] + D * (bar[1] + D * bar[2]), of_w3 = bar[3] + D * bar[4];
-          path_bar.force[j] += kernel(D) * path.length[j] * F * F * (4. * F * of_w4 + 3. * of_w3) / scale;
-          path_bar.length[j] += kernel(D) * F * F * F * (F * of_w4 + of_w3);
+          path_bar.force[j] += w * path.length[j] * F * F * (4. * F * of_w4 + 3. * of_w3) / scale;
+          path_bar.length[j] += w * F3 * (F * of_w4 + of_w3);
+          path_bar.place[j] +=
+            w * path.length[j] * F3 * (F * (bar[1] + 2. * D * bar[2]) + bar[4]) / path.reach;
         }
     }
 
@@ -196,14 +208,16 @@ namespace retroforge
   {
     AssertDimension(path.length.size(), path.size());
     AssertDimension(path.place.size(), path.size());
+    AssertDimension(path.recorded.size(), path.size());
     const Number limit = largest(path.force, path.length);
     return is_fitted(path) ? largest(fitted_forces(path, limit, largest_of(path.force)), path.length) : limit;
   }
 
   ForcePath<double> FittedMaximum::reverse(const ForcePath<double> &path) const
   {
-    ForcePath<double> bar{std::vector<double>(path.size(), 0.), std::vector<double>(path.size(), 0.), {}, 0.};
-    double            limit_bar = 1.;
+    const std::vector<double> none(path.size(), 0.);
+    ForcePath<double>         bar{none, none, none, {}, 0.};
+    double                    limit_bar = 1.;
     if (is_fitted(path))
     {
       const double              limit = largest(path.force, path.length), scale = largest_of(path.force);

@@ -127,14 +127,10 @@ namespace retroforge
       double       work = 0.;
       for (std::size_t s = 0; s < bar.size(); ++s)
         work += bar[s] * row.integrals[s];
-      PathRow<Dual> at         = constant({{}, row.dt, row.time, row.stroke, row.step});
-      const auto    derivative = [&](Dual &input) {
-        input.fastAccessDx(0) = 1.;
-        const double slope    = window_.time_inside(at).dx(0);
-        input.fastAccessDx(0) = 0.;
-        return work * slope;
-      };
-      rows_bar.push_back({bar, derivative(at.dt), derivative(at.time), row.stroke, row.step});
+      const PathRow<double> without{{}, row.dt, row.time, row.stroke, row.step, row.place, row.length};
+      rows_bar.push_back(derivatives_of(
+        [&](const PathRow<Dual> &at) { return Dual(work * window_.time_inside(at)); }, without));
+      rows_bar.back().integrals = bar;
       for (double &b : rows_bar.back().integrals)
         b *= time;
     }

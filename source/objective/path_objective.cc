@@ -6,7 +6,8 @@ namespace retroforge
 {
   PathRow<double> values_of(const PathRow<Dual> &row)
   {
-    PathRow<double> values{{}, row.dt.val(), row.time.val(), row.stroke, row.step};
+    PathRow<double> values{
+      {}, row.dt.val(), row.time.val(), row.stroke.val(), row.step.val(), row.place, row.length};
     for (const Dual &integral : row.integrals)
       values.integrals.push_back(integral.val());
     return values;
@@ -25,7 +26,9 @@ namespace retroforge
     return {std::vector<Dual>(row.integrals.begin(), row.integrals.end()),
             Dual(row.dt),
             Dual(row.time),
-            row.stroke,
-            row.step};
+            Dual(row.stroke),
+            Dual(row.step),
+            row.place,
+            row.length};
   }
 } // namespace retroforge

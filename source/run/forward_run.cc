@@ -240,16 +240,12 @@ namespace retroforge
                                   const NodalVectors<double> &X_0,
                                   const Forging::Observer    &observer) const
   {
-    ForgingState state = Forging::start(first_epoch_, process, X_0);
+    ForgingState                    state = Forging::start(first_epoch_, process, X_0);
     std::optional<Forging::Nominal> nominal;
     if (ends_follow())
       nominal.emplace(Forging::Nominal{problem_.process, problem_.X_0});
-    running_->forging.replay(process,
-                             nominal ? &*nominal : nullptr,
-                             state_.increments,
-                             recorded().record,
-                             state,
-                             observer);
+    running_->forging.replay(
+      process, nominal ? &*nominal : nullptr, state_.increments, recorded().record, state, observer);
     return state;
   }
 

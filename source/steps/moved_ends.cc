@@ -11,13 +11,14 @@ namespace retroforge
   Process<Number>
   with_moved_ends(const Process<Number> &process, const StrokeStep &at, const MovedEnds<Number> &moved)
   {
-    Process<Number>   to        = process;
+    Process<Number>    to        = process;
     Operation<Number> &operation = to.operations[at.operation];
     const Number       scale     = operation.path_scale;
     if (at.step > 0.)
       operation.path_scale *= 1. + (moved.end - moved.start) / at.step;
     // Dies at a stroke are where this scale takes them: at the start they must be where the given one does.
-    const Number time = (scale * (at.stroke + moved.start) - operation.path_scale * at.stroke) / process.speed(at.operation);
+    const Number time =
+      (scale * (at.stroke + moved.start) - operation.path_scale * at.stroke) / process.speed(at.operation);
     for (DieState<Number> &die : to.dies)
       die.displacement += die.velocity * time;
     return to;
@@ -25,8 +26,7 @@ namespace retroforge
 
   template Process<double>
   with_moved_ends(const Process<double> &, const StrokeStep &, const MovedEnds<double> &);
-  template Process<Dual>
-  with_moved_ends(const Process<Dual> &, const StrokeStep &, const MovedEnds<Dual> &);
+  template Process<Dual> with_moved_ends(const Process<Dual> &, const StrokeStep &, const MovedEnds<Dual> &);
 
   MovedEnds<double>
   reverse_moved_ends(const Process<double> &process, const StrokeStep &at, const Process<double> &bar)
@@ -38,8 +38,9 @@ namespace retroforge
     MovedEnds<double> moved_bar{per_stroke * time_bar, 0.};
     if (at.step > 0.)
     {
-      const double scale_bar = bar.operations[at.operation].path_scale - time_bar * at.stroke / process.speed(at.operation);
-      moved_bar.end   = scale_bar * process.operations[at.operation].path_scale / at.step;
+      const double scale_bar =
+        bar.operations[at.operation].path_scale - time_bar * at.stroke / process.speed(at.operation);
+      moved_bar.end = scale_bar * process.operations[at.operation].path_scale / at.step;
       moved_bar.start -= moved_bar.end;
     }
     return moved_bar;
@@ -77,14 +78,12 @@ namespace retroforge
   } // namespace
 
   FollowingEnd::FollowingEnd(const TetMesh              &mesh,
-                                   const NodalVectors<double> &X,
-                                   const NodalVectors<double> &V,
-                                   const Process<double>      &nominal,
-                                   const StrokeStep           &at,
-                                   const double                next)
-      : X_(X)
-      , gradient_(X.size())
-      , most_(0.5 * std::min(at.step, next))
+                             const NodalVectors<double> &X,
+                             const NodalVectors<double> &V,
+                             const Process<double>      &nominal,
+                             const StrokeStep           &at,
+                             const double                next)
+      : X_(X), gradient_(X.size()), most_(0.5 * std::min(at.step, next))
   {
     const double dt   = nominal.duration(at);
     double       norm = 0.;

@@ -5,7 +5,6 @@
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/mesh/self_crossing.h>
 #include <retroforge/steps/change_of_mesh.h>
-#include <retroforge/steps/moved_ends.h>
 #include <retroforge/time/forging.h>
 
 #include <algorithm>
@@ -103,8 +102,9 @@ namespace retroforge
     }
   } // namespace
 
-  void
-  Forging::change_mesh(const std::vector<DieState<double>> &dies, const RemeshRecord &remesh, ForgingState &state) const
+  void Forging::change_mesh(const std::vector<DieState<double>> &dies,
+                            const RemeshRecord                  &remesh,
+                            ForgingState                        &state) const
   {
     state.removed_volume += remesh.removed_volume;
     const TransferOperator          &J           = remesh.transfer;
@@ -164,11 +164,12 @@ namespace retroforge
     change_mesh(dies, *record.remesh, state);
   }
 
-  void Forging::finish_increment(const Process<double> &process,
-                                 const IncrementRecord &record,
-                                 const SolvedIncrement &solved,
-                                 ForgingState          &state,
-                                 const Observer        &observer) const
+  void Forging::finish_increment(const Process<double>   &process,
+                                 const IncrementRecord   &record,
+                                 const SolvedIncrement   &solved,
+                                 ForgingState            &state,
+                                 const Observer          &observer,
+                                 const MovedEnds<double> &ends) const
   {
     const NodalVectors<double> X_before      = state.workpiece.X;
     const CellField<double>    strain_before = state.workpiece.strain;
@@ -198,7 +199,7 @@ namespace retroforge
     ++state.increments;
     choose_depth(record.step, last_stroke(process, state) - state.stroke, state);
     if (observer)
-      observer({record, X_before, solved, state, process.whole_time(state.stroke, state.operation)});
+      observer({record, X_before, solved, state, process.whole_time(state.stroke, state.operation), ends});
   }
 
   std::optional<StepRejection> Forging::too_strained(const Process<double> &process,
@@ -442,16 +443,18 @@ namespace retroforge
       {
         const NodalVectors<double> V = mechanics.mean_velocity(record);
         if (after.step > 0. && after.operation == record.operation)
-          ends.end = FollowingEnd(state.epoch->scene.mesh, X_nominal, V, nominal->process, place(record), after.step)
-                       .moved(ends.start, state.workpiece.X);
+          ends.end =
+            FollowingEnd(state.epoch->scene.mesh, X_nominal, V, nominal->process, place(record), after.step)
+              .moved(ends.start, state.workpiece.X);
         const double dt = nominal->process.duration(place(record));
         for (std::size_t k = 0; k < X_nominal.size(); ++k)
           X_nominal[k] += dt * V[k];
       }
-      const Process<double> moved  = with_moved_ends(process, place(record), ends);
-      const InitialGuess    guess  = mechanics.recorded_guess(record);
-      const SolvedIncrement solved = state.epoch->increment.forward(moved, state.workpiece, true, guess, record);
-      finish_increment(moved, record, solved, state, observer);
+      const Process<double> moved = with_moved_ends(process, place(record), ends);
+      const InitialGuess    guess = mechanics.recorded_guess(record);
+      const SolvedIncrement solved =
+        state.epoch->increment.forward(moved, state.workpiece, true, guess, record);
+      finish_increment(moved, record, solved, state, observer, ends);
     }
   }
 } // namespace retroforge

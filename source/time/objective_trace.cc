@@ -17,17 +17,28 @@ namespace retroforge
   }
 
   template <typename Number>
-  PathRow<Number> row_of(const IncrementRecord &record, const Process<Number> &process)
+  PathRow<Number>
+  row_of(const IncrementRecord &record, const Process<Number> &process, const MovedEnds<Number> &ends)
   {
-    return {{},
-            process.duration(place(record)),
-            process.time(record.stroke, record.operation),
-            record.stroke,
-            record.step};
+    const Number    dt = process.duration(place(record));
+    PathRow<Number> row =
+      recorded_row<Number>({}, dt, process.time(record.stroke, record.operation), record.stroke, record.step);
+    row.stroke += ends.start;
+    row.step += ends.end - ends.start;
+    row.time += dt * ends.start / record.step;
+    row.dt *= row.step / record.step;
+    return row;
   }
 
-  template PathRow<double> row_of(const IncrementRecord &, const Process<double> &);
-  template PathRow<Dual>   row_of(const IncrementRecord &, const Process<Dual> &);
+  template PathRow<double>
+                         row_of(const IncrementRecord &, const Process<double> &, const MovedEnds<double> &);
+  template PathRow<Dual> row_of(const IncrementRecord &, const Process<Dual> &, const MovedEnds<Dual> &);
+
+  MovedEnds<double> reverse_row(const IncrementRecord &record, const double dt, const PathRow<double> &bar)
+  {
+    const double end = bar.step + bar.dt * dt / record.step;
+    return {bar.stroke + bar.time * dt / record.step - end, end};
+  }
 
   template <typename Number>
   FinalView<Number> final_view(const FinalObjective            &objective,
@@ -64,8 +75,7 @@ namespace retroforge
     for (std::size_t j = 0; j < objectives_.size(); ++j)
       if (const auto &objective = objectives_[j].path)
       {
-        recorded_.rows[j].push_back(row_of<double>(event.record, process_));
-        recorded_.rows[j].back().dt = event.solved.start->dt; // its end may have moved
+        recorded_.rows[j].push_back(row_of<double>(event.record, process_, event.ends));
         for (const auto &stage : event.solved.stages)
           add_integrals(*objective, stage->view(), recorded_.rows[j].back());
       }

@@ -14,8 +14,11 @@ namespace retroforge
   {
     std::vector<Number> force;  ///< [N]
     std::vector<Number> length; ///< by which increments count: their part of a window, > 0
-    std::vector<double> place;  ///< of their middles [mm]
-    double              reach;  ///< increments nearer than this are fitted together [mm]; 0: none are
+    std::vector<Number> place;  ///< of their middles [mm]
+    /// Where these were in the recorded run [mm]: which increments are fitted together, about where and with which
+    /// weights is a decision.
+    std::vector<double> recorded;
+    double              reach; ///< increments nearer than this are fitted together [mm]; 0: none are
 
     std::size_t size() const { return force.size(); }
   };
@@ -25,8 +28,9 @@ namespace retroforge
   /// What a design does to the force of one increment depends on the points that arrive in it, and on the mesh
   /// it has: it scatters from increment to increment. So the force F̃_i at increment i is that of a fit to
   /// those around it. A workpiece of volume V and height h has the area V/h, which the force follows: 1/F is
-  /// close to linear in the stroke, to the end, where F itself is steep. With D = (x_j - x_i)/reach,
-  ///   1/F̃_i = a,   a, b:   min sum_j l_j (1 - D²) F_j^2 (1 - F_j (a + b D))²   over |D| < 1.
+  /// close to linear in the stroke, to the end, where F itself is steep. With D = (x_j - x_i)/reach, x_i as recorded, and D_r
+  /// that of recorded places,
+  ///   1/F̃_i = a,   a, b:   min sum_j l_j (1 - D_r²) F_j^2 (1 - F_j (a + b D))²   over |D_r| < 1.
   /// The largest of them is taken by
   ///   M(x) = ( sum_i l_i x_i^(12p) / sum_i l_i x_i^(11p) )^(1/p),
   ///   M(x) = 1/k log( sum_i l_i exp(12k x_i) / sum_i l_i exp(11k x_i) ):
@@ -45,7 +49,7 @@ namespace retroforge
     template <typename Number>
     Number value(const ForcePath<Number> &path) const;
 
-    /// Returns its derivatives in forces and lengths.
+    /// Returns its derivatives in forces, lengths and places.
     ForcePath<double> reverse(const ForcePath<double> &path) const;
 
   private:

@@ -11,14 +11,14 @@
 /// @file
 /// Objectives of what happens during a forging, in two levels:
 ///   a_ik = integrals of increment i over the workpiece, the mean of its stages as the time scheme weighs
-///   them, Phi  = F( sum_i g(a_i, dt_i, t_i) ).
+///   them, Phi  = F( sum_i g(a_i, dt_i, t_i, s_i) ),  s_i its stroke and step.
 /// The integrals are all that touches the mesh: each objective writes their reverse in closed form. g and F
 /// are functions of a few numbers, and their derivatives come from dual numbers. A run keeps the rows a_i
 /// (some doubles per increment), so that nothing is evaluated twice and smooth maxima can be scaled by the
 /// largest value before they are summed.
 ///
-/// Backwards:  reverse_value() gives dPhi/d(a_i, dt_i, t_i) for all increments at once;  at increment i
-/// reverse_integrals() adds what follows from a_i; what follows from dt_i and t_i the sweep adds once.
+/// Backwards:  reverse_value() gives dPhi/d(a_i, dt_i, t_i, s_i) for all increments at once;  at increment i
+/// reverse_integrals() adds what follows from a_i; what follows from the others the sweep adds once.
 namespace retroforge
 {
   /// One increment as objectives see it, the same on every rank.
@@ -28,12 +28,27 @@ namespace retroforge
     std::vector<Number> integrals; ///< completed over ranks
     Number              dt;        ///< [s]
     Number              time;      ///< at the increment's start, stroke / speed [s]
-    double              stroke;    ///< at the increment's start [mm], fixed by decision
-    double              step;      ///< [mm], fixed by decision
+    Number              stroke;    ///< at the increment's start [mm]
+    Number              step;      ///< [mm]
+    /// The middle of the increment and its length in the recorded run [mm], fixed by decision: stroke and step are
+    /// others where ends of increments follow the state (steps/moved_ends.h).
+    double place, length;
   };
 
   template <typename Number>
   using PathRows = std::vector<PathRow<Number>>;
+
+  /// Returns that of an increment as it was recorded.
+  /// @param stroke  at its start [mm]
+  template <typename Number>
+  PathRow<Number> recorded_row(std::vector<Number> integrals,
+                               const Number       &dt,
+                               const Number       &time,
+                               const double        stroke,
+                               const double        step)
+  {
+    return {std::move(integrals), dt, time, Number(stroke), Number(step), stroke + 0.5 * step, step};
+  }
 
   /// Values at places, of which an objective makes its own.
   struct ObjectiveMap
@@ -77,7 +92,7 @@ namespace retroforge
     /// Returns what shows where the value comes from; empty for an objective without places.
     virtual ObjectiveMap map(const PathRows<double> &) const { return {}; }
 
-    /// Returns dPhi/d(a_i, dt_i, t_i) of each increment.
+    /// Returns dPhi/d(a_i, dt_i, t_i, s_i) of each increment.
     virtual PathRows<double> reverse_value(const PathRows<double> &rows) const = 0;
   };
 
@@ -95,6 +110,30 @@ namespace retroforge
   PathRow<double>  values_of(const PathRow<Dual> &row);
   PathRows<double> values_of(const PathRows<Dual> &rows);
   PathRow<Dual>    constant(const PathRow<double> &row);
+
+  /// Returns the derivatives of a function of one row.
+  /// @param f  of a PathRow<Dual>, a Dual
+  template <typename Function>
+  PathRow<double> derivatives_of(const Function &f, const PathRow<double> &row)
+  {
+    PathRow<Dual> at         = constant(row);
+    const auto    derivative = [&](Dual &input) {
+      input.fastAccessDx(0) = 1.;
+      const double slope    = f(at).dx(0);
+      input.fastAccessDx(0) = 0.;
+      return slope;
+    };
+    PathRow<double> bar{{},
+                        derivative(at.dt),
+                        derivative(at.time),
+                        derivative(at.stroke),
+                        derivative(at.step),
+                        row.place,
+                        row.length};
+    for (Dual &integral : at.integrals)
+      bar.integrals.push_back(derivative(integral));
+    return bar;
+  }
 
   /// A PathObjective whose integrals are those of class T, for any Number
   ///   std::vector<Number> compute_integrals(const EquilibriumView<Number> &) const;                of this rank
@@ -189,20 +228,15 @@ namespace retroforge
     PathRow<double>
     row_bar(const PathRow<double> &row, const std::vector<double> &bar, const double scale) const
     {
-      PathRow<Dual> at         = constant(row);
-      const auto    derivative = [&](Dual &input) {
-        input.fastAccessDx(0)         = 1.;
-        const std::vector<Dual> terms = self().template terms<Dual>(at, scale);
-        input.fastAccessDx(0)         = 0.;
-        double sum                    = 0.;
-        for (unsigned int j = 0; j < T::n_terms; ++j)
-          sum += bar[j] * terms[j].dx(0);
-        return sum;
-      };
-      PathRow<double> result{{}, derivative(at.dt), derivative(at.time), row.stroke, row.step};
-      for (Dual &integral : at.integrals)
-        result.integrals.push_back(derivative(integral));
-      return result;
+      return derivatives_of(
+        [&](const PathRow<Dual> &at) {
+          const std::vector<Dual> terms = self().template terms<Dual>(at, scale);
+          Dual                    sum(0.);
+          for (unsigned int j = 0; j < T::n_terms; ++j)
+            sum += bar[j] * terms[j];
+          return sum;
+        },
+        row);
     }
   };
 } // namespace retroforge

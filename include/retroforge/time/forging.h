@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/steps/moved_ends.h>
 #include <retroforge/time/increment_limits.h>
 
 namespace retroforge
@@ -14,6 +15,7 @@ namespace retroforge
     const SolvedIncrement      &solved;
     const ForgingState         &state; ///< after the increment
     double                      time;
+    MovedEnds<double>           ends; ///< of the increment beside its record, in a replay
   };
 
   /// The time loop through the operations of a process: increments of equal stroke, as long as an accuracy
@@ -72,7 +74,9 @@ namespace retroforge
 
     /// Takes the state to another mesh as recorded: the workpiece by the step steps/change_of_mesh.h.
     /// @param dies  at its stroke
-    void change_mesh(const std::vector<DieState<double>> &dies, const RemeshRecord &remesh, ForgingState &state) const;
+    void change_mesh(const std::vector<DieState<double>> &dies,
+                     const RemeshRecord                  &remesh,
+                     ForgingState                        &state) const;
 
   private:
     /// Takes the state to the start of an operation, unless it is in it: other dies, which have not met the
@@ -93,11 +97,12 @@ namespace retroforge
     /// What the last solution's errors ask for; empty where sizes do not follow them, or nothing is solved.
     std::optional<OptimalSizes> error_sizes(const Process<double> &process, const ForgingState &state) const;
     /// Takes the state to the increment's end, and tells `observer`.
-    void finish_increment(const Process<double> &process,
-                          const IncrementRecord &record,
-                          const SolvedIncrement &solved,
-                          ForgingState          &state,
-                          const Observer        &observer) const;
+    void finish_increment(const Process<double>   &process,
+                          const IncrementRecord   &record,
+                          const SolvedIncrement   &solved,
+                          ForgingState            &state,
+                          const Observer          &observer,
+                          const MovedEnds<double> &ends = {}) const;
 
     /// Returns the next increment's length, before anything is known of it [mm].
     /// @param cuts  out: how often it is half of one that is to be repeated

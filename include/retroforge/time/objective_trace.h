@@ -8,8 +8,14 @@
 namespace retroforge
 {
   /// An increment as objectives of the path see it, its integrals still to be added.
+  /// @param process  in which its ends have not moved
   template <typename Number>
-  PathRow<Number> row_of(const IncrementRecord &record, const Process<Number> &process);
+  PathRow<Number>
+  row_of(const IncrementRecord &record, const Process<Number> &process, const MovedEnds<Number> &ends = {});
+
+  /// Returns the derivatives in ends, which have not moved, of a scalar with the derivatives `bar` in row_of().
+  /// @param dt  that the increment takes [s]
+  MovedEnds<double> reverse_row(const IncrementRecord &record, double dt, const PathRow<double> &bar);
 
   /// What an objective of the end sees: its target moves with the die's vertices.
   template <typename Number>

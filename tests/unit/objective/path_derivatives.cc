@@ -215,11 +215,12 @@ struct PathProblem
       const ContactSet<Number>  set = contact(inputs, i);
       const Equilibrium<Number> stage(scene, inputs.physics, set, inputs.states[i].Y);
       const Field<Number>       W = inputs.states[i].field(scene);
-      rows.push_back({objective.integrals(EquilibriumView<Number>{stage, W, active[i]}).complete(),
-                      dt(inputs, i),
-                      Number(strokes[i] / inputs.speed),
-                      strokes[i],
-                      steps[i]});
+      rows.push_back(
+        recorded_row<Number>(objective.integrals(EquilibriumView<Number>{stage, W, active[i]}).complete(),
+                             dt(inputs, i),
+                             Number(strokes[i] / inputs.speed),
+                             strokes[i],
+                             steps[i]));
     }
     return rows;
   }

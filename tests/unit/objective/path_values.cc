@@ -81,7 +81,8 @@ public:
         scene_.view(physics.dies, X), pairs, {ramp, 5. * dt, {}, 1., counts_closing_});
       const Equilibrium<double> stage(scene_, physics, contact, X);
       const ActiveSet           active = stage.decide_active(W);
-      rows.push_back({objective.integrals({stage, W, active}).complete(), dt, i * dt, i * step, step});
+      rows.push_back(
+        recorded_row<double>(objective.integrals({stage, W, active}).complete(), dt, i * dt, i * step, step));
       for (NodeIndex k = 0; k < X.size(); ++k)
         X[k] += dt * V[k];
     }
@@ -112,8 +113,8 @@ public:
       make_contact_set<double>(scene_.view(physics.dies, X), pairs, {ramp, 0.1, 0., edge_stiffness});
     const Equilibrium<double> stage(scene_, physics, contact, X);
     const Field<double>       W(scene_.discretization); // at rest
-    const PathRows<double>    rows = {
-         {objective.integrals({stage, W, stage.decide_active(W)}).complete(), 0.1, 0., 0., 0.1}};
+    const PathRows<double>    rows = {recorded_row<double>(
+      objective.integrals({stage, W, stage.decide_active(W)}).complete(), 0.1, 0., 0., 0.1)};
     return objective.value(rows);
   }
 

@@ -65,7 +65,7 @@ namespace
   {
     PathRows<double> rows;
     for (unsigned int i = 0; i < 10; ++i)
-      rows.push_back({{100.}, 0.1, 0.1 * i, double(i), 1.});
+      rows.push_back(recorded_row<double>({100.}, 0.1, 0.1 * i, i, 1.));
     const std::vector<double> shares = shares_of_increments(SumFrom(begin), rows);
     const ValueSpan           span   = span_of(shares, run());
     std::printf("%s: share of the last %.4f, from %.0f to %.0f mm, part %.2f, remeshings within %u, cuts %u, "
