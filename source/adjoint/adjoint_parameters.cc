@@ -20,16 +20,15 @@ namespace retroforge
                       tolerance,
                       "Relative tolerance of the adjoint and tangent linear systems. Units: none.",
                       dealii::Patterns::Double(1e-14, 1e-2));
-    add_enum<Increments>(prm,
-                         "increments",
-                         increments,
-                         {{"follow", Increments::follow}, {"hold", Increments::hold}},
-                         "Where increments end at other values of the design, in derivatives and replays of "
-                         "a run in which quality had the mesh "
-                         "made anew: follow, sooner where the metal is strained farther, so that derivatives "
-                         "are those of the trend across runs "
-                         "that decide anew; or hold, at the same strokes, which gives the slope between two "
-                         "jumps. Units: none.");
+    add_enum<Increments>(
+      prm,
+      "increments",
+      increments,
+      {{"follow", Increments::follow}, {"hold", Increments::hold}},
+      "Where increments end at other values of the design, in derivatives and replays of a run "
+      "in which quality had the mesh made anew: follow, sooner where the metal is strained "
+      "farther, so that derivatives are those of the trend across runs that decide anew; or "
+      "hold, at the same strokes, which gives the slope between two jumps. Units: none.");
     using Derivatives = ShapeDerivatives::Method;
     add_enum<Derivatives>(
       prm,

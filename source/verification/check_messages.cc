@@ -23,6 +23,13 @@ namespace retroforge
     std::fflush(stdout);
   }
 
+  void print_ends_follow()
+  {
+    std::printf("  increments follow the state (Adjoint/increments): the adjoint is that of the trend, and "
+                "differences that "
+                "decide anew\n  have the slope between two jumps instead; `hold` checks that\n");
+  }
+
   void print_check_progress(const std::vector<CheckRow> &rows,
                             const unsigned int           before,
                             const unsigned int           done,

@@ -67,7 +67,11 @@ namespace retroforge
         if (root_ && before)
           print_check_progress(so_far, *before, done, all, timings_.seconds("total") - begin);
         else if (root_)
+        {
           print_check_begin(all, done, case_.parameters.check.n_runs(), forging_seconds_);
+          if (case_.parameters.check.free && run_.ends_follow())
+            print_ends_follow();
+        }
         before = before.value_or(done);
       });
     if (root_)

@@ -12,6 +12,10 @@ namespace retroforge
   /// @param seconds       of one forging; 0 when unknown
   void print_check_begin(unsigned int n_directions, unsigned int n_done, unsigned int n_runs, double seconds);
 
+  /// Says which slope the adjoint is, and which one differences that decide anew have, where ends of increments follow the
+  /// state (steps/moved_ends.h).
+  void print_ends_follow();
+
   /// Prints the verdict on the direction checked last, and the time left as those so far took it.
   /// @param rows    of all objectives along the directions so far
   /// @param before  of the directions done, those that an earlier check has done
