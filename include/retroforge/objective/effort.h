@@ -13,8 +13,8 @@
 namespace retroforge
 {
   /// A part of the run, by time or by stroke. An increment counts with that part of it that lies inside.
-  /// Strokes are fixed by decision; times follow the die's speed, and so does an increment's part of a window
-  /// of time, with a kink where an increment begins or ends on the window's edge.
+  /// Times follow the die's speed, strokes the state where ends of increments do (steps/moved_ends.h), and so does
+  /// an increment's part of a window, with a kink where an increment begins or ends on the window's edge.
   struct PathWindow
   {
     enum class Over
