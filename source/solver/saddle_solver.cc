@@ -5,11 +5,9 @@
 #include <retroforge/core/setting_tags.h>
 #include <retroforge/core/text.h>
 #include <retroforge/linear_algebra/direct_solver.h>
+#include <retroforge/linear_algebra/flexible_gmres.h>
 #include <retroforge/solver/penalised_rows.h>
 #include <retroforge/solver/saddle_solver.h>
-
-#include <deal.II/lac/solver_gmres.h>
-#include <deal.II/lac/vector_memory.h>
 
 namespace retroforge
 {
@@ -70,17 +68,6 @@ namespace retroforge
       }
       return r;
     }
-
-    /// A function of two vectors, as deal.II's solvers call it.
-    template <typename F>
-    struct Operator
-    {
-      F of;
-
-      void vmult(la::BlockVector &y, const la::BlockVector &x) const { of(y, x); }
-    };
-    template <typename F>
-    Operator(F) -> Operator<F>;
   } // namespace
 
   void LinearSolverParameters::add_parameters(ParameterHandler &prm)
@@ -247,9 +234,6 @@ namespace retroforge
     const bool large  = system_.P || system_.A->pattern().rows().n >= parameters_.multigrid_from;
     const bool multigrid =
       parameters_.method == Method::multigrid || (parameters_.method == Method::automatic && large);
-    // The vectors of the last solve's Krylov space lie in deal.II's pool. While it is made, a preconditioner
-    // needs more room than afterwards: theirs.
-    GrowingVectorMemory<la::BlockVector>::release_unused_memory();
     preconditioner_ = std::make_unique<Preconditioner>(*A_,
                                                        system_.matrix.block(0, 1),
                                                        system_.matrix.block(1, 0),
@@ -295,41 +279,34 @@ namespace retroforge
       const bool fresh = !preconditioner_;
       if (fresh)
         make_preconditioner();
-      const Operator M{[&](la::BlockVector &y, const la::BlockVector &v) { multiply(transposition, y, v); }};
-      const Operator P{[&](la::BlockVector &z, const la::BlockVector &r) {
+      const auto M = [&](la::BlockVector &y, const la::BlockVector &v) { multiply(transposition, y, v); };
+      const auto P = [&](la::BlockVector &z, const la::BlockVector &r) {
         if (transposition == Transposition::plain)
           preconditioner_->vmult(z, r);
         else
           preconditioner_->Tvmult(z, r);
-      }};
+      };
       const unsigned int limit =
         fresh ? parameters_.max_iterations
               : std::min<unsigned int>(parameters_.max_iterations,
                                        patience * first_rate_ * decades + spare_iterations);
-      const auto                    timing = timings_.scope("krylov");
-      SolverControl                 control(limit, tolerance * norm, false, false);
-      SolverFGMRES<la::BlockVector> krylov(
-        control,
-        typename SolverFGMRES<la::BlockVector>::AdditionalData(std::min(parameters_.restart, limit + 2)));
-      try
+      const auto         timing = timings_.scope("krylov");
+      const KrylovResult krylov =
+        solve_by_flexible_gmres(M, P, b, x, tolerance * norm, limit, parameters_.restart);
+      total += krylov.iterations;
+      if (krylov.converged)
       {
-        krylov.solve(M, x, b, P);
         polish_penalised(b, transposition, x);
-        total += control.last_step();
-        const double rate = control.last_step() / decades;
+        const double rate = krylov.iterations / decades;
         if (fresh)
           first_rate_ = rate;
         else if (rate > aged * first_rate_ + 1.)
           reset();
         return total;
       }
-      catch (const SolverControl::NoConvergence &)
-      {
-        total += control.last_step();
-        reset();
-        if (fresh)
-          break;
-      }
+      reset();
+      if (fresh)
+        break;
     }
     if (parameters_.method != Method::automatic)
       throw Error("Linear solver/method",

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <retroforge/linear_algebra/types.h>
+
+#include <functional>
+
+namespace retroforge
+{
+  /// y = F x
+  using BlockOperator = std::function<void(la::BlockVector &y, const la::BlockVector &x)>;
+
+  /// What a Krylov method did: it converged where `iterations` have not been used up, or just so.
+  struct KrylovResult
+  {
+    unsigned int iterations = 0;
+    bool         converged  = false;
+  };
+
+  /// Solves M x = b by flexible GMRES [Saad1993], Belos' of Trilinos: P, which approximates M^(-1), may change
+  /// from one application to the next. Directions are orthogonalised against all others at once, and again
+  /// where little is left of them. Collective; the same bits on the same number of ranks.
+  /// @param x          where it starts, and the last iterate, converged or not; unchanged where numbers have
+  ///                   left their range
+  /// @param tolerance  of the residual's norm, as the iteration itself knows it
+  /// @param limit      of the number of iterations
+  /// @param restart    directions that are kept
+  KrylovResult solve_by_flexible_gmres(const BlockOperator   &M,
+                                       const BlockOperator   &P,
+                                       const la::BlockVector &b,
+                                       la::BlockVector       &x,
+                                       double                 tolerance,
+                                       unsigned int           limit,
+                                       unsigned int           restart);
+} // namespace retroforge
