@@ -7,23 +7,26 @@
 namespace retroforge
 {
   template <typename Number>
-  NodeBlocks<Number>::NodeBlocks(const la::SparseMatrix &A)
+  NodeBlocks<Number>::NodeBlocks(const la::SparseMatrix &A,
+                                 const unsigned int      height,
+                                 const unsigned int      width)
+      : height(height), width(width)
   {
     int    *first, *numbers;
     double *entries;
     A.trilinos_matrix().ExtractCrsDataPointers(first, numbers, entries);
-    const int n_rows = A.trilinos_matrix().NumMyRows();
-    Assert(n_rows % 3 == 0 && A.trilinos_matrix().NumMyNonzeros() % 9 == 0,
-           dealii::ExcMessage("rows and columns come in threes"));
-    begin.reserve(n_rows / 3 + 1);
-    columns.reserve(A.trilinos_matrix().NumMyNonzeros() / 9);
-    for (int row = 0; row < n_rows; row += 3)
+    const unsigned int n_rows = A.trilinos_matrix().NumMyRows(), size = height * width;
+    Assert(n_rows % height == 0 && A.trilinos_matrix().NumMyNonzeros() % size == 0,
+           dealii::ExcMessage("rows and columns come by nodes"));
+    begin.reserve(n_rows / height + 1);
+    columns.reserve(A.trilinos_matrix().NumMyNonzeros() / size);
+    for (unsigned int row = 0; row < n_rows; row += height)
     {
-      for (int e = first[row]; e < first[row + 1]; e += 3)
+      for (int e = first[row]; e < first[row + 1]; e += width)
         columns.push_back(numbers[e]);
       begin.push_back(columns.size());
     }
-    values.assign(9 * columns.size() + 1, 0.);
+    values.assign(size * columns.size() + 1, 0.);
     update(A);
   }
 
@@ -37,12 +40,12 @@ namespace retroforge
     for (unsigned int node = 0; node + 1 < begin.size(); ++node)
     {
       const double *rows[3];
-      for (unsigned int i = 0; i < 3; ++i)
-        rows[i] = entries + first[3 * node + i];
-      for (unsigned int e = begin[node]; e < begin[node + 1]; ++e, block += 9)
-        for (unsigned int i = 0; i < 3; ++i, rows[i - 1] += 3)
-          for (unsigned int j = 0; j < 3; ++j)
-            block[3 * j + i] = rows[i][j];
+      for (unsigned int i = 0; i < height; ++i)
+        rows[i] = entries + first[height * node + i];
+      for (unsigned int e = begin[node]; e < begin[node + 1]; ++e)
+        for (unsigned int j = 0; j < width; ++j)
+          for (unsigned int i = 0; i < height; ++i)
+            *block++ = *rows[i]++;
     }
   }
 

@@ -6,7 +6,7 @@
 namespace retroforge
 {
   Preconditioner::Preconditioner(const BlockedMatrix       &A,
-                                 const la::SparseMatrix    &B,
+                                 const BlockedMatrix       &B,
                                  const la::SparseMatrix    &D,
                                  const la::SparseMatrix    &S,
                                  const bool                 multigrid,

@@ -100,6 +100,20 @@ namespace retroforge
   {
   }
 
+  SaddleSolver::Blocks::Blocks(const la::BlockSparseMatrix &matrix)
+      : A(matrix.block(0, 0), 3, 3)
+      , B(matrix.block(0, 1), 3, 1)
+      , D(matrix.block(1, 0), 1, 3)
+      , C(matrix.block(1, 1), 1, 1)
+  {
+  }
+
+  void SaddleSolver::Blocks::update()
+  {
+    for (BlockedMatrix *block : {&A, &B, &D, &C})
+      block->update();
+  }
+
   unsigned int SaddleSolver::solve(const la::BlockVector              &b,
                                    const double                        tolerance,
                                    const std::vector<la::BlockVector> &guesses,
@@ -209,10 +223,10 @@ namespace retroforge
       add_held(1., transposition, y, x);
       return;
     }
-    A_->vmult(y.block(0), x.block(0));
-    system_.matrix.block(0, 1).vmult_add(y.block(0), x.block(1));
-    system_.matrix.block(1, 0).vmult(y.block(1), x.block(0));
-    system_.matrix.block(1, 1).vmult_add(y.block(1), x.block(1));
+    blocks_->A.vmult(y.block(0), x.block(0));
+    blocks_->B.vmult_add(y.block(0), x.block(1));
+    blocks_->D.vmult(y.block(1), x.block(0));
+    blocks_->C.vmult_add(y.block(1), x.block(1));
     add_held(1., transposition, y, x);
   }
 
@@ -234,8 +248,8 @@ namespace retroforge
     const bool large  = system_.P || system_.A->pattern().rows().n >= parameters_.multigrid_from;
     const bool multigrid =
       parameters_.method == Method::multigrid || (parameters_.method == Method::automatic && large);
-    preconditioner_ = std::make_unique<Preconditioner>(*A_,
-                                                       system_.matrix.block(0, 1),
+    preconditioner_ = std::make_unique<Preconditioner>(blocks_->A,
+                                                       blocks_->B,
                                                        system_.matrix.block(1, 0),
                                                        system_.schur,
                                                        multigrid,
@@ -265,10 +279,10 @@ namespace retroforge
     const double norm = b.l2_norm();
     if (norm == 0.)
       return 0;
-    if (A_)
-      A_->update();
+    if (blocks_)
+      blocks_->update();
     else
-      A_ = std::make_unique<BlockedMatrix>(system_.matrix.block(0, 0));
+      blocks_ = std::make_unique<Blocks>(system_.matrix);
     const double start = start_from(guesses, b, transposition, x);
     if (start <= tolerance * norm)
       return 0;

@@ -11,20 +11,25 @@
 
 namespace retroforge
 {
-  /// A matrix with rows and columns in threes whose products go by blocks of nodes: sums in the order of the
-  /// matrix's own product, from fewer bytes. What Trilinos' preconditioners ask for besides comes from the
-  /// matrix.
+  /// A matrix with rows and columns by nodes, of velocities or of pressures, whose products go by blocks of two
+  /// nodes: from fewer bytes than those of the matrix, with sums in the same order but for rows of a pressure
+  /// and columns of velocities, which have a sum for each direction. What Trilinos' preconditioners ask for
+  /// besides comes from the matrix.
   class BlockedMatrix : public Epetra_BasicRowMatrix
   {
   public:
     /// @param matrix  must live as long
-    explicit BlockedMatrix(const la::SparseMatrix &matrix);
+    /// @param height  rows of a node, 3 or 1
+    /// @param width   columns of a node, 3 or 1
+    explicit BlockedMatrix(const la::SparseMatrix &matrix, unsigned int height = 3, unsigned int width = 3);
 
     /// After the matrix has changed its values.
     void update() { blocks_.update(matrix_); }
 
     /// y = A x
     void vmult(la::Vector &y, const la::Vector &x) const;
+    /// y += A x
+    void vmult_add(la::Vector &y, const la::Vector &x) const;
 
     const la::SparseMatrix &matrix() const { return matrix_; }
 
@@ -39,6 +44,9 @@ namespace retroforge
     ///@}
 
   private:
+    /// The entries of x in the columns of A, with those of other ranks.
+    const double *in_columns(const Epetra_MultiVector &x, int vector) const;
+
     const la::SparseMatrix &matrix_;
     NodeBlocks<double>      blocks_;
     /// Entries of x in the columns of A, with those of other ranks; null on one rank.

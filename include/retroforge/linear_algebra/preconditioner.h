@@ -20,7 +20,7 @@ namespace retroforge
     /// multigrid
     /// @param interpolation  from linear to quadratic velocities, for multigrid; null where A's are linear
     Preconditioner(const BlockedMatrix       &A,
-                   const la::SparseMatrix    &B,
+                   const BlockedMatrix       &B,
                    const la::SparseMatrix    &D,
                    const la::SparseMatrix    &S,
                    bool                       multigrid,
@@ -34,7 +34,8 @@ namespace retroforge
     void Tvmult(la::BlockVector &z, const la::BlockVector &r) const;
 
   private:
-    const la::SparseMatrix                                     &B_, &D_;
+    const BlockedMatrix                                        &B_;
+    const la::SparseMatrix                                     &D_;
     std::unique_ptr<dealii::TrilinosWrappers::PreconditionBase> A_;
     dealii::TrilinosWrappers::PreconditionILU                   S_;
     mutable la::Vector                                          momentum_;

@@ -60,6 +60,15 @@ namespace retroforge
     void reset() { preconditioner_.reset(); }
 
   private:
+    /// The system's blocks [A B; D C], as of the solve that goes on.
+    struct Blocks
+    {
+      BlockedMatrix A, B, D, C;
+
+      explicit Blocks(const la::BlockSparseMatrix &matrix);
+      void update();
+    };
+
     unsigned int solve_iteratively(const la::BlockVector              &b,
                                    double                              tolerance,
                                    const std::vector<la::BlockVector> &guesses,
@@ -97,7 +106,7 @@ namespace retroforge
     const SaddleSystem             &system_;
     const LinearSolverParameters   &parameters_;
     Timings                        &timings_;
-    std::unique_ptr<BlockedMatrix>  A_; ///< the system's, as of the solve that goes on
+    std::unique_ptr<Blocks>         blocks_;
     std::unique_ptr<Preconditioner> preconditioner_;
     double                          first_rate_ = 0.; ///< iterations per decade when it was fresh
   };
