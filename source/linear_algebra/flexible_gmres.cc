@@ -2,12 +2,12 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/linear_algebra/flexible_gmres.h>
 
-// The one file that knows Belos, whose headers take long to compile.
+// The one file that knows Belos, whose headers take long to compile, and need this one before them.
 #include <Teuchos_SerialDenseMatrix.hpp>
 
 #include <BelosBlockFGmresIter.hpp>
-#include <BelosDGKSOrthoManager.hpp>
 #include <BelosEpetraAdapter.hpp>
+#include <BelosICGSOrthoManager.hpp>
 #include <BelosLinearProblem.hpp>
 #include <BelosOutputManager.hpp>
 #include <BelosStatusTestCombo.hpp>
@@ -24,17 +24,12 @@ namespace retroforge
 {
   namespace
   {
-    /// Vectors of all blocks' entries of a rank, one block after the other.
-    struct Directions : Epetra_MultiVector
-    {
-      using Epetra_MultiVector::Epetra_MultiVector;
-    };
+    using Directions = Epetra_MultiVector; ///< entries of a rank's blocks, one block after the other
+    using Dense      = Teuchos::SerialDenseMatrix<int, double>;
 
-    using Dense = Teuchos::SerialDenseMatrix<int, double>;
-
-    /// A direction of which less than this is left by its orthogonalisation is orthogonalised again: rounding
-    /// that it brings along grows no more than so.
-    constexpr double enough_is_left = 0.1;
+    /// Passes of classical Gram-Schmidt. With one, directions are less and less orthogonal, and derivatives are
+    /// up to ten times less exact than their tolerance asks for.
+    constexpr int passes = 2;
 
     void copy(const la::BlockVector &x, Epetra_MultiVector &y)
     {
@@ -75,62 +70,6 @@ namespace retroforge
 
 namespace Belos
 {
-  /// Belos' own access to vectors of Epetra, but that new ones are not set to zero, so that room for `restart`
-  /// directions costs nothing until they come, and that products with one column are those of a matrix with a
-  /// vector: as products of matrices they would copy all directions, and make maps of every size.
-  template <>
-  class MultiVecTraits<double, retroforge::Directions> : public MultiVecTraits<double, Epetra_MultiVector>
-  {
-    using MV      = retroforge::Directions;
-    using Dense   = retroforge::Dense;
-    using Numbers = std::vector<int>;
-
-  public:
-    static Teuchos::RCP<MV> Clone(const MV &x, const int n)
-    {
-      return Teuchos::rcp(new MV(x.Map(), n, false));
-    }
-    static Teuchos::RCP<MV>       CloneCopy(const MV &x) { return Teuchos::rcp(new MV(x)); }
-    static Teuchos::RCP<MV>       CloneCopy(const MV &x, const Numbers &of) { return some(Copy, x, of); }
-    static Teuchos::RCP<MV>       CloneViewNonConst(MV &x, const Numbers &of) { return some(View, x, of); }
-    static Teuchos::RCP<const MV> CloneView(const MV &x, const Numbers &of) { return some(View, x, of); }
-
-    /// y = alpha V a + beta y
-    static void MvTimesMatAddMv(const double alpha, const MV &V, const Dense &a, const double beta, MV &y)
-    {
-      AssertDimension(a.numCols(), 1);
-      multiply(Teuchos::NO_TRANS, alpha, V, a.values(), beta, y[0]);
-    }
-
-    /// a = alpha V^T x
-    static void MvTransMv(const double alpha, const MV &V, const MV &x, Dense &a)
-    {
-      AssertDimension(x.NumVectors(), 1);
-      std::vector<double> own(V.NumVectors());
-      multiply(Teuchos::TRANS, alpha, V, x[0], 0., own.data());
-      V.Comm().SumAll(own.data(), a.values(), own.size());
-    }
-
-  private:
-    static Teuchos::RCP<MV> some(const Epetra_DataAccess access, const MV &x, const Numbers &of)
-    {
-      return Teuchos::rcp(new MV(access, x, const_cast<int *>(of.data()), of.size()));
-    }
-
-    static void multiply(const Teuchos::ETransp transposed,
-                         const double           alpha,
-                         const MV              &V,
-                         const double          *x,
-                         const double           beta,
-                         double                *y)
-    {
-      Assert(V.ConstantStride(), dealii::ExcInternalError());
-      const int stride = std::max(1, V.Stride());
-      Teuchos::BLAS<int, double>().GEMV(
-        transposed, V.MyLength(), V.NumVectors(), alpha, V.Values(), stride, x, 1, beta, y, 1);
-    }
-  };
-
   template <>
   class OperatorTraits<double, retroforge::Directions, retroforge::Operator>
   {
@@ -140,9 +79,9 @@ namespace Belos
                       retroforge::Directions       &y,
                       ETrans = NOTRANS)
     {
-      copy(x, F.x);
+      retroforge::copy(x, F.x);
       F.of(F.y, F.x);
-      copy(F.y, y);
+      retroforge::copy(F.y, y);
     }
     static bool HasApplyTranspose(const retroforge::Operator &) { return false; }
   };
@@ -155,7 +94,7 @@ namespace retroforge
     using Vectors = Belos::MultiVecTraits<double, Directions>;
     using Problem = Belos::LinearProblem<double, Directions, Operator>;
     using Gmres   = Belos::BlockFGmresIter<double, Directions, Operator>;
-    using Basis   = Belos::DGKSOrthoManager<double, Directions, Operator>;
+    using Basis   = Belos::ICGSOrthoManager<double, Directions, Operator>;
     using Norm    = Belos::StatusTestGenResNorm<double, Directions, Operator>;
     using Limit   = Belos::StatusTestMaxIters<double, Directions, Operator>;
     using Either  = Belos::StatusTestCombo<double, Directions, Operator>;
@@ -237,7 +176,7 @@ namespace retroforge
     Gmres gmres(problem,
                 rcp(new Belos::OutputManager<double>(Belos::Errors)),
                 rcp(new Either(Either::OR, rcp(new Limit(limit)), norm)),
-                rcp(new Basis("Belos", Teuchos::null, 2, 0., enough_is_left)),
+                rcp(new Basis("Belos", Teuchos::null, passes)),
                 list);
 
     KrylovResult                                   result;

@@ -30,18 +30,18 @@ namespace retroforge
   void Preconditioner::vmult(la::BlockVector &z, const la::BlockVector &r) const
   {
     S_.vmult(z.block(1), r.block(1));
-    z.block(1) *= -1.;
     B_.vmult(momentum_, z.block(1));
-    momentum_.sadd(-1., 1., r.block(0));
+    momentum_ += r.block(0);
+    z.block(1) *= -1.;
     A_->vmult(z.block(0), momentum_);
   }
 
   void Preconditioner::Tvmult(la::BlockVector &z, const la::BlockVector &r) const
   {
     S_.vmult(z.block(1), r.block(1));
-    z.block(1) *= -1.;
     D_.Tvmult(momentum_, z.block(1));
-    momentum_.sadd(-1., 1., r.block(0));
+    momentum_ += r.block(0);
+    z.block(1) *= -1.;
     A_->vmult(z.block(0), momentum_);
   }
 } // namespace retroforge

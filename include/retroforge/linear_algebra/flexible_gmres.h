@@ -19,8 +19,8 @@ namespace retroforge
   };
 
   /// Solves M x = b by flexible GMRES [Saad1993], Belos' of Trilinos: P, which approximates M^(-1), may change
-  /// from one application to the next. Directions are orthogonalised against all others at once, and again
-  /// where little is left of them. Collective; the same bits on the same number of ranks.
+  /// from one application to the next. Directions are orthogonalised against all others at once, and then once
+  /// more. Collective; the same bits on the same number of ranks.
   /// @param x          where it starts, and the last iterate, converged or not; unchanged where numbers have
   ///                   left their range
   /// @param tolerance  of the residual's norm, as the iteration itself knows it
