@@ -11,7 +11,7 @@ namespace retroforge
   /// y = F x
   using BlockOperator = std::function<void(la::BlockVector &y, const la::BlockVector &x)>;
 
-  /// What a Krylov method did: it converged where `iterations` have not been used up, or just so.
+  /// The iterations that a Krylov method took, and whether they have reached the tolerance.
   struct KrylovResult
   {
     unsigned int iterations = 0;
