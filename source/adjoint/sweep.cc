@@ -175,7 +175,9 @@ namespace retroforge
 
     // Derivatives in how far the end of the increment at hand moves; 0 where it does not.
     std::vector<double> end_bar(costates.size(), 0.);
-    LaterIncrement      later;
+    // In the positions at which the mesh at hand was made.
+    std::vector<NodalVectors<double>> made_bar(costates.size(), NodalVectors<double>(state.X.size()));
+    LaterIncrement                    later;
 
     const WorkpieceState<3, double> no_history;
     epoch->increment.mechanics.forget();
@@ -225,16 +227,24 @@ namespace retroforge
         {
           end_bar[j] += of_rows.end + of_work.end;
           FollowingEnd(epoch->scene.mesh,
+                       remeshed.empty() ? run.X_0 : epoch->scene.mesh.X,
                        X,
                        epoch->increment.mechanics.mean_velocity(record),
                        run.process,
                        place(record),
                        later.step)
-            .reverse_moved(end_bar[j], costates[j].workpiece.X);
+            .reverse_moved(end_bar[j], made_bar[j], costates[j].workpiece.X);
         }
         end_bar[j] = moves_start ? end_bar[j] + of_rows.start + of_work.start : 0.;
       }
       later = {record.operation, record.step};
+      if (run.ends_follow && (record.remesh || i == 0))
+        for (std::size_t j = 0; j < costates.size(); ++j)
+        {
+          for (std::size_t k = 0; k < made_bar[j].size(); ++k)
+            costates[j].workpiece.X[k] += made_bar[j][k];
+          made_bar[j].assign(record.remesh ? record.remesh->X_before.size() : 0, Vec3());
+        }
       sweep.linear_solves += epoch->system.n_solves - before;
       if (record.remesh)
       {
@@ -278,23 +288,13 @@ namespace retroforge
 
   namespace
   {
-    /// That of an increment which begins at X, values nominal.
-    FollowingEnd end_of(const RecordedForging    &run,
-                        const MeshEpoch          &epoch,
-                        const IncrementRecord    &record,
-                        const double              next,
-                        const NodalVectors<Dual> &X)
+    NodalVectors<double> values_of(const NodalVectors<Dual> &X)
     {
-      NodalVectors<double> at(X.size());
+      NodalVectors<double> values(X.size());
       for (std::size_t k = 0; k < X.size(); ++k)
         for (unsigned int i = 0; i < 3; ++i)
-          at[k][i] = value_of(X[k][i]);
-      return {epoch.scene.mesh,
-              at,
-              epoch.increment.mechanics.mean_velocity(record),
-              run.process,
-              place(record),
-              next};
+          values[k][i] = value_of(X[k][i]);
+      return values;
     }
   } // namespace
 
@@ -305,7 +305,8 @@ namespace retroforge
     AssertDimension(process.dies.size(), run.model.dies.size());
     std::shared_ptr<MeshEpoch>  epoch = run.first;
     std::vector<PathRows<Dual>> rows(run.objectives.size());
-    auto                        state = workpiece_before(process, std::move(X), epoch->scene.mesh.n_cells());
+    auto                        state  = workpiece_before(process, std::move(X), epoch->scene.mesh.n_cells());
+    NodalVectors<Dual>          X_made = state.X;
     StrokeStep                  end{0., 0.};
     MovedEnds<Dual>             ends;
     for (unsigned int i = 0; i < run.n; ++i)
@@ -321,11 +322,19 @@ namespace retroforge
         const auto       dies = with_moved_ends(process, at, {ends.end, ends.end}).over(at).dies;
         state                 = change_mesh(epoch->scene.mesh, *record.remesh, state, run.model.dies, dies);
         epoch                 = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model, run.timings);
+        X_made                = state.X;
       }
       end  = place(record);
       ends = {ends.end, Dual(0.)};
       if (after.step > 0. && after.operation == record.operation)
-        ends.end = end_of(run, *epoch, record, after.step, state.X).moved(ends.start, state.X);
+        ends.end = FollowingEnd(epoch->scene.mesh,
+                                values_of(X_made),
+                                values_of(state.X),
+                                epoch->increment.mechanics.mean_velocity(record),
+                                run.process,
+                                end,
+                                after.step)
+                     .moved(ends.start, X_made, state.X);
       const Process<Dual> moved = with_moved_ends(process, end, ends);
       for (auto &of_objective : rows)
         of_objective.push_back(row_of(record, process, ends));

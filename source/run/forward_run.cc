@@ -223,7 +223,8 @@ namespace retroforge
             problem_.objectives,
             trace_.recorded(),
             timings_,
-            ends_follow()};
+            ends_follow(),
+            problem_.X_0};
   }
 
   AdjointSweep ForwardRun::sweep(const std::vector<Combination> &combinations) const

@@ -78,47 +78,68 @@ namespace retroforge
   } // namespace
 
   FollowingEnd::FollowingEnd(const TetMesh              &mesh,
+                             const NodalVectors<double> &X_made,
                              const NodalVectors<double> &X,
                              const NodalVectors<double> &V,
                              const Process<double>      &nominal,
                              const StrokeStep           &at,
                              const double                next)
-      : X_(X), gradient_(X.size()), most_(0.5 * std::min(at.step, next))
+      : X_made_(X_made), X_(X), of_made_(X.size()), of_now_(X.size()), most_(0.5 * std::min(at.step, next))
   {
+    AssertDimension(X_made.size(), X.size());
     const double dt   = nominal.duration(at);
     double       norm = 0.;
     for (const auto &cell : mesh.cells)
     {
-      double                              volume;
+      double                              volume, volume_made;
+      const Gradients                     G = shape_gradients(corners(cell, X_made), volume_made);
       const Gradients                     g = shape_gradients(corners(cell, X), volume);
       const dealii::SymmetricTensor<2, 3> e = dt * shear_rate(corners(cell, V), g);
+      dealii::Tensor<2, 3>                F; // from when the mesh was made
+      for (unsigned int a = 0; a < 4; ++a)
+        F += outer_product(X[cell[a]], G[a]);
       norm += volume * (e * e);
       for (unsigned int a = 0; a < 4; ++a)
-        gradient_[cell[a]] += volume * (e * g[a]);
+      {
+        of_now_[cell[a]] += volume * (e * g[a]);
+        of_made_[cell[a]] -= volume * (transpose(F) * (e * g[a]));
+      }
     }
     // Where nothing flows, nothing is ahead.
-    for (Vec3 &g : gradient_)
-      g *= norm > 0. ? -at.step / norm : 0.;
+    for (auto *gradient : {&of_made_, &of_now_})
+      for (Vec3 &g : *gradient)
+        g *= norm > 0. ? -at.step / norm : 0.;
   }
 
   template <typename Number>
-  Number FollowingEnd::moved(const Number &start, const NodalVectors<Number> &X) const
+  Number FollowingEnd::moved(const Number               &start,
+                             const NodalVectors<Number> &X_made,
+                             const NodalVectors<Number> &X) const
   {
     using std::sqrt;
+    AssertDimension(X_made.size(), X_.size());
     AssertDimension(X.size(), X_.size());
     Number t = start;
     for (std::size_t k = 0; k < X.size(); ++k)
-      t += (X[k] - X_[k]) * gradient_[k];
+      t += (X[k] - X_[k]) * of_now_[k] + (X_made[k] - X_made_[k]) * of_made_[k];
     return most_ * t / sqrt(Number(most_ * most_ + t * t));
   }
 
-  template double FollowingEnd::moved(const double &, const NodalVectors<double> &) const;
-  template Dual   FollowingEnd::moved(const Dual &, const NodalVectors<Dual> &) const;
+  template double
+  FollowingEnd::moved(const double &, const NodalVectors<double> &, const NodalVectors<double> &) const;
+  template Dual
+  FollowingEnd::moved(const Dual &, const NodalVectors<Dual> &, const NodalVectors<Dual> &) const;
 
-  void FollowingEnd::reverse_moved(const double bar, NodalVectors<double> &X_bar) const
+  void FollowingEnd::reverse_moved(const double          bar,
+                                   NodalVectors<double> &X_made_bar,
+                                   NodalVectors<double> &X_bar) const
   {
-    AssertDimension(X_bar.size(), gradient_.size());
-    for (std::size_t k = 0; k < gradient_.size(); ++k)
-      X_bar[k] += bar * gradient_[k];
+    AssertDimension(X_made_bar.size(), of_made_.size());
+    AssertDimension(X_bar.size(), of_now_.size());
+    for (std::size_t k = 0; k < of_now_.size(); ++k)
+    {
+      X_made_bar[k] += bar * of_made_[k];
+      X_bar[k] += bar * of_now_[k];
+    }
   }
 } // namespace retroforge

@@ -422,9 +422,9 @@ namespace retroforge
                        const Observer        &observer) const
   {
     MovedEnds<double>    ends;
-    NodalVectors<double> X_nominal;
+    NodalVectors<double> X_nominal, X_made_nominal, X_made = state.workpiece.X;
     if (nominal != nullptr)
-      X_nominal = nominal->X_0;
+      X_made_nominal = X_nominal = nominal->X_0;
     for (unsigned int i = 0; i < n; ++i)
     {
       const StrokeStep after  = nominal != nullptr && i + 1 < n ? place(access(i + 1)) : StrokeStep{0., 0.};
@@ -435,7 +435,8 @@ namespace retroforge
       {
         const StrokeStep at{record.stroke, 0., record.operation};
         change_mesh(with_moved_ends(process, at, {ends.end, ends.end}).over(at).dies, *record.remesh, state);
-        X_nominal = record.remesh->mesh.X;
+        X_made_nominal = X_nominal = record.remesh->mesh.X;
+        X_made                     = state.workpiece.X;
       }
       Mechanics &mechanics = state.epoch->increment.mechanics;
       ends                 = {ends.end, 0.};
@@ -443,9 +444,14 @@ namespace retroforge
       {
         const NodalVectors<double> V = mechanics.mean_velocity(record);
         if (after.step > 0. && after.operation == record.operation)
-          ends.end =
-            FollowingEnd(state.epoch->scene.mesh, X_nominal, V, nominal->process, place(record), after.step)
-              .moved(ends.start, state.workpiece.X);
+          ends.end = FollowingEnd(state.epoch->scene.mesh,
+                                  X_made_nominal,
+                                  X_nominal,
+                                  V,
+                                  nominal->process,
+                                  place(record),
+                                  after.step)
+                       .moved(ends.start, X_made, state.workpiece.X);
         const double dt = nominal->process.duration(place(record));
         for (std::size_t k = 0; k < X_nominal.size(); ++k)
           X_nominal[k] += dt * V[k];

@@ -18,7 +18,8 @@ namespace retroforge
     const RecordedObjectives  &traced; ///< of these; they have decided
     Timings                   &timings;
     /// Whether ends of increments follow the state (steps/moved_ends.h).
-    bool ends_follow = false;
+    bool                 ends_follow = false;
+    NodalVectors<double> X_0         = {}; ///< where the run began, if so [mm]
   };
 
   /// dPhi/dX_0 and dPhi/d(process) of one combination of objectives.

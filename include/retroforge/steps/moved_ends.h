@@ -15,9 +15,11 @@
 /// the energy by the offset of a die would be the force at the end and the sum of these jumps, up to 14 % of it.
 /// So, where meshes are made anew by their quality, each increment but the last ends sooner as the state at its start is ahead,
 ///   s'_end = s_end + b t/(b^2 + t^2)^(1/2),
-///   t = s'_start - s_start - step (e(U), e(X - X_nominal)) / (e(U), e(U)),   e(U) = dev sym grad U,
-/// U the motion of the nominal increment, integrals over its mesh: the last term is the stroke by which the cells are
-/// strained farther than in the nominal run, along the strains of that increment. b, half of the shorter one of the
+///   t = s'_start - s_start - step (e(U), e(X - X_nominal) - e_made) / (e(U), e(U)),   e(U) = dev sym grad U,
+///   e_made = dev sym F grad(X_made - X_made_nominal) F^(-1),
+/// U the motion of the nominal increment, F the deformation since its mesh was made, integrals over that: the last term is the
+/// stroke by which the cells have since been strained farther than in the nominal run, along the strains of that increment,
+/// whatever body the mesh was made of. b, half of the shorter one of the
 /// increments that meet there, keeps steps positive. Were only those ends moved at which a mesh is made anew, the two increments
 /// there would become longer and shorter by all of it, and what arrives at dies in these would make slopes rough.
 /// The nominal run is as it was: all this is for replays and derivatives. A run that decides anew remeshes between its
@@ -49,12 +51,14 @@ namespace retroforge
   {
   public:
     /// @param mesh      of the increment
+    /// @param X_made    nominal positions when that was made [mm]
     /// @param X         nominal positions at its start [mm]
     /// @param V         nominal mean velocity of nodes over it [mm/s]
     /// @param nominal   the process of the nominal run
     /// @param at        the increment
     /// @param next      length of the next one [mm]
     FollowingEnd(const TetMesh              &mesh,
+                 const NodalVectors<double> &X_made,
                  const NodalVectors<double> &X,
                  const NodalVectors<double> &V,
                  const Process<double>      &nominal,
@@ -64,14 +68,15 @@ namespace retroforge
     /// Returns by how much the increment ends beside its record [mm].
     /// @param start  by how much it begins there
     template <typename Number>
-    Number moved(const Number &start, const NodalVectors<Number> &X) const;
+    Number
+    moved(const Number &start, const NodalVectors<Number> &X_made, const NodalVectors<Number> &X) const;
 
-    /// Adds the derivatives of  bar * moved()  in X, at the nominal positions; that in the start is bar.
-    void reverse_moved(double bar, NodalVectors<double> &X_bar) const;
+    /// Adds the derivatives of  bar * moved()  in positions, at the nominal ones; that in the start is bar.
+    void reverse_moved(double bar, NodalVectors<double> &X_made_bar, NodalVectors<double> &X_bar) const;
 
   private:
-    const NodalVectors<double> X_;
-    NodalVectors<double>       gradient_; ///< of t in X [mm/mm]
-    const double               most_;     ///< b
+    const NodalVectors<double> X_made_, X_;
+    NodalVectors<double>       of_made_, of_now_; ///< gradients of t [mm/mm]
+    const double               most_;             ///< b
   };
 } // namespace retroforge

@@ -154,6 +154,7 @@ namespace
   {
     none,
     state,   ///< what positions are ahead by
+    made,    ///< those at which the mesh was made
     carry,   ///< the start, in the end
     start,   ///< where dies begin
     end,     ///< where they end
@@ -162,15 +163,25 @@ namespace
     times    ///< of rows
   };
 
+  NodalVectors<double> values_of(const NodalVectors<Dual> &X)
+  {
+    NodalVectors<double> values(X.size());
+    for (std::size_t k = 0; k < X.size(); ++k)
+      for (unsigned int i = 0; i < 3; ++i)
+        values[k][i] = value_of(X[k][i]);
+    return values;
+  }
+
   /// The direct method as tangent_sweep has it, without a term.
   std::vector<Dual> tangent(const RecordedRun &run, const Way &way, const Term omitted)
   {
     const auto [process, X_0] = at<Dual>(run, way, 0.);
     std::shared_ptr<MeshEpoch>  epoch(&run.first_epoch(), [](MeshEpoch *) {});
     std::vector<PathRows<Dual>> rows(run.objectives().size());
-    auto            state = workpiece_before(process, NodalVectors<Dual>(X_0), epoch->scene.mesh.n_cells());
-    MovedEnds<Dual> ends;
-    StrokeStep      end{0., 0.};
+    auto state = workpiece_before(process, NodalVectors<Dual>(X_0), epoch->scene.mesh.n_cells());
+    NodalVectors<Dual> X_made = state.X;
+    MovedEnds<Dual>    ends;
+    StrokeStep         end{0., 0.};
     for (std::size_t i = 0; i < run.records.size(); ++i)
     {
       const IncrementRecord &record = run.records[i];
@@ -180,30 +191,31 @@ namespace
       {
         const Dual       moved = omitted == Term::mesh ? Dual(0.) : ends.end;
         const StrokeStep at{record.stroke, 0., record.operation};
-        state = change_mesh(epoch->scene.mesh,
+        state  = change_mesh(epoch->scene.mesh,
                             *record.remesh,
                             state,
                             run.dies(),
                             with_moved_ends(process, at, {moved, moved}).over(at).dies);
-        epoch = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model(), timings_of_runs());
+        epoch  = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model(), timings_of_runs());
+        X_made = state.X;
       }
       end  = place(record);
       ends = {ends.end, Dual(0.)};
       if (i + 1 < run.records.size() && run.records[i + 1].operation == record.operation)
       {
-        NodalVectors<double> X(state.X.size());
-        for (std::size_t k = 0; k < X.size(); ++k)
-          for (unsigned int c = 0; c < 3; ++c)
-            X[k][c] = value_of(state.X[k][c]);
-        const FollowingEnd following(epoch->scene.mesh,
+        const NodalVectors<double> X = values_of(state.X), made = values_of(X_made);
+        const FollowingEnd         following(epoch->scene.mesh,
+                                     made,
                                      X,
                                      epoch->increment.mechanics.mean_velocity(record),
                                      run.process(),
                                      end,
                                      run.records[i + 1].step);
-        NodalVectors<Dual> X_nominal;
+        NodalVectors<Dual>         X_nominal, made_nominal;
         convert(X, X_nominal);
+        convert(made, made_nominal);
         ends.end = following.moved(omitted == Term::carry ? Dual(0.) : ends.start,
+                                   omitted == Term::made ? made_nominal : X_made,
                                    omitted == Term::state ? X_nominal : state.X);
       }
       const MovedEnds<Dual> of_dies{omitted == Term::start ? Dual(0.) : ends.start,
@@ -256,6 +268,7 @@ namespace
               << yes(*std::max_element(complete.begin(), complete.end()) < 1e-10) << "\n";
     for (const auto &[term, name] :
          std::vector<std::pair<Term, std::string>>{{Term::state, "what positions are ahead by"},
+                                                   {Term::made, "where meshes were made"},
                                                    {Term::carry, "starts in ends"},
                                                    {Term::start, "where dies begin"},
                                                    {Term::end, "where dies end"},

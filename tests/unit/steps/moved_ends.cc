@@ -212,7 +212,7 @@ namespace
     const double          next = 1.4, b = 0.5 * next;
     const Process<double> process;
     TetMesh mesh = block_mesh({{3, 2, 4}}, [](unsigned int, unsigned int, unsigned int) { return true; });
-    NodalVectors<double> V;
+    NodalVectors<double> V, made;
 
     explicit Block(const Process<double> &of_press) : process(of_press)
     {
@@ -221,14 +221,22 @@ namespace
         const bool inner = x[0] > 0. && x[0] < 3. && x[1] > 0. && x[1] < 2. && x[2] > 0. && x[2] < 4.;
         x                = 5. * x + (inner ? 0.8 : 0.) * numbers.vector();
         V.push_back(5. * upset(x) + cross_product_3d(Vec3({1., -2., 3.}), x));
+        made.push_back(from() * x);
       }
+    }
+
+    /// From a place now to that when the mesh was made.
+    static dealii::Tensor<2, 3> from()
+    {
+      return dealii::Tensor<2, 3>({{0.8, -0.3, 0.1}, {0.3, 0.9, 0.}, {0., 0., 1.3}});
     }
 
     static Vec3 upset(const Vec3 &x) { return Vec3({0.5 * x[0], 0.5 * x[1], -x[2]}); }
 
+    /// Of a mesh that was made at other positions, from which it was stretched, sheared and turned.
     FollowingEnd end(const NodalVectors<double> &velocity, const double next_step) const
     {
-      return {mesh, mesh.X, velocity, process, at, next_step};
+      return {mesh, made, mesh.X, velocity, process, at, next_step};
     }
 
     NodalVectors<double> ahead(const double d) const
@@ -274,38 +282,40 @@ namespace
     double       off = 0., off_with_start = 0.;
     for (const double d : {-0.9, -1e-3, 0.2, 3.})
     {
-      off = std::max(off, std::abs(end.moved(0., block.ahead(d)) - stroke_less(-d)));
+      off = std::max(off, std::abs(end.moved(0., block.made, block.ahead(d)) - stroke_less(-d)));
       off_with_start =
-        std::max(off_with_start, std::abs(end.moved(0.3, block.ahead(d)) - stroke_less(0.3 - d)));
+        std::max(off_with_start, std::abs(end.moved(0.3, block.made, block.ahead(d)) - stroke_less(0.3 - d)));
     }
     std::cout << name << ", ahead by a stroke: " << small(off)
               << ", with a start that moves: " << small(off_with_start) << "\n";
     const auto longer = block.end(block.V, 9.);
     std::cout << "  b is of the shorter increment: "
-              << yes(std::abs(longer.moved(0., block.ahead(0.4)) + 0.4 / std::sqrt(1. + 0.16)) < 1e-12)
+              << yes(std::abs(longer.moved(0., block.made, block.ahead(0.4)) + 0.4 / std::sqrt(1. + 0.16)) <
+                     1e-12)
               << ", not past its middle: "
-              << yes(std::abs(end.moved(0., block.ahead(100.))) < b &&
-                     end.moved(0., block.ahead(100.)) < -0.99 * b && end.moved(0., block.ahead(-100.)) < b &&
-                     end.moved(0., block.ahead(-100.)) > 0.99 * b)
+              << yes(std::abs(end.moved(0., block.made, block.ahead(100.))) < b &&
+                     end.moved(0., block.made, block.ahead(100.)) < -0.99 * b &&
+                     end.moved(0., block.made, block.ahead(-100.)) < b &&
+                     end.moved(0., block.made, block.ahead(-100.)) > 0.99 * b)
               << "\n";
     NodalVectors<double> there = block.mesh.X;
     for (Vec3 &x : there)
       x += Vec3({0.4, -0.7, 0.3});
-    std::cout << "  a translation: " << small(end.moved(0., there));
+    std::cout << "  a translation: " << small(end.moved(0., block.made, there));
     const auto rotated = [&](const double angle) {
       NodalVectors<double> X = block.mesh.X;
       for (Vec3 &x : X)
         x = Vec3({x[0],
                   std::cos(angle) * x[1] - std::sin(angle) * x[2],
                   std::sin(angle) * x[1] + std::cos(angle) * x[2]});
-      return end.moved(0., X);
+      return end.moved(0., block.made, X);
     };
     const double order = std::log2(rotated(2e-3) / rotated(1e-3));
     std::cout << ", a rotation in second order: " << yes(std::abs(order - 2.) < 0.01);
     const auto still = block.end(NodalVectors<double>(block.mesh.n_nodes()), block.next);
     std::cout << ", nothing flows: "
-              << yes(still.moved(0., block.ahead(1.)) == 0. &&
-                     std::abs(still.moved(0.2, block.ahead(1.)) - stroke_less(0.2)) < 1e-15)
+              << yes(still.moved(0., block.made, block.ahead(1.)) == 0. &&
+                     std::abs(still.moved(0.2, block.made, block.ahead(1.)) - stroke_less(0.2)) < 1e-15)
               << "\n";
     const NodalVectors<double> V  = numbers.vectors(block.mesh.n_nodes()),
                                dX = numbers.vectors(block.mesh.n_nodes());
@@ -318,23 +328,42 @@ namespace
     };
     const double least = stroke_less(-block.at.step * block.part_of(V, X_at(1e-3)));
     std::cout << "  of any motion, the stroke that fits best: "
-              << yes(std::abs(of_any.moved(0., X_at(1e-3)) / least - 1.) < 1e-10) << "\n";
+              << yes(std::abs(of_any.moved(0., block.made, X_at(1e-3)) / least - 1.) < 1e-10) << "\n";
 
-    const double       bar = numbers.scalar(), start_dot = numbers.scalar();
-    NodalVectors<Dual> X_dual;
-    convert(block.mesh.X, X_dual);
-    for_each_number([](Dual &x, const double &d) { x.fastAccessDx(0) = d; }, X_dual, dX);
+    // Another shape of the mesh when it was made, and the same motion since.
+    NodalVectors<double> made = block.made, now = block.mesh.X;
+    for (std::size_t k = 0; k < made.size(); ++k)
+    {
+      const Vec3 d = 0.01 * Vec3({made[k][0] + made[k][1], -0.3 * made[k][2], 2. * made[k][2]});
+      made[k] += d;
+      now[k] += invert(block.from()) * d;
+    }
+    std::cout << "  what it was made with: " << small(of_any.moved(0., made, now))
+              << ", else: " << yes(std::abs(of_any.moved(0., block.made, now)) > 1e-4) << "\n";
+
+    const double bar = numbers.scalar(), start_dot = numbers.scalar();
+    const auto   with_derivatives = [](const NodalVectors<double> &at, const NodalVectors<double> &d_at) {
+      NodalVectors<Dual> dual;
+      convert(at, dual);
+      for_each_number([](Dual &x, const double &d) { x.fastAccessDx(0) = d; }, dual, d_at);
+      return dual;
+    };
+    const NodalVectors<double> dM     = numbers.vectors(block.mesh.n_nodes());
+    const NodalVectors<Dual>   X_dual = with_derivatives(block.mesh.X, dX),
+                             M_dual   = with_derivatives(block.made, dM);
     Dual start(0.);
     start.fastAccessDx(0)            = start_dot;
-    NodalVectors<double>       X_bar = numbers.vectors(block.mesh.n_nodes());
-    const NodalVectors<double> was   = X_bar;
-    of_any.reverse_moved(bar, X_bar);
-    const double reverse = bar * start_dot + dot(X_bar, dX) - dot(was, dX);
+    NodalVectors<double>       X_bar = numbers.vectors(block.mesh.n_nodes()), M_bar = X_bar;
+    const NodalVectors<double> was = X_bar;
+    of_any.reverse_moved(bar, M_bar, X_bar);
+    const double reverse = bar * start_dot + dot(X_bar, dX) - dot(was, dX) + dot(M_bar, dM) - dot(was, dM);
     std::cout << "  dot product: "
-              << yes(std::abs(bar * of_any.moved(start, X_dual).dx(0) / reverse - 1.) < 1e-12);
+              << yes(std::abs(bar * of_any.moved(start, M_dual, X_dual).dx(0) / reverse - 1.) < 1e-12);
     const double slope     = (dot(X_bar, dX) - dot(was, dX)) / bar;
-    const auto   remainder = [&](const double h) { return std::abs(of_any.moved(0., X_at(h)) - h * slope); };
-    const double h         = 0.05 * b / std::abs(slope);
+    const auto   remainder = [&](const double h) {
+      return std::abs(of_any.moved(0., block.made, X_at(h)) - h * slope);
+    };
+    const double h = 0.05 * b / std::abs(slope);
     std::cout << ", remainder at least of second order: "
               << yes(std::log2(remainder(h) / remainder(0.5 * h)) > 1.95) << "\n";
   }
