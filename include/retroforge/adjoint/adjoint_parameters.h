@@ -25,7 +25,7 @@ namespace retroforge
 
     Method           method     = Method::adjoint;
     double           tolerance  = 1e-6;
-    Increments       increments = Increments::follow;
+    Increments       increments = Increments::hold;
     ShapeDerivatives shape_derivatives;
 
     void add_parameters(dealii::ParameterHandler &prm);
