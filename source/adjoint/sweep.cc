@@ -286,18 +286,6 @@ namespace retroforge
     return sweep;
   }
 
-  namespace
-  {
-    NodalVectors<double> values_of(const NodalVectors<Dual> &X)
-    {
-      NodalVectors<double> values(X.size());
-      for (std::size_t k = 0; k < X.size(); ++k)
-        for (unsigned int i = 0; i < 3; ++i)
-          values[k][i] = value_of(X[k][i]);
-      return values;
-    }
-  } // namespace
-
   std::vector<Dual>
   tangent_sweep(const RecordedForging &run, const Process<Dual> &process, NodalVectors<Dual> X)
   {
@@ -327,14 +315,14 @@ namespace retroforge
       end  = place(record);
       ends = {ends.end, Dual(0.)};
       if (after.step > 0. && after.operation == record.operation)
-        ends.end = FollowingEnd(epoch->scene.mesh,
-                                values_of(X_made),
-                                values_of(state.X),
-                                epoch->increment.mechanics.mean_velocity(record),
-                                run.process,
-                                end,
-                                after.step)
-                     .moved(ends.start, X_made, state.X);
+      {
+        NodalVectors<double> made, X;
+        convert(X_made, made);
+        convert(state.X, X);
+        const auto         V = epoch->increment.mechanics.mean_velocity(record);
+        const FollowingEnd following(epoch->scene.mesh, made, X, V, run.process, end, after.step);
+        ends.end = following.moved(ends.start, X_made, state.X);
+      }
       const Process<Dual> moved = with_moved_ends(process, end, ends);
       for (auto &of_objective : rows)
         of_objective.push_back(row_of(record, process, ends));

@@ -163,15 +163,6 @@ namespace
     times    ///< of rows
   };
 
-  NodalVectors<double> values_of(const NodalVectors<Dual> &X)
-  {
-    NodalVectors<double> values(X.size());
-    for (std::size_t k = 0; k < X.size(); ++k)
-      for (unsigned int i = 0; i < 3; ++i)
-        values[k][i] = value_of(X[k][i]);
-    return values;
-  }
-
   /// The direct method as tangent_sweep has it, without a term.
   std::vector<Dual> tangent(const RecordedRun &run, const Way &way, const Term omitted)
   {
@@ -203,15 +194,17 @@ namespace
       ends = {ends.end, Dual(0.)};
       if (i + 1 < run.records.size() && run.records[i + 1].operation == record.operation)
       {
-        const NodalVectors<double> X = values_of(state.X), made = values_of(X_made);
-        const FollowingEnd         following(epoch->scene.mesh,
+        NodalVectors<double> X, made;
+        convert(state.X, X);
+        convert(X_made, made);
+        const FollowingEnd following(epoch->scene.mesh,
                                      made,
                                      X,
                                      epoch->increment.mechanics.mean_velocity(record),
                                      run.process(),
                                      end,
                                      run.records[i + 1].step);
-        NodalVectors<Dual>         X_nominal, made_nominal;
+        NodalVectors<Dual> X_nominal, made_nominal;
         convert(X, X_nominal);
         convert(made, made_nominal);
         ends.end = following.moved(omitted == Term::carry ? Dual(0.) : ends.start,

@@ -11,8 +11,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include "ring.h"
 #include <retroforge/linear_algebra/blocked_matrix.h>
-#include <retroforge/linear_algebra/node_matrix.h>
 
 #include <Epetra_CrsMatrix.h>
 #include <Epetra_Vector.h>
@@ -26,18 +26,6 @@ using namespace dealii::Utilities::MPI;
 namespace
 {
   constexpr unsigned int n = 24;
-
-  Rows<unsigned int> neighbours(const NodeRange &range)
-  {
-    Rows<unsigned int> rows;
-    for (unsigned int a = range.begin; a < range.end; ++a)
-    {
-      for (const unsigned int b : {a, a + 1, a + n - 1, a + n / 2})
-        rows.entries.push_back(b % n);
-      rows.begin.push_back(rows.entries.size());
-    }
-    return rows;
-  }
 
   void fill(const NodeMatrix &view, const unsigned int seed)
   {
@@ -99,7 +87,7 @@ namespace
   {
     la::SparseMatrix matrix;
     fill(NodeMatrix(matrix,
-                    std::make_shared<const NodePattern>(nodes, nodes, neighbours(nodes)),
+                    std::make_shared<const NodePattern>(nodes, nodes, ring_neighbours(nodes, n)),
                     height,
                     width,
                     MPI_COMM_WORLD),
@@ -125,8 +113,11 @@ int main(int argc, char **argv)
     std::cout.setstate(std::ios::failbit);
   const NodeRange  nodes{n * rank / ranks, n * (rank + 1) / ranks, n};
   la::SparseMatrix matrix;
-  const NodeMatrix view(
-    matrix, std::make_shared<const NodePattern>(nodes, nodes, neighbours(nodes)), 3, 3, MPI_COMM_WORLD);
+  const NodeMatrix view(matrix,
+                        std::make_shared<const NodePattern>(nodes, nodes, ring_neighbours(nodes, n)),
+                        3,
+                        3,
+                        MPI_COMM_WORLD);
   fill(view, 1);
   BlockedMatrix           blocked(matrix);
   const Epetra_CrsMatrix &A = matrix.trilinos_matrix();

@@ -13,9 +13,9 @@
 
 #include <deal.II/base/mpi.h>
 
+#include "ring.h"
 #include <retroforge/linear_algebra/direct_solver.h>
 #include <retroforge/linear_algebra/flexible_gmres.h>
-#include <retroforge/linear_algebra/node_matrix.h>
 
 #include <algorithm>
 #include <iostream>
@@ -27,18 +27,6 @@ using namespace dealii::Utilities::MPI;
 namespace
 {
   constexpr unsigned int n = 40;
-
-  Rows<unsigned int> neighbours(const NodeRange &range)
-  {
-    Rows<unsigned int> rows;
-    for (unsigned int a = range.begin; a < range.end; ++a)
-    {
-      for (const unsigned int b : {a, a + 1, a + n - 1, a + n / 2})
-        rows.entries.push_back(b % n);
-      rows.begin.push_back(rows.entries.size());
-    }
-    return rows;
-  }
 
   /// Entries by their global numbers, and `shift` on the diagonal.
   void fill(const NodeMatrix &view, const unsigned int first_row, const double size, const double shift)
@@ -59,7 +47,7 @@ namespace
     explicit System(const NodeRange &nodes)
         : b(std::vector<dealii::IndexSet>{nodes.dofs(3), nodes.dofs(1)}, MPI_COMM_WORLD), x(b)
     {
-      const auto pattern = std::make_shared<const NodePattern>(nodes, nodes, neighbours(nodes));
+      const auto pattern = std::make_shared<const NodePattern>(nodes, nodes, ring_neighbours(nodes, n));
       M.reinit(2, 2);
       for (const unsigned int i : {0, 1})
         for (const unsigned int j : {0, 1})
