@@ -7,6 +7,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <numeric>
+#include <optional>
 
 namespace retroforge
 {
@@ -120,13 +121,6 @@ namespace retroforge
       return ends_bar;
     }
 
-    /// What the way back knows of the increment after the one at hand.
-    struct LaterIncrement
-    {
-      unsigned int operation = 0;
-      double       step      = 0.; // [mm]; none, 0
-    };
-
     /// Costates that take what falls on an increment apart from what fell on the process before.
     std::vector<Costate> apart(const RecordedForging &run, std::vector<Costate> &costates)
     {
@@ -177,7 +171,6 @@ namespace retroforge
     std::vector<double> end_bar(costates.size(), 0.);
     // In the positions at which the mesh at hand was made.
     std::vector<NodalVectors<double>> made_bar(costates.size(), NodalVectors<double>(state.X.size()));
-    LaterIncrement                    later;
 
     const WorkpieceState<3, double> no_history;
     epoch->increment.mechanics.forget();
@@ -204,11 +197,21 @@ namespace retroforge
       state.velocity = velocity;
       if (record.remesh && !velocity.empty())
         state.velocity = record.remesh->transfer.apply<Vec3>(velocity);
-      const bool moves_end   = run.ends_follow && later.step > 0. && later.operation == record.operation;
-      const bool moves_start = run.ends_follow && i > 0 && record.operation == operation;
-      std::vector<Costate> parts;
-      if (moves_end || moves_start)
+      const bool                  follows     = !run.rules.empty();
+      const bool                  moves_start = follows && i > 0 && record.operation == operation;
+      std::vector<Costate>        parts;
+      std::optional<FollowingEnd> following;
+      if (follows)
+      {
         parts = apart(run, costates);
+        following.emplace(epoch->scene.mesh,
+                          remeshed.empty() ? run.X_0 : epoch->scene.mesh.X,
+                          X,
+                          epoch->increment.mechanics.mean_velocity(record),
+                          run.process,
+                          place(record),
+                          run.rules[i]);
+      }
       std::vector<Costate> &of_increment = parts.empty() ? costates : parts;
       epoch->increment.reverse(run.process,
                                state,
@@ -222,23 +225,12 @@ namespace retroforge
           reverse_rows(run, rows_bar, combinations[j], i, record, costates[j]);
         if (parts.empty())
           continue;
-        const MovedEnds<double> of_work = together(run, record, std::move(parts[j]), costates[j]);
-        if (moves_end)
-        {
-          end_bar[j] += of_rows.end + of_work.end;
-          FollowingEnd(epoch->scene.mesh,
-                       remeshed.empty() ? run.X_0 : epoch->scene.mesh.X,
-                       X,
-                       epoch->increment.mechanics.mean_velocity(record),
-                       run.process,
-                       place(record),
-                       later.step)
-            .reverse_moved(end_bar[j], made_bar[j], costates[j].workpiece.X);
-        }
-        end_bar[j] = moves_start ? end_bar[j] + of_rows.start + of_work.start : 0.;
+        const MovedEnds<double> of_work  = together(run, record, std::move(parts[j]), costates[j]);
+        const double            of_start = following->reverse_moved(
+          end_bar[j] + of_rows.end + of_work.end, made_bar[j], costates[j].workpiece.X);
+        end_bar[j] = moves_start ? of_start + of_rows.start + of_work.start : 0.;
       }
-      later = {record.operation, record.step};
-      if (run.ends_follow && (record.remesh || i == 0))
+      if (follows && (record.remesh || i == 0))
         for (std::size_t j = 0; j < costates.size(); ++j)
         {
           for (std::size_t k = 0; k < made_bar[j].size(); ++k)
@@ -299,8 +291,6 @@ namespace retroforge
     MovedEnds<Dual>             ends;
     for (unsigned int i = 0; i < run.n; ++i)
     {
-      const StrokeStep after =
-        run.ends_follow && i + 1 < run.n ? place(run.record(i + 1)) : StrokeStep{0., 0.};
       const IncrementRecord &record = run.record(i);
       if (record.operation != end.operation)
         state.velocity.clear();
@@ -314,14 +304,14 @@ namespace retroforge
       }
       end  = place(record);
       ends = {ends.end, Dual(0.)};
-      if (after.step > 0. && after.operation == record.operation)
+      if (!run.rules.empty())
       {
         NodalVectors<double> made, X;
         convert(X_made, made);
         convert(state.X, X);
-        const auto         V = epoch->increment.mechanics.mean_velocity(record);
-        const FollowingEnd following(epoch->scene.mesh, made, X, V, run.process, end, after.step);
-        ends.end = following.moved(ends.start, X_made, state.X);
+        const auto V = epoch->increment.mechanics.mean_velocity(record);
+        ends.end     = FollowingEnd(epoch->scene.mesh, made, X, V, run.process, end, run.rules[i])
+                     .moved(ends.start, X_made, state.X);
       }
       const Process<Dual> moved = with_moved_ends(process, end, ends);
       for (auto &of_objective : rows)

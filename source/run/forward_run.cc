@@ -140,6 +140,7 @@ namespace retroforge
   void ForwardRun::follow(const IncrementEvent &event)
   {
     recording_.keep(event.record);
+    increments_.push_back(place(event.record));
     strokes_.push_back(problem_.process.whole_stroke(event.state.stroke, event.state.operation));
     const auto timing = timings_.scope("objectives");
     trace_.add(event);
@@ -153,11 +154,12 @@ namespace retroforge
     Forging::change_numerics(segment.input.parameters, state_);
   }
 
-  bool ForwardRun::ends_follow() const
+  std::vector<FollowingRule> ForwardRun::following_rules() const
   {
-    return problem_.parameters.adjoint.increments == AdjointParameters::Increments::follow &&
-           problem_.parameters.remeshing.when == RemesherParameters::When::quality &&
-           !state_.remeshed.empty() && state_.remeshed.back() > 0;
+    if (problem_.parameters.adjoint.increments != AdjointParameters::Increments::follow ||
+        problem_.parameters.remeshing.when != RemesherParameters::When::quality)
+      return {};
+    return retroforge::following_rules(increments_, state_.remeshed);
   }
 
   bool ForwardRun::is_left() const
@@ -223,7 +225,7 @@ namespace retroforge
             problem_.objectives,
             trace_.recorded(),
             timings_,
-            ends_follow(),
+            following_rules(),
             problem_.X_0};
   }
 
@@ -244,7 +246,7 @@ namespace retroforge
     ForgingState                    state = Forging::start(first_epoch_, process, X_0);
     std::optional<Forging::Nominal> nominal;
     if (ends_follow())
-      nominal.emplace(Forging::Nominal{problem_.process, problem_.X_0});
+      nominal.emplace(Forging::Nominal{problem_.process, problem_.X_0, following_rules()});
     running_->forging.replay(
       process, nominal ? &*nominal : nullptr, state_.increments, recorded().record, state, observer);
     return state;

@@ -77,16 +77,41 @@ namespace retroforge
     }
   } // namespace
 
+  std::vector<FollowingRule> following_rules(const std::vector<StrokeStep>   &increments,
+                                             const std::vector<unsigned int> &remeshed)
+  {
+    std::vector<FollowingRule> rules(increments.size());
+    bool                       any = false, leads = false; // a new mesh is ahead in the operation
+    double                     end = 0.;                   // of that [mm]
+    for (unsigned int i = increments.size(); i-- > 0;)
+    {
+      const StrokeStep &at = increments[i];
+      const double      to = at.stroke + at.step;
+      if (i + 1 == increments.size() || increments[i + 1].operation != at.operation)
+      {
+        end   = to;
+        leads = false;
+      }
+      rules[i] = leads ? FollowingRule{1., 0.5 * std::min(at.step, increments[i + 1].step)}
+                       : FollowingRule{(end - to) / (end - at.stroke), 0.};
+      any      = any || leads;
+      leads    = leads || std::binary_search(remeshed.begin(), remeshed.end(), i);
+    }
+    return any ? rules : std::vector<FollowingRule>();
+  }
+
   FollowingEnd::FollowingEnd(const TetMesh              &mesh,
                              const NodalVectors<double> &X_made,
                              const NodalVectors<double> &X,
                              const NodalVectors<double> &V,
                              const Process<double>      &nominal,
                              const StrokeStep           &at,
-                             const double                next)
-      : X_made_(X_made), X_(X), of_made_(X.size()), of_now_(X.size()), most_(0.5 * std::min(at.step, next))
+                             const FollowingRule        &rule)
+      : X_made_(X_made), X_(X), of_made_(X.size()), of_now_(X.size()), rule_(rule)
   {
     AssertDimension(X_made.size(), X.size());
+    if (rule.most == 0.)
+      return;
     const double dt   = nominal.duration(at);
     double       norm = 0.;
     for (const auto &cell : mesh.cells)
@@ -119,10 +144,12 @@ namespace retroforge
     using std::sqrt;
     AssertDimension(X_made.size(), X_.size());
     AssertDimension(X.size(), X_.size());
-    Number t = start;
+    Number t = rule_.of_start * start;
+    if (rule_.most == 0.)
+      return t;
     for (std::size_t k = 0; k < X.size(); ++k)
       t += (X[k] - X_[k]) * of_now_[k] + (X_made[k] - X_made_[k]) * of_made_[k];
-    return most_ * t / sqrt(Number(most_ * most_ + t * t));
+    return rule_.most * t / sqrt(Number(rule_.most * rule_.most + t * t));
   }
 
   template double
@@ -130,9 +157,9 @@ namespace retroforge
   template Dual
   FollowingEnd::moved(const Dual &, const NodalVectors<Dual> &, const NodalVectors<Dual> &) const;
 
-  void FollowingEnd::reverse_moved(const double          bar,
-                                   NodalVectors<double> &X_made_bar,
-                                   NodalVectors<double> &X_bar) const
+  double FollowingEnd::reverse_moved(const double          bar,
+                                     NodalVectors<double> &X_made_bar,
+                                     NodalVectors<double> &X_bar) const
   {
     AssertDimension(X_made_bar.size(), of_made_.size());
     AssertDimension(X_bar.size(), of_now_.size());
@@ -141,5 +168,6 @@ namespace retroforge
       X_made_bar[k] += bar * of_made_[k];
       X_bar[k] += bar * of_now_[k];
     }
+    return rule_.of_start * bar;
   }
 } // namespace retroforge

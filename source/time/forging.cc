@@ -427,8 +427,7 @@ namespace retroforge
       X_made_nominal = X_nominal = nominal->X_0;
     for (unsigned int i = 0; i < n; ++i)
     {
-      const StrokeStep after  = nominal != nullptr && i + 1 < n ? place(access(i + 1)) : StrokeStep{0., 0.};
-      IncrementRecord  record = access(i);
+      IncrementRecord record = access(i);
       record.newton = record.krylov = record.linear_solves = 0;
       enter(record.operation, state);
       if (record.remesh)
@@ -443,15 +442,14 @@ namespace retroforge
       if (nominal != nullptr)
       {
         const NodalVectors<double> V = mechanics.mean_velocity(record);
-        if (after.step > 0. && after.operation == record.operation)
-          ends.end = FollowingEnd(state.epoch->scene.mesh,
-                                  X_made_nominal,
-                                  X_nominal,
-                                  V,
-                                  nominal->process,
-                                  place(record),
-                                  after.step)
-                       .moved(ends.start, X_made, state.workpiece.X);
+        ends.end                     = FollowingEnd(state.epoch->scene.mesh,
+                                X_made_nominal,
+                                X_nominal,
+                                V,
+                                nominal->process,
+                                place(record),
+                                nominal->rules[i])
+                     .moved(ends.start, X_made, state.workpiece.X);
         const double dt = nominal->process.duration(place(record));
         for (std::size_t k = 0; k < X_nominal.size(); ++k)
           X_nominal[k] += dt * V[k];

@@ -17,9 +17,9 @@ namespace retroforge
     const Objectives          &objectives;
     const RecordedObjectives  &traced; ///< of these; they have decided
     Timings                   &timings;
-    /// Whether ends of increments follow the state (steps/moved_ends.h).
-    bool                 ends_follow = false;
-    NodalVectors<double> X_0         = {}; ///< where the run began, if so [mm]
+    /// Of each increment, where ends follow the state (steps/moved_ends.h); else none.
+    std::vector<FollowingRule> rules = {};
+    NodalVectors<double>       X_0   = {}; ///< where the run began, if so [mm]
   };
 
   /// dPhi/dX_0 and dPhi/d(process) of one combination of objectives.

@@ -130,7 +130,7 @@ namespace retroforge
 
     /// Returns whether ends of increments follow the state in derivatives and replays (steps/moved_ends.h): where its quality
     /// had the mesh made anew on the way.
-    bool ends_follow() const;
+    bool ends_follow() const { return !following_rules().empty(); }
 
     /// Returns whether the mesh may be made anew.
     bool remeshes() const
@@ -152,6 +152,9 @@ namespace retroforge
 
     RecordedForging recorded() const;
 
+    /// Returns those of the increments, where their ends follow the state; else none.
+    std::vector<FollowingRule> following_rules() const;
+
     /// Takes the run into a segment, whose numerics the model has.
     void enter(std::size_t segment);
 
@@ -165,7 +168,8 @@ namespace retroforge
     const bool                  can_go_back_; ///< the increments are kept or recorded
     Recording                   recording_;
     ForgingState                state_;
-    std::vector<double>         strokes_;     ///< up to it
+    std::vector<StrokeStep>     increments_;  ///< up to it
+    std::vector<double>         strokes_;     ///< at their ends, over all operations [mm]
     std::size_t                 segment_ = 0; ///< that the state is in
     std::unique_ptr<SegmentRun> running_;     ///< of it
   };

@@ -13,7 +13,8 @@
 /// of a better one, mostly down. Were the strokes of remeshings held while the design moves, all that forces
 /// grow within a mesh would count in a derivative, and nothing of what they fall between two: that of
 /// the energy by the offset of a die would be the force at the end and the sum of these jumps, up to 14 % of it.
-/// So, where meshes are made anew by their quality, each increment but the last ends sooner as the state at its start is ahead,
+/// So, where meshes are made anew by their quality, each increment up to the last new mesh of its operation ends sooner as the
+/// state at its start is ahead,
 ///   s'_end = s_end + b t/(b^2 + t^2)^(1/2),
 ///   t = s'_start - s_start - step (e(U), e(X - X_nominal) - e_made) / (e(U), e(U)),   e(U) = dev sym grad U,
 ///   e_made = dev sym F grad(X_made - X_made_nominal) F^(-1),
@@ -22,6 +23,8 @@
 /// whatever body the mesh was made of. b, half of the shorter one of the
 /// increments that meet there, keeps steps positive. Were only those ends moved at which a mesh is made anew, the two increments
 /// there would become longer and shorter by all of it, and what arrives at dies in these would make slopes rough.
+/// On the last mesh ends come back to their places, by the same part of the stroke that is left,
+///   s'_end - s_end = (S - s_end) / (S - s_start) (s'_start - s_start),   S the end of the operation.
 /// The nominal run is as it was: all this is for replays and derivatives. A run that decides anew remeshes between its
 /// own increments: its energies jump where that falls into another one, and this derivative is that of the trend across
 /// these jumps, not that between two.
@@ -46,6 +49,18 @@ namespace retroforge
   MovedEnds<double>
   reverse_moved_ends(const Process<double> &process, const StrokeStep &at, const Process<double> &bar);
 
+  /// What the end of an increment follows.
+  struct FollowingRule
+  {
+    double of_start = 0.; ///< the part of how far the increment begins beside its record
+    double most     = 0.; ///< b [mm]; 0 on the last mesh, where the state does not count
+  };
+
+  /// Returns those of the increments of a run; none where no mesh was made anew within an operation.
+  /// @param remeshed  the increments, from 0, that began on a new mesh, in their order
+  std::vector<FollowingRule> following_rules(const std::vector<StrokeStep>   &increments,
+                                             const std::vector<unsigned int> &remeshed);
+
   /// How the end of an increment follows the positions at its start.
   class FollowingEnd
   {
@@ -56,14 +71,14 @@ namespace retroforge
     /// @param V         nominal mean velocity of nodes over it [mm/s]
     /// @param nominal   the process of the nominal run
     /// @param at        the increment
-    /// @param next      length of the next one [mm]
+    /// @param rule      of it
     FollowingEnd(const TetMesh              &mesh,
                  const NodalVectors<double> &X_made,
                  const NodalVectors<double> &X,
                  const NodalVectors<double> &V,
                  const Process<double>      &nominal,
                  const StrokeStep           &at,
-                 double                      next);
+                 const FollowingRule        &rule);
 
     /// Returns by how much the increment ends beside its record [mm].
     /// @param start  by how much it begins there
@@ -71,12 +86,13 @@ namespace retroforge
     Number
     moved(const Number &start, const NodalVectors<Number> &X_made, const NodalVectors<Number> &X) const;
 
-    /// Adds the derivatives of  bar * moved()  in positions, at the nominal ones; that in the start is bar.
-    void reverse_moved(double bar, NodalVectors<double> &X_made_bar, NodalVectors<double> &X_bar) const;
+    /// Adds the derivatives of  bar * moved()  in positions, at the nominal ones.
+    /// @return that in the start
+    double reverse_moved(double bar, NodalVectors<double> &X_made_bar, NodalVectors<double> &X_bar) const;
 
   private:
     const NodalVectors<double> X_made_, X_;
     NodalVectors<double>       of_made_, of_now_; ///< gradients of t [mm/mm]
-    const double               most_;             ///< b
+    const FollowingRule        rule_;
   };
 } // namespace retroforge

@@ -32,6 +32,7 @@ namespace retroforge
     {
       const Process<double>      &process;
       const NodalVectors<double> &X_0;
+      std::vector<FollowingRule>  rules; ///< of each increment
     };
 
     /// @param end  where the run goes: that of the process, or where other numerics begin to hold

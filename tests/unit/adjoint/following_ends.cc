@@ -163,6 +163,14 @@ namespace
     times    ///< of rows
   };
 
+  std::vector<FollowingRule> rules_of(const RecordedRun &run)
+  {
+    std::vector<StrokeStep> increments;
+    for (const IncrementRecord &record : run.records)
+      increments.push_back(place(record));
+    return following_rules(increments, run.state().remeshed);
+  }
+
   /// The direct method as tangent_sweep has it, without a term.
   std::vector<Dual> tangent(const RecordedRun &run, const Way &way, const Term omitted)
   {
@@ -171,6 +179,7 @@ namespace
     std::vector<PathRows<Dual>> rows(run.objectives().size());
     auto state = workpiece_before(process, NodalVectors<Dual>(X_0), epoch->scene.mesh.n_cells());
     NodalVectors<Dual> X_made = state.X;
+    const auto         rules  = rules_of(run);
     MovedEnds<Dual>    ends;
     StrokeStep         end{0., 0.};
     for (std::size_t i = 0; i < run.records.size(); ++i)
@@ -192,7 +201,6 @@ namespace
       }
       end  = place(record);
       ends = {ends.end, Dual(0.)};
-      if (i + 1 < run.records.size() && run.records[i + 1].operation == record.operation)
       {
         NodalVectors<double> X, made;
         convert(state.X, X);
@@ -203,7 +211,7 @@ namespace
                                      epoch->increment.mechanics.mean_velocity(record),
                                      run.process(),
                                      end,
-                                     run.records[i + 1].step);
+                                     rules[i]);
         NodalVectors<Dual> X_nominal, made_nominal;
         convert(X, X_nominal);
         convert(made, made_nominal);

@@ -7,9 +7,12 @@
 //   on to where the stroke of the end has them, in a time in proportion to the length; other operations stay.
 //   Its reverse and that of what objectives see of such an increment against dual numbers.
 // - How far an end moves: in closed form where positions are ahead along the increment's own motion, by the stroke that
-//   fits best the strains of any other, nothing by translations, rotations and where nothing flows, and less than to
-//   the middle of the shorter one of the increments that meet there. Its reverse against dual numbers, and the order of
-//   the remainder of Taylor's expansion.
+//   fits best the strains of any other, nothing by translations, rotations and where nothing flows, and less than b.
+//   Its reverse against dual numbers, and the order of the remainder of Taylor's expansion. On the last mesh of an
+//   operation a part of how far the increment begins beside its record, whatever the positions are.
+// - Which ends follow what: up to the last new mesh of each operation the state, at most to the middle of the shorter one
+//   of the increments that meet there; from there on starts, and ever less of them; none where no mesh was made anew within
+//   an operation.
 
 #include <deal.II/base/mpi.h>
 
@@ -209,7 +212,7 @@ namespace
   {
   public:
     const StrokeStep      at{5., 2., 0};
-    const double          next = 1.4, b = 0.5 * next;
+    const double          b = 0.7;
     const Process<double> process;
     TetMesh mesh = block_mesh({{3, 2, 4}}, [](unsigned int, unsigned int, unsigned int) { return true; });
     NodalVectors<double> V, made;
@@ -234,9 +237,9 @@ namespace
     static Vec3 upset(const Vec3 &x) { return Vec3({0.5 * x[0], 0.5 * x[1], -x[2]}); }
 
     /// Of a mesh that was made at other positions, from which it was stretched, sheared and turned.
-    FollowingEnd end(const NodalVectors<double> &velocity, const double next_step) const
+    FollowingEnd end(const NodalVectors<double> &velocity) const
     {
-      return {mesh, made, mesh.X, velocity, process, at, next_step};
+      return {mesh, made, mesh.X, velocity, process, at, {1., b}};
     }
 
     NodalVectors<double> ahead(const double d) const
@@ -278,7 +281,7 @@ namespace
     const auto   small       = [](const double x) { return yes(std::abs(x) < 1e-12); };
     const double b           = block.b;
     const auto   stroke_less = [b](const double t) { return b * t / std::sqrt(b * b + t * t); };
-    const auto   end         = block.end(block.V, block.next);
+    const auto   end         = block.end(block.V);
     double       off = 0., off_with_start = 0.;
     for (const double d : {-0.9, -1e-3, 0.2, 3.})
     {
@@ -288,11 +291,7 @@ namespace
     }
     std::cout << name << ", ahead by a stroke: " << small(off)
               << ", with a start that moves: " << small(off_with_start) << "\n";
-    const auto longer = block.end(block.V, 9.);
-    std::cout << "  b is of the shorter increment: "
-              << yes(std::abs(longer.moved(0., block.made, block.ahead(0.4)) + 0.4 / std::sqrt(1. + 0.16)) <
-                     1e-12)
-              << ", not past its middle: "
+    std::cout << "  by less than b: "
               << yes(std::abs(end.moved(0., block.made, block.ahead(100.))) < b &&
                      end.moved(0., block.made, block.ahead(100.)) < -0.99 * b &&
                      end.moved(0., block.made, block.ahead(-100.)) < b &&
@@ -312,14 +311,14 @@ namespace
     };
     const double order = std::log2(rotated(2e-3) / rotated(1e-3));
     std::cout << ", a rotation in second order: " << yes(std::abs(order - 2.) < 0.01);
-    const auto still = block.end(NodalVectors<double>(block.mesh.n_nodes()), block.next);
+    const auto still = block.end(NodalVectors<double>(block.mesh.n_nodes()));
     std::cout << ", nothing flows: "
               << yes(still.moved(0., block.made, block.ahead(1.)) == 0. &&
                      std::abs(still.moved(0.2, block.made, block.ahead(1.)) - stroke_less(0.2)) < 1e-15)
               << "\n";
     const NodalVectors<double> V  = numbers.vectors(block.mesh.n_nodes()),
                                dX = numbers.vectors(block.mesh.n_nodes());
-    const auto of_any             = block.end(V, block.next);
+    const auto of_any             = block.end(V);
     const auto X_at               = [&](const double h) {
       NodalVectors<double> X = block.mesh.X;
       for (std::size_t k = 0; k < X.size(); ++k)
@@ -354,9 +353,10 @@ namespace
     Dual start(0.);
     start.fastAccessDx(0)            = start_dot;
     NodalVectors<double>       X_bar = numbers.vectors(block.mesh.n_nodes()), M_bar = X_bar;
-    const NodalVectors<double> was = X_bar;
-    of_any.reverse_moved(bar, M_bar, X_bar);
-    const double reverse = bar * start_dot + dot(X_bar, dX) - dot(was, dX) + dot(M_bar, dM) - dot(was, dM);
+    const NodalVectors<double> was       = X_bar;
+    const double               start_bar = of_any.reverse_moved(bar, M_bar, X_bar);
+    const double               reverse =
+      start_bar * start_dot + dot(X_bar, dX) - dot(was, dX) + dot(M_bar, dM) - dot(was, dM);
     std::cout << "  dot product: "
               << yes(std::abs(bar * of_any.moved(start, M_dual, X_dual).dx(0) / reverse - 1.) < 1e-12);
     const double slope     = (dot(X_bar, dX) - dot(was, dX)) / bar;
@@ -366,6 +366,32 @@ namespace
     const double h = 0.05 * b / std::abs(slope);
     std::cout << ", remainder at least of second order: "
               << yes(std::log2(remainder(h) / remainder(0.5 * h)) > 1.95) << "\n";
+  }
+
+  void check_last_mesh(const Block &block)
+  {
+    const FollowingEnd end(
+      block.mesh, block.made, block.mesh.X, block.V, block.process, block.at, {0.75, 0.});
+    NodalVectors<double> X_bar(block.mesh.n_nodes()), M_bar = X_bar;
+    const double         start_bar = end.reverse_moved(2., M_bar, X_bar);
+    std::cout << "on the last mesh, part of the start: "
+              << yes(std::abs(end.moved(0.4, block.made, block.ahead(0.3)) - 0.3) < 1e-15)
+              << ", reverse: " << yes(start_bar == 1.5 && dot(X_bar, X_bar) + dot(M_bar, M_bar) == 0.)
+              << "\n";
+  }
+
+  void check_rules()
+  {
+    const std::vector<StrokeStep> increments = {
+      {0., 2., 0}, {2., 1., 0}, {3., 2., 0}, {5., 1., 0}, {6., 3., 0}, {0., 1., 1}, {1., 3., 1}};
+    const auto                       rules  = following_rules(increments, {0, 2, 5});
+    const std::vector<FollowingRule> wanted = {
+      {1., 0.5}, {1., 0.5}, {2. / 3., 0.}, {0.75, 0.}, {0., 0.}, {0.75, 0.}, {0., 0.}};
+    bool same = rules.size() == wanted.size();
+    for (std::size_t i = 0; same && i < rules.size(); ++i)
+      same = std::abs(rules[i].of_start - wanted[i].of_start) < 1e-15 && rules[i].most == wanted[i].most;
+    std::cout << "rules of two operations: " << yes(same) << ", new meshes between operations only: none: "
+              << yes(following_rules(increments, {0, 5}).empty()) << "\n";
   }
 } // namespace
 
@@ -382,5 +408,8 @@ int main(int argc, char **argv)
               << " mm, dot product: " << yes(defect_of_process(process, dies, at) < 1e-12)
               << (at.step > 0. ? ", of rows: " + yes(defect_of_row(process, dies, at) < 1e-12) : "") << "\n";
   check_rows(process);
-  check_end("an end", Block(process));
+  const Block block(process);
+  check_end("an end", block);
+  check_last_mesh(block);
+  check_rules();
 }
