@@ -121,6 +121,21 @@ namespace retroforge
       return ends_bar;
     }
 
+    /// Positions at the starts of the increments from one, at whose start they are given, up to another. They are those of the run to the
+    /// bit: where nodes stand on dies contact has kinks, and is to be differentiated on the side where the run was.
+    std::vector<NodalVectors<double>> positions_of(const RecordedForging &run,
+                                                   const MeshEpoch       &epoch,
+                                                   const unsigned int     from,
+                                                   const unsigned int     to)
+    {
+      std::vector<NodalVectors<double>> starts = {from > 0 || run.record(from).remesh ? epoch.scene.mesh.X
+                                                                                      : run.X_0};
+      for (unsigned int i = from; i + 1 < to; ++i)
+        starts.push_back(
+          epoch.increment.mechanics.positions_after(run.process, starts.back(), run.record(i)));
+      return starts;
+    }
+
     /// Costates that take what falls on an increment apart from what fell on the process before.
     std::vector<Costate> apart(const RecordedForging &run, std::vector<Costate> &costates)
     {
@@ -172,6 +187,8 @@ namespace retroforge
     // In the positions at which the mesh at hand was made.
     std::vector<NodalVectors<double>> made_bar(costates.size(), NodalVectors<double>(state.X.size()));
 
+    std::vector<NodalVectors<double>> starts; // of the increments that are left on the mesh at hand
+
     const WorkpieceState<3, double> no_history;
     epoch->increment.mechanics.forget();
     for (unsigned int i = end.increments; i-- > 0;)
@@ -189,8 +206,11 @@ namespace retroforge
       const IncrementRecord record = run.record(i);
       if (record.operation != operation)
         velocity.clear();
-      const unsigned int         before = epoch->system.n_solves;
-      const NodalVectors<double> X      = epoch->increment.mechanics.retreat(run.process, state.X, record);
+      const unsigned int before = epoch->system.n_solves;
+      if (starts.empty())
+        starts = positions_of(run, *epoch, remeshed.empty() ? 0 : remeshed.back(), i + 1);
+      const NodalVectors<double> X = std::move(starts.back());
+      starts.pop_back();
       if (!end.remembered.empty())
         state = end.remembered[i].start;
       state.X        = X;

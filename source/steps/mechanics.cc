@@ -326,10 +326,10 @@ namespace retroforge
     return {std::move(W), Origin::previous, rate(record)};
   }
 
-  NodalVectors<double> Mechanics::retreat(const Process<double>      &process,
-                                          const NodalVectors<double> &X_next,
-                                          const IncrementRecord      &record) const
+  NodalVectors<double> Mechanics::positions_after(const Process<double>      &process,
+                                                  const NodalVectors<double> &X,
+                                                  const IncrementRecord      &record) const
   {
-    return advanced(X_next, -process.duration(place(record)), scheme_of(record).b, record.solves);
+    return advanced(X, process.duration(place(record)), scheme_of(record).b, record.solves);
   }
 } // namespace retroforge

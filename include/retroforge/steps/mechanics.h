@@ -143,10 +143,10 @@ namespace retroforge
     /// Where a replay begins: at what was recorded.
     InitialGuess recorded_guess(const IncrementRecord &record) const;
 
-    /// X_i of a recorded increment from X_{i+1}, but for rounding.
-    NodalVectors<double> retreat(const Process<double>      &process,
-                                 const NodalVectors<double> &X_next,
-                                 const IncrementRecord      &record) const;
+    /// Returns X_{i+1} of a recorded increment from X_i, the same bits as the run's.
+    NodalVectors<double> positions_after(const Process<double>      &process,
+                                         const NodalVectors<double> &X,
+                                         const IncrementRecord      &record) const;
 
     /// Forgets what earlier systems left: preconditioner and starts. Results then depend on the input only.
     void forget();

@@ -332,6 +332,7 @@ namespace
     WorkpieceState<3, double> state     = end.workpiece;
     Mechanics                &mechanics = run.first_epoch().increment.mechanics;
     const NetworkEdges        edges(run.scene.mesh, run.scene.topology);
+    const auto                X            = positions_of(run);
     const auto                conduct_back = [&](const HalfOfIncrement            half,
                                   const IncrementRecord           &record,
                                   const NodalVectors<double>      &X,
@@ -353,11 +354,11 @@ namespace
     };
     for (unsigned int i = run.records.size(); i-- > 0;)
     {
-      const IncrementRecord     &record = run.records[i];
-      const double               dt     = run.process().duration(place(record));
-      const NodalVectors<double> X_end  = state.X;
-      state                             = end.remembered[i].start;
-      state.X                           = mechanics.retreat(run.process(), X_end, record);
+      const IncrementRecord      &record = run.records[i];
+      const double                dt     = run.process().duration(place(record));
+      const NodalVectors<double> &X_end  = X[i + 1];
+      state                              = end.remembered[i].start;
+      state.X                            = X[i];
       state.velocity.clear(); // an operation begins at rest
       if (i > 0 && run.records[i - 1].operation == record.operation)
         state.velocity = mechanics.mean_velocity(run.records[i - 1]);

@@ -124,4 +124,13 @@ namespace retroforge
         records.push_back(record(i));
     }
   };
+
+  /// Positions at the starts of the increments of a run on one mesh, and at its end.
+  inline std::vector<NodalVectors<double>> positions_of(const RecordedRun &run)
+  {
+    std::vector<NodalVectors<double>> X = {run.X_0()};
+    for (const IncrementRecord &record : run.records)
+      X.push_back(run.first_epoch().increment.mechanics.positions_after(run.process(), X.back(), record));
+    return X;
+  }
 } // namespace retroforge

@@ -488,14 +488,14 @@ namespace retroforge
   {
     AdjointResult        result{NodalVectors<double>(problem.state().workpiece.X.size()),
                          no_process_derivatives(problem.process(), problem.scene.dies)};
-    NodalVectors<double> X = problem.state().workpiece.X, V_bar(X.size());
+    const auto           X = positions_of(problem);
+    NodalVectors<double> V_bar(X.back().size());
     for (unsigned int i = problem.records.size(); i-- > 0;)
     {
       const IncrementRecord &record = problem.records[i];
-      X            = problem.first_epoch().increment.mechanics.retreat(problem.process(), X, record);
       const auto V = i > 0 ? problem.first_epoch().increment.mechanics.mean_velocity(problem.records[i - 1])
                            : NodalVectors<double>();
-      reverse_increment(problem, X, V, record, omitted, result.X_0, V_bar, result.process);
+      reverse_increment(problem, X[i], V, record, omitted, result.X_0, V_bar, result.process);
     }
     return result;
   }
