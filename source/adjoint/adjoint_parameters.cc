@@ -26,11 +26,9 @@ namespace retroforge
       increments,
       {{"hold", Increments::hold}, {"follow", Increments::follow}},
       "Where increments end at other values of the design, in derivatives and replays of a run in which "
-      "quality had the mesh made anew: hold, at the same strokes, which gives the slope between two jumps; "
-      "or "
-      "follow, sooner where the metal is strained farther, which is meant for the trend across runs that "
-      "decide "
-      "anew, and not nearer to it in every scene (manual, gradients). Units: none.");
+      "quality had the mesh made anew: follow, sooner where the metal is strained farther, which gives the "
+      "trend across runs that decide anew; or hold, at the same strokes, which gives the slope between two "
+      "jumps (manual, gradients). Units: none.");
     using Derivatives = ShapeDerivatives::Method;
     add_enum<Derivatives>(
       prm,

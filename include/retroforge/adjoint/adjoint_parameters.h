@@ -25,7 +25,7 @@ namespace retroforge
 
     Method           method     = Method::adjoint;
     double           tolerance  = 1e-6;
-    Increments       increments = Increments::hold;
+    Increments       increments = Increments::follow;
     ShapeDerivatives shape_derivatives;
 
     void add_parameters(dealii::ParameterHandler &prm);
