@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <deal.II/base/mpi.h>
+
 #include <retroforge/linear_algebra/flexible_gmres.h>
 
 // The one file that knows Belos, whose headers take long to compile, and need this one before them.
 #include <Teuchos_SerialDenseMatrix.hpp>
 
 #include <BelosBlockFGmresIter.hpp>
-#include <BelosEpetraAdapter.hpp>
 #include <BelosICGSOrthoManager.hpp>
 #include <BelosLinearProblem.hpp>
+#include <BelosMultiVec.hpp>
+#include <BelosOperator.hpp>
 #include <BelosOutputManager.hpp>
 #include <BelosStatusTestCombo.hpp>
 #include <BelosStatusTestGenResNorm.hpp>
 #include <BelosStatusTestMaxIters.hpp>
-#include <Epetra_Map.h>
-#include <Epetra_MultiVector.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -24,23 +26,30 @@ namespace retroforge
 {
   namespace
   {
-    using Directions = Epetra_MultiVector; ///< entries of a rank's blocks, one block after the other
-    using Dense      = Teuchos::SerialDenseMatrix<int, double>;
+    using Dense     = Teuchos::SerialDenseMatrix<int, double>;
+    using BelosMany = Belos::MultiVec<double>;
 
     /// Passes of classical Gram-Schmidt. With one, directions are less and less orthogonal, and derivatives are
     /// up to ten times less exact than their tolerance asks for.
     constexpr int passes = 2;
 
-    void copy(const la::BlockVector &x, Epetra_MultiVector &y)
+    std::size_t n_owned(const la::BlockVector &x)
     {
-      double *to = y[0];
+      std::size_t n = 0;
+      for (unsigned int b = 0; b < x.n_blocks(); ++b)
+        n += x.block(b).locally_owned_size();
+      return n;
+    }
+
+    /// Entries of a rank's blocks, one block after the other.
+    void copy(const la::BlockVector &x, double *to)
+    {
       for (unsigned int b = 0; b < x.n_blocks(); ++b)
         to = std::copy(x.block(b).begin(), x.block(b).end(), to);
     }
 
-    void copy(const Epetra_MultiVector &x, la::BlockVector &y)
+    void copy(const double *from, la::BlockVector &y)
     {
-      const double *from = x[0];
       for (unsigned int b = 0; b < y.n_blocks(); ++b)
       {
         const unsigned int n = y.block(b).locally_owned_size();
@@ -49,57 +58,171 @@ namespace retroforge
       }
     }
 
-    Epetra_Map map_of_blocks(const la::BlockVector &x)
+    /// Vectors of one length, one behind the other, or a view of neighbours among them. A single one is
+    /// multiplied with many as a vector with a matrix: products of two matrices, as Trilinos' own vectors are multiplied, sort them
+    /// into blocks first, which takes longer than the product.
+    class Directions : public BelosMany
     {
-      unsigned int n = 0;
-      for (unsigned int b = 0; b < x.n_blocks(); ++b)
-        n += x.block(b).locally_owned_size();
-      return {-1, static_cast<int>(n), 0, x.block(0).trilinos_vector().Comm()};
-    }
+    public:
+      /// Without values yet.
+      /// @param length  of a vector, on all ranks
+      /// @param n       entries of this one
+      Directions(const MPI_Comm comm, const std::size_t length, const std::size_t n, const int n_vectors)
+          : comm_(comm)
+          , length_(length)
+          , n_(n)
+          , n_vectors_(n_vectors)
+          , entries_(new double[n * n_vectors])
+          , first_(entries_.get())
+      {
+      }
+
+      explicit Directions(const la::BlockVector &x)
+          : Directions(x.block(0).get_mpi_communicator(), x.size(), n_owned(x), 1)
+      {
+        copy(x, first_);
+      }
+
+      double       *operator[](const int j) { return first_ + j * n_; }
+      const double *operator[](const int j) const { return first_ + j * n_; }
+
+      BelosMany *Clone(const int n_vectors) const override
+      {
+        return new Directions(comm_, length_, n_, n_vectors);
+      }
+      BelosMany *CloneCopy() const override { return copied(*this); }
+      BelosMany *CloneCopy(const std::vector<int> &which) const override { return copied(view(which)); }
+      BelosMany *CloneViewNonConst(const std::vector<int> &which) override
+      {
+        return new Directions(view(which));
+      }
+      const BelosMany *CloneView(const std::vector<int> &which) const override
+      {
+        return new Directions(view(which));
+      }
+      ptrdiff_t GetGlobalLength() const override { return length_; }
+      int       GetNumberVecs() const override { return n_vectors_; }
+
+      void MvTimesMatAddMv(const double alpha, const BelosMany &A, const Dense &B, const double beta) override
+      {
+        const Directions &of = from(A);
+        for (int j = 0; j < n_vectors_; ++j)
+          Teuchos::BLAS<int, double>().GEMV(
+            Teuchos::NO_TRANS, n_, of.n_vectors_, alpha, of[0], stride(), B[j], 1, beta, (*this)[j], 1);
+      }
+      void MvTransMv(const double alpha, const BelosMany &A, Dense &B) const override
+      {
+        const Directions &of = from(A);
+        for (int j = 0; j < n_vectors_; ++j)
+        {
+          Teuchos::BLAS<int, double>().GEMV(
+            Teuchos::TRANS, n_, of.n_vectors_, alpha, of[0], stride(), (*this)[j], 1, 0., B[j], 1);
+          const dealii::ArrayView<double> sums(B[j], of.n_vectors_);
+          dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(sums), comm_, sums);
+        }
+      }
+      void MvAddMv(const double alpha, const BelosMany &A, const double beta, const BelosMany &B) override
+      {
+        const double *a = from(A)[0], *b = from(B)[0];
+        for (std::size_t i = 0; i < n_ * n_vectors_; ++i)
+          first_[i] = alpha * a[i] + beta * b[i];
+      }
+      void MvScale(const double alpha) override
+      {
+        std::for_each(first_, first_ + n_ * n_vectors_, [alpha](double &x) { x *= alpha; });
+      }
+      void MvScale(const std::vector<double> &alpha) override
+      {
+        for (int j = 0; j < n_vectors_; ++j)
+          std::for_each((*this)[j], (*this)[j] + n_, [&](double &x) { x *= alpha[j]; });
+      }
+      void MvDot(const BelosMany &A, std::vector<double> &products) const override
+      {
+        const Directions &of = from(A);
+        for (int j = 0; j < n_vectors_; ++j)
+          products[j] =
+            dealii::Utilities::MPI::sum(std::inner_product((*this)[j], (*this)[j] + n_, of[j], 0.), comm_);
+      }
+      void MvNorm(std::vector<double> &norms, const Belos::NormType type) const override
+      {
+        Assert(type == Belos::TwoNorm, dealii::ExcNotImplemented());
+        (void)type;
+        MvDot(*this, norms);
+        for (int j = 0; j < n_vectors_; ++j)
+          norms[j] = std::sqrt(norms[j]);
+      }
+      void SetBlock(const BelosMany &A, const std::vector<int> &which) override
+      {
+        const Directions &of = from(A);
+        for (std::size_t j = 0; j < which.size(); ++j)
+          std::copy(of[j], of[j] + n_, (*this)[which[j]]);
+      }
+      void MvInit(const double alpha) override { std::fill(first_, first_ + n_ * n_vectors_, alpha); }
+      void MvRandom() override { Assert(false, dealii::ExcNotImplemented()); }
+      void MvPrint(std::ostream &) const override {}
+
+    private:
+      static const Directions &from(const BelosMany &A) { return dynamic_cast<const Directions &>(A); }
+      static Directions       *copied(const Directions &from)
+      {
+        auto *copy = new Directions(from.comm_, from.length_, from.n_, from.n_vectors_);
+        std::copy(from[0], from[from.n_vectors_], (*copy)[0]);
+        return copy;
+      }
+      /// Shares the entries.
+      Directions view(const std::vector<int> &which) const
+      {
+        for (std::size_t j = 1; j < which.size(); ++j)
+          AssertDimension(which[j], which[0] + static_cast<int>(j));
+        Directions some(*this);
+        some.first_ += which[0] * n_;
+        some.n_vectors_ = which.size();
+        return some;
+      }
+      /// BLAS wants it positive on a rank without entries, too.
+      int stride() const { return std::max<int>(n_, 1); }
+
+      MPI_Comm                  comm_;
+      std::size_t               length_, n_;
+      int                       n_vectors_;
+      std::shared_ptr<double[]> entries_;
+      double                   *first_;
+    };
 
     /// A function of block vectors, as Belos calls it.
-    struct Operator
+    class Operator : public Belos::Operator<double>
     {
-      const BlockOperator    &of;
-      mutable la::BlockVector x, y;
+    public:
+      Operator(const BlockOperator &of, const la::BlockVector &like) : of_(of), x_(like), y_(like) {}
 
-      Operator(const BlockOperator &of, const la::BlockVector &like) : of(of), x(like), y(like) {}
+      void Apply(const BelosMany &x, BelosMany &y, Belos::ETrans) const override
+      {
+        copy(dynamic_cast<const Directions &>(x)[0], x_);
+        of_(y_, x_);
+        copy(y_, dynamic_cast<Directions &>(y)[0]);
+      }
+
+    private:
+      const BlockOperator    &of_;
+      mutable la::BlockVector x_, y_;
     };
-  } // namespace
-} // namespace retroforge
 
-namespace Belos
-{
-  template <>
-  class OperatorTraits<double, retroforge::Directions, retroforge::Operator>
-  {
-  public:
-    static void Apply(const retroforge::Operator   &F,
-                      const retroforge::Directions &x,
-                      retroforge::Directions       &y,
-                      ETrans = NOTRANS)
-    {
-      retroforge::copy(x, F.x);
-      F.of(F.y, F.x);
-      retroforge::copy(F.y, y);
-    }
-    static bool HasApplyTranspose(const retroforge::Operator &) { return false; }
-  };
-} // namespace Belos
-
-namespace retroforge
-{
-  namespace
-  {
-    using Vectors = Belos::MultiVecTraits<double, Directions>;
-    using Problem = Belos::LinearProblem<double, Directions, Operator>;
-    using Gmres   = Belos::BlockFGmresIter<double, Directions, Operator>;
-    using Basis   = Belos::ICGSOrthoManager<double, Directions, Operator>;
-    using Norm    = Belos::StatusTestGenResNorm<double, Directions, Operator>;
-    using Limit   = Belos::StatusTestMaxIters<double, Directions, Operator>;
-    using Either  = Belos::StatusTestCombo<double, Directions, Operator>;
+    using Vectors = Belos::MultiVecTraits<double, BelosMany>;
+    using Problem = Belos::LinearProblem<double, BelosMany, Belos::Operator<double>>;
+    using Gmres   = Belos::BlockFGmresIter<double, BelosMany, Belos::Operator<double>>;
+    using Basis   = Belos::ICGSOrthoManager<double, BelosMany, Belos::Operator<double>>;
+    using Norm    = Belos::StatusTestGenResNorm<double, BelosMany, Belos::Operator<double>>;
+    using Limit   = Belos::StatusTestMaxIters<double, BelosMany, Belos::Operator<double>>;
+    using Either  = Belos::StatusTestCombo<double, BelosMany, Belos::Operator<double>>;
 
     using Teuchos::rcp;
+
+    double norm_of(const BelosMany &x)
+    {
+      std::vector<double> norm(1);
+      x.MvNorm(norm, Belos::TwoNorm);
+      return norm[0];
+    }
 
     /// Iterates until there is no more room or a test is passed, and returns the number of directions.
     int iterate(Gmres &gmres)
@@ -125,7 +248,7 @@ namespace retroforge
 
     /// x += Z y with the least residual, which it returns; x is unchanged where that is not a number.
     double
-    add_directions(const Belos::GmresIterationState<double, Directions> &state, const int n, Directions &x)
+    add_directions(const Belos::GmresIterationState<double, BelosMany> &state, const int n, BelosMany &x)
     {
       const double residual = std::abs((*state.z)(n, 0));
       if (n == 0)
@@ -159,10 +282,7 @@ namespace retroforge
                                        const unsigned int     limit,
                                        const unsigned int     restart)
   {
-    const Epetra_Map map = map_of_blocks(b);
-    const auto       X = rcp(new Directions(map, 1, false)), B = rcp(new Directions(map, 1, false));
-    copy(x, *X);
-    copy(b, *B);
+    const auto X = rcp(new Directions(x)), B = rcp(new Directions(b));
     const auto problem = rcp(new Problem(rcp(new Operator(M, b)), X, B));
     problem->setRightPrec(rcp(new Operator(P, b)));
     problem->setProblem();
@@ -172,24 +292,23 @@ namespace retroforge
     norm->defineResForm(Norm::Implicit, Belos::TwoNorm);
     norm->defineScaleForm(Belos::None, Belos::TwoNorm);
     Teuchos::ParameterList list;
-    list.set("Num Blocks", std::min<int>(std::min(restart, limit), map.NumGlobalElements()));
+    list.set("Num Blocks", std::min<int>(std::min(restart, limit), X->GetGlobalLength()));
     Gmres gmres(problem,
                 rcp(new Belos::OutputManager<double>(Belos::Errors)),
                 rcp(new Either(Either::OR, rcp(new Limit(limit)), norm)),
                 rcp(new Basis("Belos", Teuchos::null, passes)),
                 list);
 
-    KrylovResult                                   result;
-    Belos::GmresIterationState<double, Directions> first;
-    const auto                                     r = Vectors::CloneCopy(*problem->getInitResVec());
-    const auto                                     z = rcp(new Dense(1, 1));
-    first.V                                          = r;
-    first.z                                          = z;
-    double residual;
-    r->Norm2(&residual);
+    KrylovResult                                  result;
+    Belos::GmresIterationState<double, BelosMany> first;
+    const auto                                    r = Vectors::CloneCopy(*problem->getInitResVec());
+    const auto                                    z = rcp(new Dense(1, 1));
+    first.V                                         = r;
+    first.z                                         = z;
+    double residual                                 = norm_of(*r);
     while (residual > tolerance && result.iterations < limit)
     {
-      r->Scale(1. / residual);
+      r->MvScale(1. / residual);
       (*z)(0, 0) = residual;
       gmres.initializeGmres(first);
       const int n       = iterate(gmres);
@@ -198,10 +317,10 @@ namespace retroforge
       if (residual > tolerance)
       {
         problem->computeCurrResVec(r.get());
-        r->Norm2(&residual);
+        residual = norm_of(*r);
       }
     }
-    copy(*X, x);
+    copy((*X)[0], x);
     result.converged = residual <= tolerance;
     return result;
   }
