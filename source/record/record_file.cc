@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/mesh/mesh_checks.h>
 #include <retroforge/record/record_file.h>
 
 #include <cerrno>
@@ -313,8 +314,7 @@ namespace retroforge
   IncrementRecord RecordReader::read(const unsigned int i) const
   {
     const std::string file = finished() ? file_ : increment_file(directory_, i);
-    return read_whole<IncrementRecord>(file,
-                                       [&](const hid_t f) { return read_increment(f, file, i, shape_); });
+    return read_whole<IncrementRecord>(file, [&](const hid_t f) { return read_increment(f, i, shape_); });
   }
 
   void RecordReader::check_increments() const
@@ -326,9 +326,12 @@ namespace retroforge
     for (unsigned int i = 0; i < n_increments_; ++i)
     {
       const IncrementRecord increment = read(i);
+      const std::string     file      = finished() ? file_ : increment_file(directory_, i);
+      if (increment.remesh)
+        check_mesh(increment.remesh->mesh, file + ", " + increment_name(i));
       const std::size_t begins_on = increment.remesh ? increment.remesh->X_before.size() : n_nodes(increment);
       if (begins_on != n)
-        throw Error(finished() ? file_ : increment_file(directory_, i),
+        throw Error(file,
                     increment_name(i) + " begins on a mesh of " + std::to_string(begins_on) +
                       " nodes where there is one of " + std::to_string(n),
                     "an increment goes on with the mesh of the one before, or remeshes it",

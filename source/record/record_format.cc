@@ -188,8 +188,7 @@ namespace retroforge
       hdf5::write_attribute(group, "repaired", &remesh.removed_volume);
     }
 
-    std::shared_ptr<const RemeshRecord>
-    read_remesh(const hid_t parent, const std::string &where, const RecordShape &shape)
+    std::shared_ptr<const RemeshRecord> read_remesh(const hid_t parent, const RecordShape &shape)
     {
       const hdf5::Handle group  = hdf5::open_group(parent, "remesh");
       auto               remesh = std::make_shared<RemeshRecord>();
@@ -213,7 +212,6 @@ namespace retroforge
         sound = sound && k < J.n_old;
       if (!sound)
         throw hdf5::Failure("the rows of a transfer between meshes do not fit these meshes");
-      check_mesh(remesh->mesh, where);
       J.set_offset(remesh->X_before, remesh->mesh.X);
       return remesh;
     }
@@ -448,10 +446,7 @@ namespace retroforge
     return read_head(open_increment(file, i, shape));
   }
 
-  IncrementRecord read_increment(const hid_t        file,
-                                 const std::string &file_name,
-                                 const unsigned int i,
-                                 const RecordShape &shape)
+  IncrementRecord read_increment(const hid_t file, const unsigned int i, const RecordShape &shape)
   {
     const hdf5::Handle group = open_increment(file, i, shape);
     IncrementHead      head  = read_head(group);
@@ -479,7 +474,7 @@ namespace retroforge
     increment.pairs  = read_pairs(group, shape, n);
     increment.solves = read_solves(group, n, increment.pairs.size());
     if (hdf5::has_link(group, "remesh"))
-      increment.remesh = read_remesh(group, file_name + ", " + increment_name(i), shape);
+      increment.remesh = read_remesh(group, shape);
     if (increment.remesh && increment.remesh->mesh.n_nodes() != n.mesh)
       throw hdf5::Failure("the new mesh has " + std::to_string(increment.remesh->mesh.n_nodes()) +
                           " nodes, the solution on it " + std::to_string(n.mesh));

@@ -39,6 +39,16 @@ namespace retroforge
                                               const std::vector<Field<double>> &guesses,
                                               const Transposition               transposition)
   {
+    SharedTolerance own{tolerance};
+    return solve_derivative(rhs, own, solution, guesses, transposition);
+  }
+
+  unsigned int LinearSystem::solve_derivative(const Field<double>              &rhs,
+                                              SharedTolerance                  &tolerance,
+                                              Field<double>                    &solution,
+                                              const std::vector<Field<double>> &guesses,
+                                              const Transposition               transposition)
+  {
     la::BlockVector b = matrix_.vector(), x = matrix_.vector();
     matrix_.load(rhs, transposition, b);
     const unsigned int iterations =
@@ -46,13 +56,6 @@ namespace retroforge
     matrix_.unload(x, rhs, transposition, solution);
     ++n_solves;
     return iterations;
-  }
-
-  double LinearSystem::norm_of_derivative(const Field<double> &rhs, const Transposition transposition) const
-  {
-    la::BlockVector b = matrix_.vector();
-    matrix_.load(rhs, transposition, b);
-    return solver_.norm_beside_penalties(b, transposition);
   }
 
   std::vector<la::BlockVector> LinearSystem::starts_from(const std::vector<Field<double>> &guesses,

@@ -93,6 +93,13 @@ namespace retroforge
     tag(prm, "Linear solver", SettingRole::numerics);
   }
 
+  double SharedTolerance::next(const double norm)
+  {
+    constexpr double loosest = 1e-2;
+    largest                  = std::max(largest, norm);
+    return norm == 0. ? tolerance : std::max(tolerance, std::min(loosest, tolerance * largest / norm));
+  }
+
   SaddleSolver::SaddleSolver(const SaddleSystem           &system,
                              const LinearSolverParameters &parameters,
                              Timings                      &timings)
@@ -129,31 +136,23 @@ namespace retroforge
   }
 
   unsigned int SaddleSolver::solve_penalised_first(const la::BlockVector       &b,
-                                                   const double                 tolerance,
+                                                   SharedTolerance             &tolerance,
                                                    std::vector<la::BlockVector> guesses,
                                                    const Transposition          asked,
                                                    la::BlockVector             &x)
   {
     const Transposition transposition = simplest(asked);
     if (parameters_.method == Method::direct)
-      return solve(b, tolerance, guesses, transposition, x);
+      return solve(b, tolerance.tolerance, guesses, transposition, x);
     la::BlockVector       first(x), nothing(b);
     const la::BlockVector rest = take_penalised(b, transposition, first);
     nothing                    = 0.;
     for (la::BlockVector &guess : guesses)
       polish_penalised(nothing, transposition, guess);
-    const unsigned int iterations = solve(rest, tolerance, guesses, transposition, x);
+    const unsigned int iterations = solve(rest, tolerance.next(rest.l2_norm()), guesses, transposition, x);
     x += first;
     polish_penalised(b, transposition, x);
     return iterations;
-  }
-
-  double SaddleSolver::norm_beside_penalties(const la::BlockVector &b, const Transposition asked) const
-  {
-    if (parameters_.method == Method::direct)
-      return b.l2_norm();
-    la::BlockVector x(b);
-    return take_penalised(b, simplest(asked), x).l2_norm();
   }
 
   la::BlockVector SaddleSolver::take_penalised(const la::BlockVector &b,

@@ -170,6 +170,8 @@ namespace retroforge
       for (const double part : spells[i].parts)
       {
         before[i].emplace_back(T, skin);
+        if (i + 1 == spells.size() && before[i].size() == spells[i].parts.size())
+          break; // nothing comes after it
         conduct({edges, network, surfaces[i], process.heat, film_of(process.heat, spells[i].of), dies},
                 part * spells[i].time,
                 T,

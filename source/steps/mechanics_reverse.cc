@@ -49,14 +49,6 @@ namespace retroforge
     }
   } // namespace
 
-  double Mechanics::tolerance_of(const double norm, const double largest) const
-  {
-    constexpr double loosest = 1e-2;
-    return norm == 0. ? model_.adjoint_tolerance
-                      : std::max(model_.adjoint_tolerance,
-                                 std::min(loosest, model_.adjoint_tolerance * largest / norm));
-  }
-
   void Mechanics::reverse(const Process<double>           &process,
                           const WorkpieceState<3, double> &state,
                           const IncrementRecord           &record,
@@ -77,7 +69,7 @@ namespace retroforge
     const MPI_Comm                comm   = scene_.discretization.comm();
     const Scheme                 &scheme = scheme_of(record);
     const unsigned int            n      = scheme.n_stages();
-    const auto                    shared = recorded_start(process, state, record);
+    const auto                    shared = start_of(process, state, record);
     const IncrementStart<double> &start  = *shared;
     std::vector<IncrementBar>     bars(costates.size(),
                                    {{ContactSetBar(record.pairs.size()), comm},
@@ -87,14 +79,21 @@ namespace retroforge
                                         std::vector<NodalVectors<double>>(n)});
     earlier_lambdas_.resize(n);
     earlier_bubbles_.resize(n);
+    std::vector<std::shared_ptr<const SolvedStage>> stages;
+    for (unsigned int s = 0; s < n; ++s)
+    {
+      stages.push_back(recorded_stage(start, X, scheme, record.solves, s, earlier_bubbles_[s]));
+      earlier_bubbles_[s] = stages[s]->W.V;
+      if (s + 1 < n)
+        shared->history.add(scheme, s, stages[s]->view(), start.dt);
+    }
     // The first stage of a midpoint step, which leads to half a step, has a right-hand side, and a share in
     // the gradient, smaller than the second by far: what is asked of both is alike in absolute terms.
-    std::vector<double> largest(costates.size(), 0.);
+    std::vector<SharedTolerance> tolerances(costates.size(), {model_.adjoint_tolerance});
     for (unsigned int s = n; s-- > 0;)
     {
-      const auto at = recorded_stage(start, X, scheme, record.solves, s, earlier_bubbles_[s]);
+      const auto                   &at   = stages[s];
       const EquilibriumView<double> view = at->view();
-      earlier_bubbles_[s]                = at->W.V;
       system_.assemble(at->stage, at->W, at->active);
       earlier_lambdas_[s].resize(costates.size());
       for (std::size_t j = 0; j < costates.size(); ++j)
@@ -124,11 +123,8 @@ namespace retroforge
         reverse_motion(at->stage, at->W, motion_bar, rhs, position_bar, bar.contact);
         Field<double> minus_rhs(scene_.discretization), lambda;
         minus_rhs.add(-1., rhs);
-        auto        &guesses = earlier_lambdas_[s][j];
-        const double norm    = system_.norm_of_derivative(minus_rhs, Transposition::transposed);
-        largest[j]           = std::max(largest[j], norm);
-        system_.solve_derivative(
-          minus_rhs, tolerance_of(norm, largest[j]), lambda, guesses, Transposition::transposed);
+        auto &guesses = earlier_lambdas_[s][j];
+        system_.solve_derivative(minus_rhs, tolerances[j], lambda, guesses, Transposition::transposed);
         reverse_residual(view, lambda, stage_bar);
         guesses.insert(guesses.begin(), std::move(lambda));
         guesses.resize(std::min(guesses.size(), n_starts));

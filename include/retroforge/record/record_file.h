@@ -97,10 +97,12 @@ namespace retroforge
     /// Where the record ends: the operation, and the path of its leading die by then [mm].  @throws Error
     std::pair<unsigned int, double> end() const;
 
+    /// Its mesh is not looked at, which takes as long as the rest: a run reads back what it has written.
     /// @throws Error  if the increment is damaged or of another run
     IncrementRecord read(unsigned int i) const;
 
-    /// Reads all increments.  @throws Error  as read, or if one does not begin on the mesh that was there
+    /// Reads all increments, and checks their meshes (check_mesh).  @throws Error  as read, or if one does
+    /// not begin on the mesh that was there
     void check_increments() const;
 
   private:

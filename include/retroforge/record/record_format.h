@@ -90,8 +90,7 @@ namespace retroforge
   void         write_header(hid_t file, const RecordHeader &header);
   RecordHeader read_header(hid_t file, const std::string &file_name);
 
-  void write_increment(hid_t file, unsigned int i, const IncrementRecord &, const RecordShape &);
-  IncrementRecord
-                read_increment(hid_t file, const std::string &file_name, unsigned int i, const RecordShape &);
-  IncrementHead read_increment_head(hid_t file, unsigned int i, const RecordShape &);
+  void            write_increment(hid_t file, unsigned int i, const IncrementRecord &, const RecordShape &);
+  IncrementRecord read_increment(hid_t file, unsigned int i, const RecordShape &);
+  IncrementHead   read_increment_head(hid_t file, unsigned int i, const RecordShape &);
 } // namespace retroforge

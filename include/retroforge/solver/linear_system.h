@@ -32,14 +32,17 @@ namespace retroforge
     /// makes large where it pushes, or of an objective, which contact forces make large there
     /// (SaddleSolver::solve_penalised_first).
     unsigned int solve_derivative(const Field<double>              &rhs,
-                                  double                            tolerance,
+                                  SharedTolerance                  &tolerance,
                                   Field<double>                    &solution,
                                   const std::vector<Field<double>> &guesses       = {},
                                   Transposition                     transposition = Transposition::plain);
 
-    /// Returns the norm of a right-hand side that the tolerance of solve_derivative() is relative to: scaled,
-    /// without bubbles and penalised rows.
-    double norm_of_derivative(const Field<double> &rhs, Transposition transposition) const;
+    /// The same of a system by itself.
+    unsigned int solve_derivative(const Field<double>              &rhs,
+                                  double                            tolerance,
+                                  Field<double>                    &solution,
+                                  const std::vector<Field<double>> &guesses       = {},
+                                  Transposition                     transposition = Transposition::plain);
 
     /// Discards the preconditioner: the next solve makes a new one.
     void reset() { solver_.reset(); }

@@ -26,6 +26,17 @@ namespace retroforge
     void add_parameters(dealii::ParameterHandler &prm);
   };
 
+  /// How well systems are solved whose solutions are added up: to one error, relative to the largest right-hand
+  /// side so far, but each to 1e-2 of its own at least.
+  struct SharedTolerance
+  {
+    double tolerance;
+    double largest = 0.; ///< norm
+
+    /// Returns the tolerance relative to this norm of the next right-hand side.
+    double next(double norm);
+  };
+
   /// Solves saddle point systems, one after the other, to a given tolerance: by FGMRES with a preconditioner
   /// that is kept while it works, or directly.
   class SaddleSolver
@@ -48,13 +59,10 @@ namespace retroforge
     /// solved by themselves first, in the guesses too; the tolerance is relative to the norm of the remaining
     /// right-hand side.
     unsigned int solve_penalised_first(const la::BlockVector       &b,
-                                       double                       tolerance,
+                                       SharedTolerance             &tolerance,
                                        std::vector<la::BlockVector> guesses,
                                        Transposition                transposition,
                                        la::BlockVector             &x);
-
-    /// Returns the norm that the tolerance of solve_penalised_first() is relative to.
-    double norm_beside_penalties(const la::BlockVector &b, Transposition transposition) const;
 
     /// Discards the preconditioner: the next solve makes a new one.
     void reset() { preconditioner_.reset(); }

@@ -8,6 +8,7 @@
 #include <retroforge/steps/process.h>
 #include <retroforge/steps/scheme.h>
 
+#include <deque>
 #include <map>
 
 /// @file
@@ -64,10 +65,10 @@ namespace retroforge
     void add(const Scheme &scheme, unsigned int r, const EquilibriumView<Number> &view, const Number &dt);
 
   private:
-    const Scene                                 &scene_;
-    PointState<Number>                           initial_;
-    std::vector<WorkpieceState<3, Number>>       states_; ///< of the stages so far, without motion
-    std::vector<std::vector<PointState<Number>>> points_;
+    const Scene                                &scene_;
+    PointState<Number>                          initial_;
+    std::vector<WorkpieceState<3, Number>>      states_; ///< of the stages so far, without motion
+    std::deque<std::vector<PointState<Number>>> points_; ///< stages refer to them while others are added
   };
 
   /// Reverse of StageHistory for one scalar, stage by stage from the last.

@@ -182,10 +182,6 @@ namespace retroforge
                                                       const std::vector<SolveRecord> &solves,
                                                       unsigned int                    s,
                                                       const NodeVector<3, double>    &bubbles = {}) const;
-    /// Returns the relative tolerance of an adjoint system.
-    /// @param norm     of its right-hand side
-    /// @param largest  maximum of these norms over the increment's stages so far
-    double tolerance_of(double norm, double largest) const;
     /// Returns whether a node that was not watched ran into a die. Collective.
     bool        contacts_missed(const Equilibrium<double> &stage, const Field<double> &W) const;
     Field<Dual> tangent_field(const Equilibrium<Dual> &stage, const SolvedStage &at);

@@ -47,13 +47,14 @@ int main(int argc, char **argv)
     matrix.load_guess(corner.random_field(random), Transposition::plain, exact);
     system.matrix.vmult(b, exact);
     solver.solve(b, tolerance, {}, Transposition::plain, at_once);
-    solver.solve_penalised_first(b, tolerance, {}, Transposition::plain, first);
+    SharedTolerance fine{tolerance}, rough{1e-6};
+    solver.solve_penalised_first(b, fine, {}, Transposition::plain, first);
     la::BlockVector guess(exact);
     for (const unsigned int row : system.penalised)
       guess.block(0).begin()[row] += 1.;
     la::BlockVector    again(exact);
     const unsigned int n_again =
-      solver.solve_penalised_first(b, 1e-6, {guess}, Transposition::transposed, again);
+      solver.solve_penalised_first(b, rough, {guess}, Transposition::transposed, again);
     const double error = difference(system, first, exact), error_at_once = difference(system, at_once, exact);
     std::cout << (pair == ElementPair::mini ? "linear" : "quadratic")
               << " velocities, penalised: " << (system.penalised.size() > 10 ? "yes" : "NO")
