@@ -3,30 +3,32 @@
 #include <retroforge/heat/healing.h>
 #include <retroforge/steps/heating.h>
 
+#include <tuple>
+
 namespace retroforge
 {
-  namespace
+  /// A time that heat flows, in steps.
+  template <typename Number>
+  struct Spell
   {
-    /// A time that heat flows, in steps.
-    template <typename Number>
-    struct Spell
+    enum class Of
     {
-      enum class Of
-      {
-        transfer,
-        dwell,
-        press
-      };
-
-      Of                  of;
-      std::vector<bool>   touch; ///< the dies that are there
-      Number              time;  ///< [s]
-      std::vector<double> parts; ///< of the time
-
-      /// Whether skins heal where nothing touches. Under the press, a contact that opens is one that closes again.
-      bool heals() const { return of != Of::press; }
+      transfer,
+      dwell,
+      press
     };
 
+    Of                  of;
+    std::vector<bool>   touch; ///< the dies that are there
+    Number              time;  ///< [s]
+    std::vector<double> parts; ///< of the time
+
+    /// Whether skins heal where nothing touches. Under the press, a contact that opens is one that closes again.
+    bool heals() const { return of != Of::press; }
+  };
+
+  namespace
+  {
     /// Steps that grow in proportion to their number: what begins does so fast.
     std::vector<double> growing_steps(const unsigned int n)
     {
@@ -137,59 +139,94 @@ namespace retroforge
     return surface_temperatures(heat.flow, state.temperature, state.skin);
   }
 
-  void reverse_conduct_over(const HalfOfIncrement            half,
-                            const Scene                     &scene,
-                            const NetworkEdges              &edges,
-                            const Process<double>           &process,
-                            const StrokeStep                &at,
-                            const NodalVectors<double>      &X,
-                            const WorkpieceState<3, double> &state,
-                            std::vector<Costate>            &costates)
+  struct ReversibleConduction::Steps
+  {
+    const Scene                        &scene;
+    const NetworkEdges                 &edges;
+    const Process<double>              &process;
+    const StrokeStep                    at, place;
+    const NodalVectors<double>         &X;
+    const std::vector<DieState<double>> dies       = process.over(place).dies;
+    const ConductionNetwork<double>     network    = conduction_network(scene.mesh, edges, X);
+    std::vector<Spell<double>>          spells     = {};
+    std::vector<ThermalSurface<double>> surfaces   = {}; ///< of each spell
+    std::vector<NodeField<double>>      not_healed = {}; ///< skins before each
+    /// Temperatures and skins before each step of each spell.
+    std::vector<std::vector<std::pair<NodeField<double>, NodeField<double>>>> before = {};
+
+    HeatFlow<double> flow(const std::size_t i) const
+    {
+      return {edges, network, surfaces[i], process.heat, film_of(process.heat, spells[i].of), dies};
+    }
+    void take(const std::size_t i, const double part, NodeField<double> &T, NodeField<double> &skin) const
+    {
+      conduct(flow(i), part * spells[i].time, T, skin);
+    }
+  };
+
+  ReversibleConduction::ReversibleConduction(const HalfOfIncrement            half,
+                                             const Scene                     &scene,
+                                             const NetworkEdges              &edges,
+                                             const Process<double>           &process,
+                                             const StrokeStep                &at,
+                                             const NodalVectors<double>      &X,
+                                             const WorkpieceState<3, double> &state)
   {
     if (!process.heat.conducts())
       return;
-    using Of             = Spell<double>::Of;
-    const auto   place   = place_of(half, at);
-    const auto   dies    = process.over(place).dies;
-    const auto   view    = scene.view(dies, X);
-    const auto   network = conduction_network(scene.mesh, edges, X);
-    const double gap     = process.heat.gap;
-    const auto   spells  = spells_of(half, process, at);
-
-    // Temperatures and skins before each step of each spell.
-    std::vector<ThermalSurface<double>>                                       surfaces;
-    std::vector<std::vector<std::pair<NodeField<double>, NodeField<double>>>> before(spells.size());
-    std::vector<NodeField<double>>                                            not_healed;
+    const auto steps       = std::make_shared<Steps>(Steps{scene, edges, process, at, place_of(half, at), X});
+    steps->spells          = spells_of(half, process, at);
+    const auto        view = scene.view(steps->dies, X);
     NodeField<double> T = state.temperature, skin = state.skin;
-    for (std::size_t i = 0; i < spells.size(); ++i)
+    for (std::size_t i = 0; i < steps->spells.size(); ++i)
     {
-      surfaces.push_back(thermal_surface(view, spells[i].touch, gap));
-      not_healed.push_back(skin);
-      if (spells[i].heals())
-        heal_skins(surfaces[i], process.heat, spells[i].time, skin);
-      for (const double part : spells[i].parts)
+      const Spell<double> &spell = steps->spells[i];
+      steps->surfaces.push_back(thermal_surface(view, spell.touch, process.heat.gap));
+      steps->not_healed.push_back(skin);
+      if (spell.heals())
+        heal_skins(steps->surfaces[i], process.heat, spell.time, skin);
+      auto &before = steps->before.emplace_back();
+      for (const double part : spell.parts)
       {
-        before[i].emplace_back(T, skin);
-        if (i + 1 == spells.size() && before[i].size() == spells[i].parts.size())
-          break; // nothing comes after it
-        conduct({edges, network, surfaces[i], process.heat, film_of(process.heat, spells[i].of), dies},
-                part * spells[i].time,
-                T,
-                skin);
+        before.emplace_back(T, skin);
+        // What the last one leads to only take() asks for.
+        if (i + 1 < steps->spells.size() || before.size() < spell.parts.size())
+          steps->take(i, part, T, skin);
       }
     }
+    steps_ = steps;
+  }
+
+  void ReversibleConduction::take(WorkpieceState<3, double> &state) const
+  {
+    if (!steps_)
+      return;
+    std::tie(state.temperature, state.skin) = steps_->before.back().back();
+    steps_->take(
+      steps_->spells.size() - 1, steps_->spells.back().parts.back(), state.temperature, state.skin);
+  }
+
+  void ReversibleConduction::reverse(std::vector<Costate> &costates) const
+  {
+    if (!steps_)
+      return;
+    using Of            = Spell<double>::Of;
+    const Steps &of     = *steps_;
+    const auto  &spells = of.spells;
+    const auto   view   = of.scene.view(of.dies, of.X);
+    const double gap    = of.process.heat.gap;
     for (Costate &costate : costates)
     {
       WorkpieceState<3, double> &workpiece = costate.workpiece;
       if (is_zero(workpiece.temperature) && is_zero(workpiece.skin))
         continue;
-      PhysicsBar                physics(scene.dies);
-      ConductionNetwork<double> network_bar = no_derivatives(network);
+      PhysicsBar                physics(of.scene.dies);
+      ConductionNetwork<double> network_bar = no_derivatives(of.network);
       Waiting<double>           waiting_bar;
       double                    press_bar = 0.; // in the increment's time
       for (std::size_t i = spells.size(); i-- > 0;)
       {
-        ThermalSurfaceBar surface_bar(surfaces[i]);
+        ThermalSurfaceBar surface_bar(of.surfaces[i]);
         double            time_bar = 0.;
         for (std::size_t s = spells[i].parts.size(); s-- > 0;)
         {
@@ -200,24 +237,23 @@ namespace retroforge
                           film_of(physics.heat, spells[i].of),
                           physics.dies,
                           dt_bar};
-          reverse_conduct(
-            {edges, network, surfaces[i], process.heat, film_of(process.heat, spells[i].of), dies},
-            spells[i].parts[s] * spells[i].time,
-            before[i][s].first,
-            before[i][s].second,
-            workpiece.temperature,
-            workpiece.skin,
-            bar);
+          reverse_conduct(of.flow(i),
+                          spells[i].parts[s] * spells[i].time,
+                          of.before[i][s].first,
+                          of.before[i][s].second,
+                          workpiece.temperature,
+                          workpiece.skin,
+                          bar);
           time_bar += spells[i].parts[s] * dt_bar;
         }
         if (spells[i].heals())
-          reverse_heal_skins(surfaces[i],
-                             process.heat,
+          reverse_heal_skins(of.surfaces[i],
+                             of.process.heat,
                              spells[i].time,
-                             not_healed[i],
+                             of.not_healed[i],
                              workpiece.skin,
                              {surface_bar, physics.heat, time_bar});
-        reverse_thermal_surface(view, surfaces[i], gap, surface_bar, workpiece.X, physics.dies);
+        reverse_thermal_surface(view, of.surfaces[i], gap, surface_bar, workpiece.X, physics.dies);
         switch (spells[i].of)
         {
           case Of::transfer:
@@ -231,13 +267,13 @@ namespace retroforge
             break;
         }
       }
-      reverse_conduction_network(scene.mesh, edges, X, network_bar, workpiece.X);
+      reverse_conduction_network(of.scene.mesh, of.edges, of.X, network_bar, workpiece.X);
       costate.process.add_once([&](Process<double> &part) {
-        reverse_over(process, place, 0., physics, part);
-        PhysicsBar time(scene.dies);
+        reverse_over(of.process, of.place, 0., physics, part);
+        PhysicsBar time(of.scene.dies);
         time.dt = press_bar;
-        reverse_over(process, at, 0., time, part);
-        add_numbers(waiting_bar, part.operations[at.operation].waiting);
+        reverse_over(of.process, of.at, 0., time, part);
+        add_numbers(waiting_bar, part.operations[of.at.operation].waiting);
       });
     }
   }

@@ -111,10 +111,18 @@ namespace retroforge
       const NodalVectors<double> v      = mechanics.mean_velocity(record);
       for (std::size_t k = 0; k < X.size(); ++k)
         X[k] += dt * v[k];
-      reverse_conduct_over(
-        HalfOfIncrement::second, scene_, edges(), process, place(record), X, worked, costates);
+      ReversibleConduction(HalfOfIncrement::second, scene_, edges(), process, place(record), X, worked)
+        .reverse(costates);
     }
-    const auto half = conducted(process, state, record);
+    std::optional<ReversibleConduction>      conduction;
+    std::optional<WorkpieceState<3, double>> half;
+    if (process.heat.conducts())
+    {
+      const auto timing = timings_.scope("heat");
+      conduction.emplace(HalfOfIncrement::first, scene_, edges(), process, place(record), state.X, state);
+      half = state;
+      conduction->take(*half);
+    }
     mechanics.reverse(
       process,
       half ? *half : state,
@@ -124,11 +132,10 @@ namespace retroforge
         reverse_history(view, dt, costates[j].workpiece, bar);
       },
       costates);
-    if (process.heat.conducts())
+    if (conduction)
     {
       const auto timing = timings_.scope("heat");
-      reverse_conduct_over(
-        HalfOfIncrement::first, scene_, edges(), process, place(record), state.X, state, costates);
+      conduction->reverse(costates);
     }
   }
 } // namespace retroforge

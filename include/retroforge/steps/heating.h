@@ -39,15 +39,29 @@ namespace retroforge
                                                           const StrokeStep                &at,
                                                           const WorkpieceState<3, double> &state);
 
-  /// Reverse of conduct_over().
-  /// @param state     temperatures and skins before
-  /// @param costates  of those after on entry, of those before on exit; to positions and process theirs are added
-  void reverse_conduct_over(HalfOfIncrement                  half,
-                            const Scene                     &scene,
-                            const NetworkEdges              &edges,
-                            const Process<double>           &process,
-                            const StrokeStep                &at,
-                            const NodalVectors<double>      &X,
-                            const WorkpieceState<3, double> &state,
-                            std::vector<Costate>            &costates);
+  /// conduct_over() that remembers its steps, and its reverse.
+  class ReversibleConduction
+  {
+  public:
+    /// Refers to all but the state, and to nothing where heat does not flow.
+    /// @param X      where the nodes are
+    /// @param state  temperatures and skins before
+    ReversibleConduction(HalfOfIncrement                  half,
+                         const Scene                     &scene,
+                         const NetworkEdges              &edges,
+                         const Process<double>           &process,
+                         const StrokeStep                &at,
+                         const NodalVectors<double>      &X,
+                         const WorkpieceState<3, double> &state);
+
+    /// Sets temperatures and skins to those after, as conduct_over() does.
+    void take(WorkpieceState<3, double> &state) const;
+
+    /// @param costates  of those after on entry, of those before on exit; to positions and process theirs are added
+    void reverse(std::vector<Costate> &costates) const;
+
+  private:
+    struct Steps;
+    std::shared_ptr<const Steps> steps_;
+  };
 } // namespace retroforge

@@ -347,7 +347,7 @@ namespace
           wait.emplace(run, edges, place(record), waited);
           process.operations[record.operation].waiting = {};
         }
-        reverse_conduct_over(half, run.scene, edges, process, place(record), X, waited, costates);
+        ReversibleConduction(half, run.scene, edges, process, place(record), X, waited).reverse(costates);
         if (wait)
           wait->reverse(omission, costate);
       });
