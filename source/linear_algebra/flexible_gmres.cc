@@ -26,8 +26,8 @@ namespace retroforge
 {
   namespace
   {
-    using Dense     = Teuchos::SerialDenseMatrix<int, double>;
-    using BelosMany = Belos::MultiVec<double>;
+    using Dense       = Teuchos::SerialDenseMatrix<int, double>;
+    using MultiVector = Belos::MultiVec<double>;
 
     /// Passes of classical Gram-Schmidt. With one, directions are less and less orthogonal, and derivatives are
     /// up to ten times less exact than their tolerance asks for.
@@ -58,10 +58,10 @@ namespace retroforge
       }
     }
 
-    /// Vectors of one length, one behind the other, or a view of neighbours among them. A single one is
-    /// multiplied with many as a vector with a matrix: products of two matrices, as Trilinos' own vectors are multiplied, sort them
-    /// into blocks first, which takes longer than the product.
-    class Directions : public BelosMany
+    /// Vectors of one length, one behind the other, or a view of neighbours among them. One of them is
+    /// multiplied with all others as a vector with a matrix. Trilinos' own vectors do so as two matrices,
+    /// which BLAS sorts into blocks first, and that takes longer than the product.
+    class Directions : public MultiVector
     {
     public:
       /// Without values yet.
@@ -86,33 +86,37 @@ namespace retroforge
       double       *operator[](const int j) { return first_ + j * n_; }
       const double *operator[](const int j) const { return first_ + j * n_; }
 
-      BelosMany *Clone(const int n_vectors) const override
+      MultiVector *Clone(const int n_vectors) const override
       {
         return new Directions(comm_, length_, n_, n_vectors);
       }
-      BelosMany *CloneCopy() const override { return copied(*this); }
-      BelosMany *CloneCopy(const std::vector<int> &which) const override { return copied(view(which)); }
-      BelosMany *CloneViewNonConst(const std::vector<int> &which) override
+      MultiVector *CloneCopy() const override { return copied(*this); }
+      MultiVector *CloneCopy(const std::vector<int> &which) const override { return copied(view(which)); }
+      MultiVector *CloneViewNonConst(const std::vector<int> &which) override
       {
         return new Directions(view(which));
       }
-      const BelosMany *CloneView(const std::vector<int> &which) const override
+      const MultiVector *CloneView(const std::vector<int> &which) const override
       {
         return new Directions(view(which));
       }
       ptrdiff_t GetGlobalLength() const override { return length_; }
       int       GetNumberVecs() const override { return n_vectors_; }
 
-      void MvTimesMatAddMv(const double alpha, const BelosMany &A, const Dense &B, const double beta) override
+      void
+      MvTimesMatAddMv(const double alpha, const MultiVector &A, const Dense &B, const double beta) override
       {
         const Directions &of = from(A);
+        if (beta == 0.)
+          MvInit(0.); // not every BLAS leaves alone what has no value yet
         for (int j = 0; j < n_vectors_; ++j)
           Teuchos::BLAS<int, double>().GEMV(
             Teuchos::NO_TRANS, n_, of.n_vectors_, alpha, of[0], stride(), B[j], 1, beta, (*this)[j], 1);
       }
-      void MvTransMv(const double alpha, const BelosMany &A, Dense &B) const override
+      void MvTransMv(const double alpha, const MultiVector &A, Dense &B) const override
       {
         const Directions &of = from(A);
+        B.putScalar(0.); // BLAS does nothing on a rank without entries
         for (int j = 0; j < n_vectors_; ++j)
         {
           Teuchos::BLAS<int, double>().GEMV(
@@ -121,7 +125,7 @@ namespace retroforge
           dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(sums), comm_, sums);
         }
       }
-      void MvAddMv(const double alpha, const BelosMany &A, const double beta, const BelosMany &B) override
+      void MvAddMv(const double alpha, const MultiVector &A, const double beta, const MultiVector &B) override
       {
         const double *a = from(A)[0], *b = from(B)[0];
         for (std::size_t i = 0; i < n_ * n_vectors_; ++i)
@@ -136,7 +140,7 @@ namespace retroforge
         for (int j = 0; j < n_vectors_; ++j)
           std::for_each((*this)[j], (*this)[j] + n_, [&](double &x) { x *= alpha[j]; });
       }
-      void MvDot(const BelosMany &A, std::vector<double> &products) const override
+      void MvDot(const MultiVector &A, std::vector<double> &products) const override
       {
         const Directions &of = from(A);
         for (int j = 0; j < n_vectors_; ++j)
@@ -151,7 +155,7 @@ namespace retroforge
         for (int j = 0; j < n_vectors_; ++j)
           norms[j] = std::sqrt(norms[j]);
       }
-      void SetBlock(const BelosMany &A, const std::vector<int> &which) override
+      void SetBlock(const MultiVector &A, const std::vector<int> &which) override
       {
         const Directions &of = from(A);
         for (std::size_t j = 0; j < which.size(); ++j)
@@ -162,7 +166,7 @@ namespace retroforge
       void MvPrint(std::ostream &) const override {}
 
     private:
-      static const Directions &from(const BelosMany &A) { return dynamic_cast<const Directions &>(A); }
+      static const Directions &from(const MultiVector &A) { return dynamic_cast<const Directions &>(A); }
       static Directions       *copied(const Directions &from)
       {
         auto *copy = new Directions(from.comm_, from.length_, from.n_, from.n_vectors_);
@@ -195,7 +199,7 @@ namespace retroforge
     public:
       Operator(const BlockOperator &of, const la::BlockVector &like) : of_(of), x_(like), y_(like) {}
 
-      void Apply(const BelosMany &x, BelosMany &y, Belos::ETrans) const override
+      void Apply(const MultiVector &x, MultiVector &y, Belos::ETrans) const override
       {
         copy(dynamic_cast<const Directions &>(x)[0], x_);
         of_(y_, x_);
@@ -207,17 +211,17 @@ namespace retroforge
       mutable la::BlockVector x_, y_;
     };
 
-    using Vectors = Belos::MultiVecTraits<double, BelosMany>;
-    using Problem = Belos::LinearProblem<double, BelosMany, Belos::Operator<double>>;
-    using Gmres   = Belos::BlockFGmresIter<double, BelosMany, Belos::Operator<double>>;
-    using Basis   = Belos::ICGSOrthoManager<double, BelosMany, Belos::Operator<double>>;
-    using Norm    = Belos::StatusTestGenResNorm<double, BelosMany, Belos::Operator<double>>;
-    using Limit   = Belos::StatusTestMaxIters<double, BelosMany, Belos::Operator<double>>;
-    using Either  = Belos::StatusTestCombo<double, BelosMany, Belos::Operator<double>>;
+    using Vectors = Belos::MultiVecTraits<double, MultiVector>;
+    using Problem = Belos::LinearProblem<double, MultiVector, Belos::Operator<double>>;
+    using Gmres   = Belos::BlockFGmresIter<double, MultiVector, Belos::Operator<double>>;
+    using Basis   = Belos::ICGSOrthoManager<double, MultiVector, Belos::Operator<double>>;
+    using Norm    = Belos::StatusTestGenResNorm<double, MultiVector, Belos::Operator<double>>;
+    using Limit   = Belos::StatusTestMaxIters<double, MultiVector, Belos::Operator<double>>;
+    using Either  = Belos::StatusTestCombo<double, MultiVector, Belos::Operator<double>>;
 
     using Teuchos::rcp;
 
-    double norm_of(const BelosMany &x)
+    double norm_of(const MultiVector &x)
     {
       std::vector<double> norm(1);
       x.MvNorm(norm, Belos::TwoNorm);
@@ -248,7 +252,7 @@ namespace retroforge
 
     /// x += Z y with the least residual, which it returns; x is unchanged where that is not a number.
     double
-    add_directions(const Belos::GmresIterationState<double, BelosMany> &state, const int n, BelosMany &x)
+    add_directions(const Belos::GmresIterationState<double, MultiVector> &state, const int n, MultiVector &x)
     {
       const double residual = std::abs((*state.z)(n, 0));
       if (n == 0)
@@ -299,13 +303,13 @@ namespace retroforge
                 rcp(new Basis("Belos", Teuchos::null, passes)),
                 list);
 
-    KrylovResult                                  result;
-    Belos::GmresIterationState<double, BelosMany> first;
-    const auto                                    r = Vectors::CloneCopy(*problem->getInitResVec());
-    const auto                                    z = rcp(new Dense(1, 1));
-    first.V                                         = r;
-    first.z                                         = z;
-    double residual                                 = norm_of(*r);
+    KrylovResult                                    result;
+    Belos::GmresIterationState<double, MultiVector> first;
+    const auto                                      r = Vectors::CloneCopy(*problem->getInitResVec());
+    const auto                                      z = rcp(new Dense(1, 1));
+    first.V                                           = r;
+    first.z                                           = z;
+    double residual                                   = norm_of(*r);
     while (residual > tolerance && result.iterations < limit)
     {
       r->MvScale(1. / residual);
