@@ -265,13 +265,14 @@ namespace
           std::fprintf(stderr, "    step %.0e: %.1e\n", h, difference / adjoint - 1.);
       }
       const auto yes = [](const bool condition) { return condition ? "yes" : "NO"; };
-      std::printf("  %s: free differences within 1e-4: %s, direct method within 1e-8: %s, interpolated "
-                  "positions off by "
-                  "more than 1e-3: %s\n",
+      std::printf("  %s: free differences within 1e-4: %s, direct method within 1e-8: %s",
                   direction.name,
                   yes(worst < 1e-4),
-                  yes(std::abs(tangent(direction) / adjoint - 1.) < 1e-8),
-                  std::abs(frozen) > 1e-3 ? "yes" : "no");
+                  yes(std::abs(tangent(direction) / adjoint - 1.) < 1e-8));
+      // Of the others it depends on the mesh.
+      if (direction.name == std::string("positions"))
+        std::printf(", interpolated positions off by more than 1e-3: %s", yes(std::abs(frozen) > 1e-3));
+      std::printf("\n");
       if (show_)
         std::fprintf(stderr, "  %s: %.1e, interpolated %.1e\n", direction.name, worst, frozen);
     }
