@@ -167,7 +167,8 @@ namespace
     const std::size_t every = n_ranks() > 1 ? 5 : 1;
     for (std::size_t i = 0; i < ways.size(); i += every)
     {
-      const auto errors = slope_errors(run, ways[i], sweep.gradients, 1e-3); // as in material/hardening_runs
+      const auto errors =
+        slope_errors(run, ways[i], sweep.gradients, 1e-3, 1e-5); // as in material/hardening_runs
       for (std::size_t o = 0; o < errors.size(); ++o)
         worst.take(errors[o], run.objectives()[o].name + " by " + ways[i].direction.name);
     }

@@ -124,11 +124,13 @@ namespace retroforge
 
   /// Those of each objective along a way.
   /// @param bars   of each objective
-  /// @param floor  a slope that is less than this part of the value is rounding beside it, and measured by that
+  /// @param floor   a slope that is less than this part of the value is rounding beside it, and measured by that
+  /// @param tested  part of the value from which on a slope is tested for the order of the remainder
   inline std::vector<SlopeErrors> slope_errors(const RecordedRun                &run,
                                                const Way                        &way,
                                                const std::vector<AdjointResult> &bars,
-                                               const double                      floor = 0.)
+                                               const double                      floor,
+                                               const double                      tested)
   {
     const auto [process, X]           = at<Dual>(run, way, 0.);
     const auto               tangents = run.tangent(process, X);
@@ -149,10 +151,19 @@ namespace retroforge
         if (const double found = std::log2(remainder(h) / remainder(0.5 * h));
             std::abs(found - 2.) < std::abs(order - 2.))
           order = found;
-      errors.push_back({std::abs(tangents[o].dx(0) - adjoint) / scale,
-                        best,
-                        scale == std::abs(adjoint) ? std::max(0., 2. - order) : 0.});
+      errors.push_back(
+        {std::abs(tangents[o].dx(0) - adjoint) / scale,
+         best,
+         std::abs(adjoint) >= tested * std::abs(value(o, 0.)) ? std::max(0., 2. - order) : 0.});
     }
     return errors;
+  }
+
+  inline std::vector<SlopeErrors> slope_errors(const RecordedRun                &run,
+                                               const Way                        &way,
+                                               const std::vector<AdjointResult> &bars,
+                                               const double                      floor = 0.)
+  {
+    return slope_errors(run, way, bars, floor, floor);
   }
 } // namespace retroforge

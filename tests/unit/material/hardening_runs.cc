@@ -285,7 +285,7 @@ namespace
     {
       // A slope that is little beside the value, as the largest temperature's by the film of the dwell, is measured by a part of that
       // of which differences over 1e-5 are exact to 1e-7.
-      const auto errors = slope_errors(run, way, sweep.gradients, 1e-3);
+      const auto errors = slope_errors(run, way, sweep.gradients, 1e-3, 1e-5);
       for (std::size_t o = 0; o < errors.size(); ++o)
         worst.take(errors[o], run.objectives()[o].name + " by " + way.direction.name);
     }
