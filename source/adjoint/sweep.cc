@@ -272,11 +272,12 @@ namespace retroforge
         state.velocity = velocity;
         const StrokeStep at{record.stroke, 0., record.operation};
         const auto       states = run.process.over(at).dies;
+        MovingTransfer   moving(epoch->scene.mesh, remesh->X_before, remesh->mesh, remesh->transfer);
         for (std::size_t j = 0; j < costates.size(); ++j)
         {
           PhysicsBar bar(run.model.dies);
           costates[j].workpiece = reverse_change_mesh(
-            epoch->scene.mesh, *remesh, state, run.model.dies, states, costates[j].workpiece, bar.dies);
+            epoch->scene.mesh, *remesh, state, run.model.dies, states, costates[j].workpiece, moving, bar.dies);
           costates[j].process.add_once(
             [&](Process<double> &part) { reverse_over(run.process, at, 0., bar, part); });
           if (moves_start)

@@ -1,15 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/steps/change_of_mesh.h>
-#include <retroforge/transfer/cell_transfer.h>
 
 namespace retroforge
 {
-  template <typename Number>
-  void MemberTransfer<Number>::operator()(const NodalVectors<Number> &positions,
-                                          NodalVectors<Number>       &to) const
+  template <>
+  TransferOperator moved_transfer(const TetMesh              &old_mesh,
+                                  const RemeshRecord         &remesh,
+                                  const NodalVectors<double> &X_old,
+                                  const NodalVectors<double> &X_new)
   {
-    to = remesh.positions.positions<Number>({old_mesh, remesh.mesh, dies, states}, positions);
+    if (X_old == remesh.X_before && X_new == remesh.mesh.X)
+      return remesh.transfer;
+    return MovingTransfer(old_mesh, remesh.X_before, remesh.mesh, remesh.transfer).at(X_old, X_new);
+  }
+
+  template <>
+  BasicTransfer<Dual> moved_transfer(const TetMesh            &old_mesh,
+                                     const RemeshRecord       &remesh,
+                                     const NodalVectors<Dual> &X_old,
+                                     const NodalVectors<Dual> &X_new)
+  {
+    return MovingTransfer(old_mesh, remesh.X_before, remesh.mesh, remesh.transfer).at(X_old, X_new);
+  }
+
+  template <typename Number>
+  void MemberTransfer<Number>::operator()(const NodalVectors<Number> &, NodalVectors<Number> &to) const
+  {
+    to = X_new;
   }
 
   template <typename Number>
@@ -17,7 +35,7 @@ namespace retroforge
   {
     to = q;
     if (!q.empty())
-      to = remesh.transfer.apply_bounded<Number>(q);
+      to = J.apply_bounded(q);
   }
 
   template <typename Number>
@@ -26,7 +44,7 @@ namespace retroforge
   {
     to = v;
     if (!v.empty())
-      to = remesh.transfer.apply<Vector3<Number>>(v);
+      to = J.template apply<Vector3<Number>>(v);
   }
 
   template <typename Number>
@@ -34,7 +52,7 @@ namespace retroforge
   {
     to = q;
     if (!q.empty())
-      to = transfer_cells<Number>(old_mesh, X, remesh.transfer, remesh.mesh, q);
+      to = transfer_cells<Number>(old_mesh, X_old, J, new_mesh, q);
   }
 
   template <typename Number>
@@ -43,52 +61,123 @@ namespace retroforge
   {
     to = q;
     if (!q.empty())
-      to = transfer_cells<Number>(old_mesh, X, remesh.transfer, remesh.mesh, q, CellRange::bounded);
+      to = transfer_cells<Number>(old_mesh, X_old, J, new_mesh, q, CellRange::bounded);
   }
 
   template struct MemberTransfer<double>;
   template struct MemberTransfer<Dual>;
 
+  ReverseMemberTransfer::ReverseMemberTransfer(const TetMesh              &old_mesh,
+                                               const RemeshRecord         &remesh,
+                                               const NodalVectors<double> &X,
+                                               MovingTransfer             &moving,
+                                               NodalVectors<double>       &X_old_bar)
+      : old_mesh_(old_mesh)
+      , remesh_(remesh)
+      , X_(X)
+      , moving_(moving)
+      , X_old_bar_(X_old_bar)
+      , X_new_bar_(remesh.mesh.n_nodes())
+      , weight_bar_(remesh.transfer.weight.size(), 0.)
+  {
+  }
+
   void ReverseMemberTransfer::operator()(const NodalVectors<double> &positions,
                                          const NodalVectors<double> &q_bar,
-                                         NodalVectors<double>       &to) const
+                                         NodalVectors<double>       &to)
   {
     to.resize(positions.size());
-    remesh.positions.reverse_positions({old_mesh, remesh.mesh, dies, states}, positions, q_bar, to, dies_bar);
+    X_new_bar_ = q_bar;
   }
 
   void ReverseMemberTransfer::operator()(const NodeField<double> &q,
                                          const NodeField<double> &q_bar,
-                                         NodeField<double>       &to) const
+                                         NodeField<double>       &to)
   {
     to = q_bar;
-    if (!q_bar.empty())
-      to = remesh.transfer.reverse_apply_bounded(q, q_bar);
+    if (q_bar.empty())
+      return;
+    std::vector<double> free_bar = q_bar;
+    to                           = remesh_.transfer.reverse_apply_bounded(q, free_bar);
+    remesh_.transfer.add_weight_bar<double>(q, free_bar, weight_bar_);
   }
 
-  void ReverseMemberTransfer::operator()(const NodeVectorField<3, double> &,
+  void ReverseMemberTransfer::operator()(const NodeVectorField<3, double> &v,
                                          const NodeVectorField<3, double> &v_bar,
-                                         NodeVectorField<3, double>       &to) const
+                                         NodeVectorField<3, double>       &to)
   {
-    to = remesh.transfer.apply_transpose<Vec3>(v_bar);
+    to = remesh_.transfer.apply_transpose<Vec3>(v_bar);
+    if (!v.empty())
+      remesh_.transfer.add_weight_bar<Vec3>(v, v_bar, weight_bar_);
+  }
+
+  void ReverseMemberTransfer::reverse_cells(const std::vector<double> &q,
+                                            const std::vector<double> &q_bar,
+                                            std::vector<double>       &to,
+                                            const CellRange            range)
+  {
+    to.assign(q_bar.empty() ? 0 : old_mesh_.n_cells(), 0.);
+    if (!is_zero(q_bar))
+      reverse_transfer_cells(
+        old_mesh_, X_, remesh_.transfer, remesh_.mesh, q, q_bar, to, X_old_bar_, weight_bar_, range);
   }
 
   void ReverseMemberTransfer::operator()(const CellField<double> &q,
                                          const CellField<double> &q_bar,
-                                         CellField<double>       &to) const
+                                         CellField<double>       &to)
   {
-    to.assign(q_bar.empty() ? 0 : old_mesh.n_cells(), 0.);
-    if (!is_zero(q_bar))
-      reverse_transfer_cells(old_mesh, X, remesh.transfer, remesh.mesh, q, q_bar, to, X_bar);
+    reverse_cells(q, q_bar, to, CellRange::free);
   }
 
   void ReverseMemberTransfer::operator()(const BoundedCellField<double> &q,
                                          const BoundedCellField<double> &q_bar,
-                                         BoundedCellField<double>       &to) const
+                                         BoundedCellField<double>       &to)
   {
-    to.assign(q_bar.empty() ? 0 : old_mesh.n_cells(), 0.);
-    if (!is_zero(q_bar))
-      reverse_transfer_cells(
-        old_mesh, X, remesh.transfer, remesh.mesh, q, q_bar, to, X_bar, CellRange::bounded);
+    reverse_cells(q, q_bar, to, CellRange::bounded);
+  }
+
+  void ReverseMemberTransfer::reverse_positions(const std::vector<Die>              &dies,
+                                                const std::vector<DieState<double>> &states,
+                                                std::vector<DieState<double>>       &dies_bar)
+  {
+    moving_.reverse(weight_bar_, X_old_bar_, X_new_bar_);
+    remesh_.positions.reverse_positions(
+      {old_mesh_, remesh_.mesh, dies, states}, X_, X_new_bar_, X_old_bar_, dies_bar);
+  }
+
+  WorkpieceState<3, double> reverse_change_mesh(const TetMesh                       &old_mesh,
+                                                const RemeshRecord                  &remesh,
+                                                const WorkpieceState<3, double>     &before,
+                                                const std::vector<Die>              &dies,
+                                                const std::vector<DieState<double>> &states,
+                                                const WorkpieceState<3, double>     &costate,
+                                                MovingTransfer                      &moving,
+                                                std::vector<DieState<double>>       &dies_bar)
+  {
+    AssertDimension(before.X.size(), old_mesh.n_nodes());
+    AssertDimension(costate.X.size(), remesh.mesh.n_nodes());
+    WorkpieceState<3, double> there, of_transfer = costate; // before heat is kept
+    NodalVectors<double>      X_bar(before.X.size());
+    NodeField<double>         T_bar(before.temperature.size(), 0.);
+    if (!is_zero(costate.temperature))
+    {
+      const auto           X = moved_positions(old_mesh, remesh, before.X, dies, states);
+      const NodeField<double> T{remesh.transfer.apply_bounded(before.temperature)};
+      of_transfer.temperature = reverse_keep_heat({old_mesh, before.X, before.temperature},
+                                                  {remesh.mesh, X, T},
+                                                  costate.temperature,
+                                                  X_bar,
+                                                  T_bar,
+                                                  of_transfer.X);
+    }
+    ReverseMemberTransfer reverse(old_mesh, remesh, before.X, moving, there.X);
+    internal::for_each_member(
+      [&](const auto &q, const auto &q_bar, auto &to) { reverse(q, q_bar, to); }, before, of_transfer, there);
+    reverse.reverse_positions(dies, states, dies_bar);
+    for (std::size_t k = 0; k < X_bar.size(); ++k)
+      there.X[k] += X_bar[k];
+    for (std::size_t k = 0; k < std::min(T_bar.size(), there.temperature.size()); ++k)
+      there.temperature[k] += T_bar[k];
+    return there;
   }
 } // namespace retroforge

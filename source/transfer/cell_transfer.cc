@@ -13,11 +13,12 @@ namespace retroforge
     using Corners = std::array<NodeIndex, 4>;
 
     // The old node of each new one, where J has a row of the identity.
-    std::vector<NodeIndex> kept_nodes(const TransferOperator &J)
+    template <typename Number>
+    std::vector<NodeIndex> kept_nodes(const BasicTransfer<Number> &J)
     {
       std::vector<NodeIndex> old_node(J.n_new(), invalid_index);
       for (NodeIndex k = 0; k < J.n_new(); ++k)
-        if (const unsigned int entry = J.begin[k]; J.begin[k + 1] == entry + 1 && J.weight[entry] == 1.)
+        if (const unsigned int entry = J.begin[k]; J.begin[k + 1] == entry + 1 && value_of(J.weight[entry]) == 1.)
           old_node[k] = J.node[entry];
       return old_node;
     }
@@ -29,8 +30,9 @@ namespace retroforge
     }
   } // namespace
 
+  template <typename Number>
   std::vector<CellIndex>
-  kept_cells(const TetMesh &old_mesh, const TransferOperator &J, const TetMesh &new_mesh)
+  kept_cells(const TetMesh &old_mesh, const BasicTransfer<Number> &J, const TetMesh &new_mesh)
   {
     AssertDimension(J.n_old, old_mesh.n_nodes());
     AssertDimension(J.n_new(), new_mesh.n_nodes());
@@ -57,12 +59,12 @@ namespace retroforge
   }
 
   template <typename Number>
-  std::vector<Number> transfer_cells(const TetMesh              &old_mesh,
-                                     const NodalVectors<Number> &X,
-                                     const TransferOperator     &J,
-                                     const TetMesh              &new_mesh,
-                                     const std::vector<Number>  &q_T,
-                                     const CellRange             range)
+  std::vector<Number> transfer_cells(const TetMesh               &old_mesh,
+                                     const NodalVectors<Number>  &X,
+                                     const BasicTransfer<Number> &J,
+                                     const TetMesh               &new_mesh,
+                                     const std::vector<Number>   &q_T,
+                                     const CellRange              range)
   {
     const auto          at_node = cell_to_node(old_mesh, X, q_T);
     std::vector<Number> q =
@@ -82,6 +84,7 @@ namespace retroforge
                               std::vector<double>         q_bar,
                               std::vector<double>        &q_T_bar,
                               NodalVectors<double>       &X_bar,
+                              std::vector<double>        &weight_bar,
                               const CellRange             range)
   {
     AssertDimension(q_bar.size(), new_mesh.n_cells());
@@ -94,22 +97,22 @@ namespace retroforge
       }
     std::vector<double> at_node(new_mesh.n_nodes(), 0.);
     reverse_node_to_cell(new_mesh, q_bar, at_node);
-    const auto old_bar = range == CellRange::bounded
-                           ? J.reverse_apply_bounded(cell_to_node(old_mesh, X, q_T), at_node)
-                           : J.apply_transpose(at_node);
+    const auto lifted  = cell_to_node(old_mesh, X, q_T);
+    const auto old_bar = range == CellRange::bounded ? J.reverse_apply_bounded(lifted, at_node)
+                                                     : J.apply_transpose(at_node);
+    J.add_weight_bar(lifted, at_node, weight_bar);
     reverse_cell_to_node(old_mesh, X, q_T, old_bar, q_T_bar, X_bar);
   }
 
-  template std::vector<double> transfer_cells(const TetMesh &,
-                                              const NodalVectors<double> &,
-                                              const TransferOperator &,
-                                              const TetMesh &,
-                                              const std::vector<double> &,
+#define RETROFORGE_INSTANTIATE(Number)                                                                          \
+  template std::vector<CellIndex> kept_cells(const TetMesh &, const BasicTransfer<Number> &, const TetMesh &); \
+  template std::vector<Number>    transfer_cells(const TetMesh &,                                              \
+                                              const NodalVectors<Number> &,                                    \
+                                              const BasicTransfer<Number> &,                                   \
+                                              const TetMesh &,                                                 \
+                                              const std::vector<Number> &,                                     \
                                               CellRange);
-  template std::vector<Dual>   transfer_cells(const TetMesh &,
-                                              const NodalVectors<Dual> &,
-                                              const TransferOperator &,
-                                              const TetMesh &,
-                                              const std::vector<Dual> &,
-                                              CellRange);
+  RETROFORGE_INSTANTIATE(double)
+  RETROFORGE_INSTANTIATE(Dual)
+#undef RETROFORGE_INSTANTIATE
 } // namespace retroforge

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/core/dual.h>
+#include <retroforge/geometry/vector_algebra.h>
 #include <retroforge/transfer/gradient_fit.h>
 
 #include <algorithm>
@@ -16,9 +18,11 @@ namespace retroforge
     constexpr double damping_of_second = 1e-6, damping_of_third = 1e-4;
     // Points on a plane or line do not determine the gradient across it; relative like eps.
     constexpr double least_pivot = 1e-13;
+    // Of |d_b|^2 over the largest: nearer points have no more weight.
+    constexpr double least_square = 1e-6;
 
-    using Monomials = std::array<double, max_unknowns>;
-    using Matrix    = std::array<Monomials, max_unknowns>;
+    template <typename Number>
+    using Monomials = std::array<Number, max_unknowns>;
 
     constexpr unsigned int n_second(const unsigned int n)
     {
@@ -31,10 +35,11 @@ namespace retroforge
     }
 
     // The products of three components of d, those of two, then its n components.
-    Monomials monomials(const Vec3 &d, const unsigned int n)
+    template <typename Number>
+    Monomials<Number> monomials(const Vector3<Number> &d, const unsigned int n)
     {
-      Monomials    m = {};
-      unsigned int k = 0;
+      Monomials<Number> m = {};
+      unsigned int      k = 0;
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = i; j < n; ++j)
           for (unsigned int l = j; l < n; ++l)
@@ -47,87 +52,204 @@ namespace retroforge
       return m;
     }
 
-    // Cholesky's factor in place of the lower triangle; false when a pivot is lost.
-    bool factorise(Matrix &A, const unsigned int size, const double least)
+    // Their gradients.
+    Monomials<Vec3> monomial_gradients(const Vec3 &d, const unsigned int n)
     {
-      for (unsigned int j = 0; j < size; ++j)
-        for (unsigned int i = j; i < size; ++i)
+      Monomials<Vec3> g = {};
+      unsigned int    k = 0;
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = i; j < n; ++j)
+          for (unsigned int l = j; l < n; ++l, ++k)
+          {
+            g[k][i] += d[j] * d[l];
+            g[k][j] += d[i] * d[l];
+            g[k][l] += d[i] * d[j];
+          }
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = i; j < n; ++j, ++k)
         {
-          for (unsigned int k = 0; k < j; ++k)
-            A[i][j] -= A[i][k] * A[j][k];
-          if (i > j)
-            A[i][j] /= A[j][j];
-          else if (A[j][j] > least)
-            A[j][j] = std::sqrt(A[j][j]);
-          else
-            return false;
+          g[k][i] += d[j];
+          g[k][j] += d[i];
         }
-      return true;
+      for (unsigned int i = 0; i < n; ++i, ++k)
+        g[k][i] = 1.;
+      return g;
     }
 
-    Monomials solve(const Matrix &L, const unsigned int size, Monomials x)
+    // Row i of a lower triangle begins here.
+    constexpr unsigned int row(const unsigned int i)
     {
-      for (unsigned int i = 0; i < size; ++i)
-      {
-        for (unsigned int k = 0; k < i; ++k)
-          x[i] -= L[i][k] * x[k];
-        x[i] /= L[i][i];
-      }
-      for (unsigned int i = size; i-- > 0;)
-      {
-        for (unsigned int k = i + 1; k < size; ++k)
-          x[i] -= L[k][i] * x[k];
-        x[i] /= L[i][i];
-      }
-      return x;
+      return i * (i + 1) / 2;
     }
   } // namespace
 
-  std::optional<std::vector<double>>
-  fitted_derivative(const std::vector<Vec3> &points, const unsigned int n, const Vec3 &direction)
+  template <typename Number>
+  GradientFit<Number>::GradientFit(const std::vector<Vector3<Number>> &points, const unsigned int n)
+      : n_(n), n_third_(n_third(n)), first_(n_third(n) + n_second(n)), size_(first_ + n), longest_(0.)
   {
-    const unsigned int first = n_third(n) + n_second(n), size = first + n;
-    double             longest = 0.;
-    for (const Vec3 &d : points)
-      longest = std::max(longest, d.norm());
-    if (longest == 0.)
-      return {};
-    Matrix                 A = {};
-    std::vector<Monomials> rows, weighted;
-    for (const Vec3 &d : points)
+    for (std::size_t b = 0; b < points.size(); ++b)
+      if (const Number distance = length(points[b]); value_of(distance) > value_of(longest_))
+      {
+        longest_  = distance;
+        farthest_ = b;
+      }
+    if (value_of(longest_) == 0.)
+      return;
+    factor_.assign(row(size_), Number(0.));
+    for (const Vector3<Number> &d : points)
     {
-      rows.push_back(monomials(d / longest, n));
-      weighted.push_back(rows.back());
-      const double relative = std::max(d.norm_square() / (longest * longest), 1e-6),
-                   weight   = 1. / (relative * relative);
-      for (double &entry : weighted.back())
-        entry *= weight;
-      for (unsigned int i = 0; i < size; ++i)
+      points_.push_back(d / longest_);
+      const Number square   = (d * d) / (longest_ * longest_),
+                   relative = value_of(square) > least_square ? square : Number(least_square);
+      weights_.push_back(1. / (relative * relative));
+      const auto        m        = monomials(points_.back(), n_);
+      Monomials<Number> weighted = m;
+      for (Number &entry : weighted)
+        entry *= weights_.back();
+      for (unsigned int i = 0; i < size_; ++i)
         for (unsigned int j = 0; j <= i; ++j)
-          A[i][j] += weighted.back()[i] * rows.back()[j];
+          factor_[row(i) + j] += weighted[i] * m[j];
     }
-    double largest = 0.;
-    for (unsigned int i = 0; i < size; ++i)
-      largest = std::max(largest, A[i][i]);
-    for (unsigned int i = 0; i < first; ++i)
-      A[i][i] += (i < n_third(n) ? damping_of_third : damping_of_second) * largest;
-    if (!factorise(A, size, least_pivot * largest))
-      return {};
-    std::vector<double> coefficients(points.size(), 0.);
+    for (unsigned int i = 1; i < size_; ++i)
+      if (value_of(factor_[row(i) + i]) > value_of(factor_[row(dominant_) + dominant_]))
+        dominant_ = i;
+    factorise(Number(factor_[row(dominant_) + dominant_]));
+  }
+
+  // Cholesky's factor in place of the damped lower triangle; empty when a pivot is lost.
+  template <typename Number>
+  void GradientFit<Number>::factorise(const Number largest)
+  {
+    using std::sqrt;
+    const auto A = [&](const unsigned int i, const unsigned int j) -> Number & { return factor_[row(i) + j]; };
+    for (unsigned int i = 0; i < first_; ++i)
+      A(i, i) += (i < n_third_ ? damping_of_third : damping_of_second) * largest;
+    for (unsigned int j = 0; j < size_; ++j)
+      for (unsigned int i = j; i < size_; ++i)
+      {
+        for (unsigned int k = 0; k < j; ++k)
+          A(i, j) -= A(i, k) * A(j, k);
+        if (i > j)
+          A(i, j) /= A(j, j);
+        else if (value_of(A(j, j)) > least_pivot * value_of(largest))
+          A(j, j) = sqrt(A(j, j));
+        else
+        {
+          factor_.clear();
+          return;
+        }
+      }
+  }
+
+  template <typename Number>
+  std::vector<Number> GradientFit<Number>::solved(std::vector<Number> x) const
+  {
+    const auto L = [&](const unsigned int i, const unsigned int j) -> const Number & { return factor_[row(i) + j]; };
+    for (unsigned int i = 0; i < size_; ++i)
+    {
+      for (unsigned int k = 0; k < i; ++k)
+        x[i] -= L(i, k) * x[k];
+      x[i] /= L(i, i);
+    }
+    for (unsigned int i = size_; i-- > 0;)
+    {
+      for (unsigned int k = i + 1; k < size_; ++k)
+        x[i] -= L(k, i) * x[k];
+      x[i] /= L(i, i);
+    }
+    return x;
+  }
+
+  template <typename Number>
+  std::vector<Number> GradientFit<Number>::solution(const Vector3<Number> &direction,
+                                                    std::vector<Number>   &coefficients) const
+  {
+    std::vector<Number> sum(size_, Number(0.));
+    coefficients.assign(points_.size(), Number(0.));
     // Again and again: that removes the rounding of the times before from linear fields.
     for (unsigned int pass = 0; pass < 3; ++pass)
     {
-      Monomials rest = {};
-      for (unsigned int i = 0; i < n; ++i)
-        rest[first + i] = direction[i] / longest;
-      for (std::size_t b = 0; b < points.size(); ++b)
-        for (unsigned int i = 0; i < n; ++i)
-          rest[first + i] -= coefficients[b] * rows[b][first + i];
-      const Monomials z = solve(A, size, rest);
-      for (std::size_t b = 0; b < points.size(); ++b)
-        for (unsigned int i = 0; i < size; ++i)
-          coefficients[b] += z[i] * weighted[b][i];
+      std::vector<Number> rest(size_, Number(0.));
+      for (unsigned int i = 0; i < n_; ++i)
+        rest[first_ + i] = direction[i] / longest_;
+      for (std::size_t b = 0; b < points_.size(); ++b)
+        for (unsigned int i = 0; i < n_; ++i)
+          rest[first_ + i] -= coefficients[b] * points_[b][i];
+      const auto z = solved(std::move(rest));
+      for (unsigned int i = 0; i < size_; ++i)
+        sum[i] += z[i];
+      for (std::size_t b = 0; b < points_.size(); ++b)
+      {
+        const auto m = monomials(points_[b], n_);
+        for (unsigned int i = 0; i < size_; ++i)
+          coefficients[b] += z[i] * Number(m[i] * weights_[b]);
+      }
     }
-    return coefficients;
+    return sum;
   }
+
+  template <typename Number>
+  std::vector<Number> GradientFit<Number>::coefficients(const Vector3<Number> &direction) const
+  {
+    Assert(is_determined(), dealii::ExcInternalError());
+    std::vector<Number> c;
+    solution(direction, c);
+    return c;
+  }
+
+  // With M the damped normal matrix, M z = (0, direction) and M y = sum_b c_bar_b w_b m(d_b), the derivative is that of
+  // sum_b (c_bar_b - y·m(d_b)) w_b z·m(d_b)  where y, z and c_bar are held, less that of the damping.
+  template <>
+  void GradientFit<double>::reverse(const Vec3                &direction,
+                                    const std::vector<double> &c_bar,
+                                    std::vector<Vec3>         &points_bar,
+                                    Vec3                      &direction_bar) const
+  {
+    AssertDimension(c_bar.size(), points_.size());
+    AssertDimension(points_bar.size(), points_.size());
+    std::vector<double> c, of_c(size_, 0.);
+    const auto          z = solution(direction, c);
+    for (std::size_t b = 0; b < points_.size(); ++b)
+    {
+      const auto m = monomials(points_[b], n_);
+      for (unsigned int i = 0; i < size_; ++i)
+        of_c[i] += c_bar[b] * weights_[b] * m[i];
+    }
+    const auto y       = solved(std::move(of_c));
+    double     damping = 0.;
+    for (unsigned int i = 0; i < first_; ++i)
+      damping += (i < n_third_ ? damping_of_third : damping_of_second) * y[i] * z[i];
+    double longest_bar = 0.;
+    for (std::size_t b = 0; b < points_.size(); ++b)
+    {
+      const Vec3 &d  = points_[b];
+      const auto  m  = monomials(d, n_);
+      const auto  dm = monomial_gradients(d, n_);
+      double      of_y = 0., of_z = 0.;
+      Vec3        dy, dz;
+      for (unsigned int i = 0; i < size_; ++i)
+      {
+        of_y += y[i] * m[i];
+        of_z += z[i] * m[i];
+        dy += y[i] * dm[i];
+        dz += z[i] * dm[i];
+      }
+      const double w = weights_[b], square = d.norm_square();
+      const Vec3   dw  = square > least_square ? -4. * w / square * d : Vec3();
+      const double of_dominant = m[dominant_];
+      const Vec3   bar         = w * ((c_bar[b] - of_y) * dz - of_z * dy) + (c_bar[b] - of_y) * of_z * dw -
+                       damping * of_dominant * (of_dominant * dw + 2. * w * dm[dominant_]);
+      points_bar[b] += bar / longest_;
+      longest_bar -= bar * d / longest_;
+    }
+    for (unsigned int i = 0; i < n_; ++i)
+    {
+      direction_bar[i] += y[first_ + i] / longest_;
+      longest_bar -= y[first_ + i] * direction[i] / (longest_ * longest_);
+    }
+    points_bar[farthest_] += longest_bar * points_[farthest_];
+  }
+
+  template class GradientFit<double>;
+  template class GradientFit<Dual>;
 } // namespace retroforge

@@ -50,17 +50,26 @@ namespace retroforge
     return a * Number(1. / length(a));
   }
 
-  /// Two directions across a unit vector n, first of all across the axis that it is least along:  u, n x u.
-  inline std::array<Vec3, 2> directions_across(const Vec3 &n)
+  /// The axis that a vector is least along.
+  template <typename Number>
+  unsigned int least_axis(const Vector3<Number> &n)
   {
+    using std::abs;
     unsigned int axis = 0;
     for (unsigned int i = 1; i < 3; ++i)
-      if (std::abs(n[i]) < std::abs(n[axis]))
+      if (abs(n[i]) < abs(n[axis]))
         axis = i;
-    Vec3 u;
-    u[axis] = 1.;
-    u       = cross(n, u);
-    u /= u.norm();
+    return axis;
+  }
+
+  /// Two directions across a unit vector n, first of all across the axis that it is least along:  u, n x u.
+  template <typename Number>
+  std::array<Vector3<Number>, 2> directions_across(const Vector3<Number> &n)
+  {
+    Vector3<Number> u;
+    u[least_axis(n)] = Number(1.);
+    u                = cross(n, u);
+    u /= length(u);
     return {{u, cross(n, u)}};
   }
 
@@ -70,5 +79,15 @@ namespace retroforge
     const double norm = a.norm();
     const Vec3   u    = a / norm;
     return (u_bar - (u * u_bar) * u) / norm;
+  }
+
+  /// Pull-back of directions_across(n): returns n_bar.
+  inline Vec3 reverse_directions_across(const Vec3 &n, const std::array<Vec3, 2> &bar)
+  {
+    Vec3 axis;
+    axis[least_axis(n)]  = 1.;
+    const Vec3 u         = directions_across(n)[0];
+    const Vec3 of_across = reverse_unit(cross(n, axis), bar[0] + cross(bar[1], n));
+    return cross(u, bar[1]) + cross(axis, of_across);
   }
 } // namespace retroforge

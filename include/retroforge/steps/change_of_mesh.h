@@ -5,24 +5,52 @@
 #include <retroforge/record/increment_record.h>
 #include <retroforge/steps/kept_heat.h>
 #include <retroforge/steps/workpiece_state.h>
+#include <retroforge/transfer/cell_transfer.h>
+#include <retroforge/transfer/moving_transfer.h>
 
 /// @file
 /// The step that takes the workpiece from one mesh to the next. What happens to a member of the state follows
 /// from its kind: positions by the tape of what remeshing did to them (PositionTape), one number or vector per
 /// node q' = J q, one number per cell transfer_cells(); fields of nodes and bounded ones of cells within the range of the
-/// values that a row of J takes. Temperatures are then corrected so that heat is kept
-/// (steps/kept_heat.h).
+/// values that a row of J takes. The weights of J follow positions (MovingTransfer). Temperatures are then corrected so that
+/// heat is kept (steps/kept_heat.h).
 namespace retroforge
 {
+  /// Returns the positions on the new mesh: of a state, its first member.
+  template <typename Number>
+  NodalVectors<Number> moved_positions(const TetMesh                       &old_mesh,
+                                       const RemeshRecord                  &remesh,
+                                       const NodalVectors<Number>          &X,
+                                       const std::vector<Die>              &dies,
+                                       const std::vector<DieState<Number>> &states)
+  {
+    return remesh.positions.positions<Number>({old_mesh, remesh.mesh, dies, states}, X);
+  }
+
+  /// Returns J with the weights that it has at these positions; where they are those that it was made at, J itself.
+  template <typename Number>
+  BasicTransfer<Number> moved_transfer(const TetMesh              &old_mesh,
+                                       const RemeshRecord         &remesh,
+                                       const NodalVectors<Number> &X_old,
+                                       const NodalVectors<Number> &X_new);
+  template <>
+  TransferOperator moved_transfer(const TetMesh &,
+                                  const RemeshRecord &,
+                                  const NodalVectors<double> &,
+                                  const NodalVectors<double> &);
+  template <>
+  BasicTransfer<Dual> moved_transfer(const TetMesh &,
+                                     const RemeshRecord &,
+                                     const NodalVectors<Dual> &,
+                                     const NodalVectors<Dual> &);
+
   /// Takes a member of the state to the new mesh, each kind by its overload; on dual numbers its tangent.
   template <typename Number>
   struct MemberTransfer
   {
-    const TetMesh                       &old_mesh;
-    const RemeshRecord                  &remesh;
-    const NodalVectors<Number>          &X; ///< on the old mesh
-    const std::vector<Die>              &dies;
-    const std::vector<DieState<Number>> &states;
+    const TetMesh               &old_mesh, &new_mesh;
+    const NodalVectors<Number>  &X_old, &X_new;
+    const BasicTransfer<Number> &J; ///< at these positions
 
     void operator()(const NodalVectors<Number> &positions, NodalVectors<Number> &to) const;
     void operator()(const NodeField<Number> &q, NodeField<Number> &to) const;
@@ -32,30 +60,52 @@ namespace retroforge
   };
 
   /// The reverse of it: from a member of the costate on the new mesh to that on the old one. Positions come
-  /// before cells, which add to them by way of the volumes that they were weighed with.
-  struct ReverseMemberTransfer
+  /// before cells, which add to them by way of the volumes that they were weighed with, and are complete after
+  /// reverse_positions().
+  class ReverseMemberTransfer
   {
-    const TetMesh                       &old_mesh;
-    const RemeshRecord                  &remesh;
-    const NodalVectors<double>          &X; ///< on the old mesh
-    const std::vector<Die>              &dies;
-    const std::vector<DieState<double>> &states;
-    NodalVectors<double>                &X_bar;    ///< on the old mesh
-    std::vector<DieState<double>>       &dies_bar; ///< added to
+  public:
+    /// Keeps references to its arguments.
+    /// @param X          on the old mesh
+    /// @param moving     of this change of mesh
+    /// @param X_old_bar  the costate's positions on the old mesh
+    ReverseMemberTransfer(const TetMesh              &old_mesh,
+                          const RemeshRecord         &remesh,
+                          const NodalVectors<double> &X,
+                          MovingTransfer             &moving,
+                          NodalVectors<double>       &X_old_bar);
 
     /// @param q      the member on the old mesh
     /// @param q_bar  its costate on the new mesh
-    void operator()(const NodalVectors<double> &q,
-                    const NodalVectors<double> &q_bar,
-                    NodalVectors<double>       &to) const;
-    void operator()(const NodeField<double> &q, const NodeField<double> &q_bar, NodeField<double> &to) const;
+    void operator()(const NodalVectors<double> &q, const NodalVectors<double> &q_bar, NodalVectors<double> &to);
+    void operator()(const NodeField<double> &q, const NodeField<double> &q_bar, NodeField<double> &to);
     void operator()(const NodeVectorField<3, double> &v,
                     const NodeVectorField<3, double> &v_bar,
-                    NodeVectorField<3, double>       &to) const;
-    void operator()(const CellField<double> &q, const CellField<double> &q_bar, CellField<double> &to) const;
+                    NodeVectorField<3, double>       &to);
+    void operator()(const CellField<double> &q, const CellField<double> &q_bar, CellField<double> &to);
     void operator()(const BoundedCellField<double> &q,
                     const BoundedCellField<double> &q_bar,
-                    BoundedCellField<double>       &to) const;
+                    BoundedCellField<double>       &to);
+
+    /// After all members: what they took from positions, by the weights and by the new positions themselves.
+    /// @param dies_bar  gets the derivatives in the dies added
+    void reverse_positions(const std::vector<Die>              &dies,
+                           const std::vector<DieState<double>> &states,
+                           std::vector<DieState<double>>       &dies_bar);
+
+  private:
+    void reverse_cells(const std::vector<double> &q,
+                       const std::vector<double> &q_bar,
+                       std::vector<double>       &to,
+                       CellRange                  range);
+
+    const TetMesh              &old_mesh_;
+    const RemeshRecord         &remesh_;
+    const NodalVectors<double> &X_;
+    MovingTransfer             &moving_;
+    NodalVectors<double>       &X_old_bar_;
+    NodalVectors<double>        X_new_bar_;
+    std::vector<double>         weight_bar_;
   };
 
   /// Returns the state on the new mesh; on dual numbers its tangent.
@@ -69,9 +119,11 @@ namespace retroforge
     AssertDimension(remesh.transfer.n_old, old_mesh.n_nodes());
     AssertDimension(remesh.transfer.n_new(), remesh.mesh.n_nodes());
     AssertDimension(before.X.size(), old_mesh.n_nodes());
+    const auto X_new = moved_positions(old_mesh, remesh, before.X, dies, states);
+    const auto J     = moved_transfer(old_mesh, remesh, before.X, X_new);
     WorkpieceState<3, Number> after;
     internal::for_each_member(
-      MemberTransfer<Number>{old_mesh, remesh, before.X, dies, states}, before, after);
+      MemberTransfer<Number>{old_mesh, remesh.mesh, before.X, X_new, J}, before, after);
     if (!before.temperature.empty())
       after.temperature = keep_heat<Number>({old_mesh, before.X, before.temperature},
                                             {remesh.mesh, after.X, after.temperature});
@@ -79,44 +131,15 @@ namespace retroforge
   }
 
   /// Returns the costate on the old mesh of one on the new mesh: the reverse of change_mesh().
-  /// @param before    the state on the old mesh
+  /// @param before    the state on the old mesh, where it was remeshed
+  /// @param moving    of this change of mesh
   /// @param dies_bar  gets the derivatives in the dies added
-  inline WorkpieceState<3, double> reverse_change_mesh(const TetMesh                       &old_mesh,
-                                                       const RemeshRecord                  &remesh,
-                                                       const WorkpieceState<3, double>     &before,
-                                                       const std::vector<Die>              &dies,
-                                                       const std::vector<DieState<double>> &states,
-                                                       const WorkpieceState<3, double>     &costate,
-                                                       std::vector<DieState<double>>       &dies_bar)
-  {
-    AssertDimension(before.X.size(), old_mesh.n_nodes());
-    AssertDimension(costate.X.size(), remesh.mesh.n_nodes());
-    WorkpieceState<3, double> there, of_transfer = costate; // before heat is kept
-    NodalVectors<double>      X_bar(before.X.size());
-    NodeField<double>         T_bar(before.temperature.size(), 0.);
-    if (!is_zero(costate.temperature))
-    {
-      const MemberTransfer<double> transfer{old_mesh, remesh, before.X, dies, states};
-      NodalVectors<double>         X;
-      NodeField<double>            T;
-      transfer(before.X, X);
-      transfer(before.temperature, T);
-      of_transfer.temperature = reverse_keep_heat({old_mesh, before.X, before.temperature},
-                                                  {remesh.mesh, X, T},
-                                                  costate.temperature,
-                                                  X_bar,
-                                                  T_bar,
-                                                  of_transfer.X);
-    }
-    internal::for_each_member(
-      ReverseMemberTransfer{old_mesh, remesh, before.X, dies, states, there.X, dies_bar},
-      before,
-      of_transfer,
-      there);
-    for (std::size_t k = 0; k < X_bar.size(); ++k)
-      there.X[k] += X_bar[k];
-    for (std::size_t k = 0; k < std::min(T_bar.size(), there.temperature.size()); ++k)
-      there.temperature[k] += T_bar[k];
-    return there;
-  }
+  WorkpieceState<3, double> reverse_change_mesh(const TetMesh                       &old_mesh,
+                                                const RemeshRecord                  &remesh,
+                                                const WorkpieceState<3, double>     &before,
+                                                const std::vector<Die>              &dies,
+                                                const std::vector<DieState<double>> &states,
+                                                const WorkpieceState<3, double>     &costate,
+                                                MovingTransfer                      &moving,
+                                                std::vector<DieState<double>>       &dies_bar);
 } // namespace retroforge

@@ -10,22 +10,25 @@ namespace retroforge
 {
   /// Linear map J of nodal values from an old to a new mesh,  q' = J q:  sparse, rows that sum to one.
   ///
-  /// Its reverse is  q_bar = J^T q'_bar.  Positions follow what remeshing did to them instead (PositionTape); the
-  /// offset c = X' - J X tells by how much that is off the interpolation.
+  /// Its reverse is  q_bar = J^T q'_bar.  Its weights are functions of the positions of both meshes
+  /// (transfer/moving_transfer.h), of which  weight_bar  gathers the derivatives. Positions follow what remeshing did to them
+  /// instead (PositionTape); the offset c = X' - J X tells by how much that is off the interpolation.
   /// @cite Laroussi2003, Eq. (57), (89), (96)
-  struct TransferOperator
+  /// @tparam Number  of the weights: double or Dual
+  template <typename Number>
+  struct BasicTransfer
   {
     unsigned int n_old = 0; ///< nodes of the old mesh
     /// Row k has the entries begin[k] ... begin[k+1] - 1 of the two lists below.
     std::vector<unsigned int> begin = {0};
     std::vector<NodeIndex>    node;   ///< old nodes
-    std::vector<double>       weight; ///< dimensionless
-    NodalVectors<double>      offset; ///< c = X' - J X [mm], one per new node
+    std::vector<Number>       weight; ///< dimensionless
+    NodalVectors<double>      offset; ///< c = X' - J X [mm], one per new node; none with dual numbers
 
     unsigned int n_new() const { return begin.size() - 1; }
 
     /// J q. Throws Error when q has not one value per old node.
-    /// @tparam Value  double, Dual, or a vector of them
+    /// @tparam Value  Number, or a vector of them
     template <typename Value>
     std::vector<Value> apply(const std::vector<Value> &q) const;
 
@@ -36,12 +39,17 @@ namespace retroforge
     std::vector<Value> apply_transpose(const std::vector<Value> &q_bar) const;
 
     /// J q, each value within the range of those that its row takes: weights may be negative.
-    /// @tparam Number  double or Dual
-    template <typename Number>
     std::vector<Number> apply_bounded(const std::vector<Number> &q) const;
 
-    /// The pull-back of apply_bounded at q.
-    std::vector<double> reverse_apply_bounded(const std::vector<double> &q, std::vector<double> q_bar) const;
+    /// The pull-back of apply_bounded at q.  @return q_bar; of q'_bar what is not bounded is left
+    std::vector<double> reverse_apply_bounded(const std::vector<double> &q, std::vector<double> &q_bar) const;
+
+    /// Adds the derivatives of q'_bar·(J q) in the weights to weight_bar, one number per entry.
+    /// @tparam Value  double or Vec3
+    template <typename Value>
+    void add_weight_bar(const std::vector<Value> &q,
+                        const std::vector<Value> &q_bar,
+                        std::vector<double>      &weight_bar) const;
 
     /// c = X' - J X.
     void set_offset(const NodalVectors<double> &X, const NodalVectors<double> &X_new);
@@ -49,6 +57,14 @@ namespace retroforge
     /// Bytes in use.
     std::size_t memory_consumption() const;
   };
+
+  using TransferOperator = BasicTransfer<double>;
+
+  template <>
+  std::vector<double> BasicTransfer<double>::reverse_apply_bounded(const std::vector<double> &q,
+                                                                   std::vector<double>       &q_bar) const;
+  template <>
+  void BasicTransfer<double>::set_offset(const NodalVectors<double> &X, const NodalVectors<double> &X_new);
 
   /// The interpolation by which values reach new nodes.
   ///
