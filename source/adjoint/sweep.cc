@@ -276,8 +276,14 @@ namespace retroforge
         for (std::size_t j = 0; j < costates.size(); ++j)
         {
           PhysicsBar bar(run.model.dies);
-          costates[j].workpiece = reverse_change_mesh(
-            epoch->scene.mesh, *remesh, state, run.model.dies, states, costates[j].workpiece, moving, bar.dies);
+          costates[j].workpiece = reverse_change_mesh(epoch->scene.mesh,
+                                                      *remesh,
+                                                      state,
+                                                      run.model.dies,
+                                                      states,
+                                                      costates[j].workpiece,
+                                                      moving,
+                                                      bar.dies);
           costates[j].process.add_once(
             [&](Process<double> &part) { reverse_over(run.process, at, 0., bar, part); });
           if (moves_start)

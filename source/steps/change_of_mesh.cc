@@ -161,7 +161,7 @@ namespace retroforge
     NodeField<double>         T_bar(before.temperature.size(), 0.);
     if (!is_zero(costate.temperature))
     {
-      const auto           X = moved_positions(old_mesh, remesh, before.X, dies, states);
+      const auto              X = moved_positions(old_mesh, remesh, before.X, dies, states);
       const NodeField<double> T{remesh.transfer.apply_bounded(before.temperature)};
       of_transfer.temperature = reverse_keep_heat({old_mesh, before.X, before.temperature},
                                                   {remesh.mesh, X, T},

@@ -18,7 +18,8 @@ namespace retroforge
     {
       std::vector<NodeIndex> old_node(J.n_new(), invalid_index);
       for (NodeIndex k = 0; k < J.n_new(); ++k)
-        if (const unsigned int entry = J.begin[k]; J.begin[k + 1] == entry + 1 && value_of(J.weight[entry]) == 1.)
+        if (const unsigned int entry = J.begin[k];
+            J.begin[k + 1] == entry + 1 && value_of(J.weight[entry]) == 1.)
           old_node[k] = J.node[entry];
       return old_node;
     }
@@ -97,20 +98,21 @@ namespace retroforge
       }
     std::vector<double> at_node(new_mesh.n_nodes(), 0.);
     reverse_node_to_cell(new_mesh, q_bar, at_node);
-    const auto lifted  = cell_to_node(old_mesh, X, q_T);
-    const auto old_bar = range == CellRange::bounded ? J.reverse_apply_bounded(lifted, at_node)
-                                                     : J.apply_transpose(at_node);
+    const auto lifted = cell_to_node(old_mesh, X, q_T);
+    const auto old_bar =
+      range == CellRange::bounded ? J.reverse_apply_bounded(lifted, at_node) : J.apply_transpose(at_node);
     J.add_weight_bar(lifted, at_node, weight_bar);
     reverse_cell_to_node(old_mesh, X, q_T, old_bar, q_T_bar, X_bar);
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                                                          \
-  template std::vector<CellIndex> kept_cells(const TetMesh &, const BasicTransfer<Number> &, const TetMesh &); \
-  template std::vector<Number>    transfer_cells(const TetMesh &,                                              \
-                                              const NodalVectors<Number> &,                                    \
-                                              const BasicTransfer<Number> &,                                   \
-                                              const TetMesh &,                                                 \
-                                              const std::vector<Number> &,                                     \
+#define RETROFORGE_INSTANTIATE(Number)                                       \
+  template std::vector<CellIndex> kept_cells(                                \
+    const TetMesh &, const BasicTransfer<Number> &, const TetMesh &);        \
+  template std::vector<Number> transfer_cells(const TetMesh &,               \
+                                              const NodalVectors<Number> &,  \
+                                              const BasicTransfer<Number> &, \
+                                              const TetMesh &,               \
+                                              const std::vector<Number> &,   \
                                               CellRange);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)

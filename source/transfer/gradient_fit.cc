@@ -14,12 +14,12 @@ namespace retroforge
   {
     constexpr unsigned int max_unknowns = 19;
 
-    // eps_2 and eps_3 over the largest entry of the normal matrix.
+    // eps_2 and eps_3 over the mean entry that the normal matrix has for the gradient.
     constexpr double damping_of_second = 1e-6, damping_of_third = 1e-4;
     // Points on a plane or line do not determine the gradient across it; relative like eps.
     constexpr double least_pivot = 1e-13;
-    // Of |d_b|^2 over the largest: nearer points have no more weight.
-    constexpr double least_square = 1e-6;
+    // Added to |d_b|^4: points that are nearer have no more weight.
+    constexpr double least_fourth_power = 1e-12;
 
     template <typename Number>
     using Monomials = std::array<Number, max_unknowns>;
@@ -76,6 +76,21 @@ namespace retroforge
       return g;
     }
 
+    // How many components of a symmetric tensor a monomial stands for, in their order: its coefficient is as many
+    // times the component.
+    std::vector<double> components_of_monomials(const unsigned int n)
+    {
+      std::vector<double> count;
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = i; j < n; ++j)
+          for (unsigned int l = j; l < n; ++l)
+            count.push_back(i == l ? 1. : i == j || j == l ? 3. : 6.);
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = i; j < n; ++j)
+          count.push_back(i == j ? 1. : 2.);
+      return count;
+    }
+
     // Row i of a lower triangle begins here.
     constexpr unsigned int row(const unsigned int i)
     {
@@ -85,23 +100,26 @@ namespace retroforge
 
   template <typename Number>
   GradientFit<Number>::GradientFit(const std::vector<Vector3<Number>> &points, const unsigned int n)
-      : n_(n), n_third_(n_third(n)), first_(n_third(n) + n_second(n)), size_(first_ + n), longest_(0.)
+      : n_(n)
+      , n_third_(n_third(n))
+      , first_(n_third(n) + n_second(n))
+      , size_(first_ + n)
+      , unit_(0.)
+      , scale_(0.)
   {
-    for (std::size_t b = 0; b < points.size(); ++b)
-      if (const Number distance = length(points[b]); value_of(distance) > value_of(longest_))
-      {
-        longest_  = distance;
-        farthest_ = b;
-      }
-    if (value_of(longest_) == 0.)
+    using std::sqrt;
+    for (const Vector3<Number> &d : points)
+      unit_ += 2. * (d * d) / double(points.size());
+    unit_ = value_of(unit_) > 0. ? Number(sqrt(unit_)) : Number(0.);
+    if (value_of(unit_) == 0.)
       return;
     factor_.assign(row(size_), Number(0.));
     for (const Vector3<Number> &d : points)
     {
-      points_.push_back(d / longest_);
-      const Number square   = (d * d) / (longest_ * longest_),
-                   relative = value_of(square) > least_square ? square : Number(least_square);
-      weights_.push_back(1. / (relative * relative));
+      points_.push_back(d / unit_);
+      const Number square = points_.back() * points_.back();
+      weights_.push_back(1. / (square * square + least_fourth_power));
+      scale_ += weights_.back() * square / double(n_);
       const auto        m        = monomials(points_.back(), n_);
       Monomials<Number> weighted = m;
       for (Number &entry : weighted)
@@ -110,20 +128,27 @@ namespace retroforge
         for (unsigned int j = 0; j <= i; ++j)
           factor_[row(i) + j] += weighted[i] * m[j];
     }
-    for (unsigned int i = 1; i < size_; ++i)
-      if (value_of(factor_[row(i) + i]) > value_of(factor_[row(dominant_) + dominant_]))
-        dominant_ = i;
-    factorise(Number(factor_[row(dominant_) + dominant_]));
+    factorise();
+  }
+
+  template <typename Number>
+  double GradientFit<Number>::damping(const unsigned int i) const
+  {
+    static const std::array<std::vector<double>, 3> counts = {
+      {components_of_monomials(1), components_of_monomials(2), components_of_monomials(3)}};
+    return i < first_ ? (i < n_third_ ? damping_of_third : damping_of_second) / counts[n_ - 1][i] : 0.;
   }
 
   // Cholesky's factor in place of the damped lower triangle; empty when a pivot is lost.
   template <typename Number>
-  void GradientFit<Number>::factorise(const Number largest)
+  void GradientFit<Number>::factorise()
   {
     using std::sqrt;
-    const auto A = [&](const unsigned int i, const unsigned int j) -> Number & { return factor_[row(i) + j]; };
+    const auto A = [&](const unsigned int i, const unsigned int j) -> Number & {
+      return factor_[row(i) + j];
+    };
     for (unsigned int i = 0; i < first_; ++i)
-      A(i, i) += (i < n_third_ ? damping_of_third : damping_of_second) * largest;
+      A(i, i) += damping(i) * scale_;
     for (unsigned int j = 0; j < size_; ++j)
       for (unsigned int i = j; i < size_; ++i)
       {
@@ -131,7 +156,7 @@ namespace retroforge
           A(i, j) -= A(i, k) * A(j, k);
         if (i > j)
           A(i, j) /= A(j, j);
-        else if (value_of(A(j, j)) > least_pivot * value_of(largest))
+        else if (value_of(A(j, j)) > least_pivot * value_of(scale_))
           A(j, j) = sqrt(A(j, j));
         else
         {
@@ -144,7 +169,9 @@ namespace retroforge
   template <typename Number>
   std::vector<Number> GradientFit<Number>::solved(std::vector<Number> x) const
   {
-    const auto L = [&](const unsigned int i, const unsigned int j) -> const Number & { return factor_[row(i) + j]; };
+    const auto L = [&](const unsigned int i, const unsigned int j) -> const Number & {
+      return factor_[row(i) + j];
+    };
     for (unsigned int i = 0; i < size_; ++i)
     {
       for (unsigned int k = 0; k < i; ++k)
@@ -171,7 +198,7 @@ namespace retroforge
     {
       std::vector<Number> rest(size_, Number(0.));
       for (unsigned int i = 0; i < n_; ++i)
-        rest[first_ + i] = direction[i] / longest_;
+        rest[first_ + i] = direction[i] / unit_;
       for (std::size_t b = 0; b < points_.size(); ++b)
         for (unsigned int i = 0; i < n_; ++i)
           rest[first_ + i] -= coefficients[b] * points_[b][i];
@@ -215,16 +242,16 @@ namespace retroforge
       for (unsigned int i = 0; i < size_; ++i)
         of_c[i] += c_bar[b] * weights_[b] * m[i];
     }
-    const auto y       = solved(std::move(of_c));
-    double     damping = 0.;
+    const auto y         = solved(std::move(of_c));
+    double     scale_bar = 0.;
     for (unsigned int i = 0; i < first_; ++i)
-      damping += (i < n_third_ ? damping_of_third : damping_of_second) * y[i] * z[i];
-    double longest_bar = 0.;
+      scale_bar -= damping(i) * y[i] * z[i];
+    double unit_bar = 0.;
     for (std::size_t b = 0; b < points_.size(); ++b)
     {
-      const Vec3 &d  = points_[b];
-      const auto  m  = monomials(d, n_);
-      const auto  dm = monomial_gradients(d, n_);
+      const Vec3 &d    = points_[b];
+      const auto  m    = monomials(d, n_);
+      const auto  dm   = monomial_gradients(d, n_);
       double      of_y = 0., of_z = 0.;
       Vec3        dy, dz;
       for (unsigned int i = 0; i < size_; ++i)
@@ -235,19 +262,19 @@ namespace retroforge
         dz += z[i] * dm[i];
       }
       const double w = weights_[b], square = d.norm_square();
-      const Vec3   dw  = square > least_square ? -4. * w / square * d : Vec3();
-      const double of_dominant = m[dominant_];
-      const Vec3   bar         = w * ((c_bar[b] - of_y) * dz - of_z * dy) + (c_bar[b] - of_y) * of_z * dw -
-                       damping * of_dominant * (of_dominant * dw + 2. * w * dm[dominant_]);
-      points_bar[b] += bar / longest_;
-      longest_bar -= bar * d / longest_;
+      const Vec3   dw  = -4. * w * w * square * d;
+      const Vec3   bar = w * ((c_bar[b] - of_y) * dz - of_z * dy) + (c_bar[b] - of_y) * of_z * dw +
+                       scale_bar / n_ * (square * dw + 2. * w * d);
+      points_bar[b] += bar / unit_;
+      unit_bar -= bar * d / unit_;
     }
     for (unsigned int i = 0; i < n_; ++i)
     {
-      direction_bar[i] += y[first_ + i] / longest_;
-      longest_bar -= y[first_ + i] * direction[i] / (longest_ * longest_);
+      direction_bar[i] += y[first_ + i] / unit_;
+      unit_bar -= y[first_ + i] * direction[i] / (unit_ * unit_);
     }
-    points_bar[farthest_] += longest_bar * points_[farthest_];
+    for (std::size_t b = 0; b < points_.size(); ++b)
+      points_bar[b] += 2. * unit_bar / points_.size() * points_[b];
   }
 
   template class GradientFit<double>;

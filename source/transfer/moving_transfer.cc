@@ -38,7 +38,8 @@ namespace retroforge
   }
 
   template <typename Number>
-  BasicTransfer<Number> MovingTransfer::at(const NodalVectors<Number> &X_old, const NodalVectors<Number> &X_new)
+  BasicTransfer<Number> MovingTransfer::at(const NodalVectors<Number> &X_old,
+                                           const NodalVectors<Number> &X_new)
   {
     AssertDimension(X_old.size(), J_.n_old);
     AssertDimension(X_new.size(), J_.n_new());

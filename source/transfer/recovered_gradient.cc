@@ -137,7 +137,8 @@ namespace retroforge
     for (const unsigned int f : stencil.faces)
     {
       const Vector3<Number> normal = normal_of(mesh_.faces[f], X_);
-      if (!(value_of(Number(normal * stencil.across)) > sharp_cosine * value_of(length(normal)) * value_of(size)))
+      if (!(value_of(Number(normal * stencil.across)) >
+            sharp_cosine * value_of(length(normal)) * value_of(size)))
         return false;
     }
     const auto across  = directions_across(Vector3<Number>(stencil.across / size));
@@ -170,7 +171,8 @@ namespace retroforge
     stencil.first = stencil.last = stencil.nodes[0];
     Vector3<Number> chord;
     for (const NodeIndex b : stencil.nodes)
-      if (const Vector3<Number> d = X_[b] - X_[stencil.first]; value_of(Number(d * d)) > value_of(Number(chord * chord)))
+      if (const Vector3<Number> d = X_[b] - X_[stencil.first];
+          value_of(Number(d * d)) > value_of(Number(chord * chord)))
       {
         chord        = d;
         stencil.last = b;
@@ -180,8 +182,8 @@ namespace retroforge
   }
 
   template <typename Number>
-  const typename RecoveredGradient<Number>::Stencil &RecoveredGradient<Number>::stencil_at(const NodeIndex a,
-                                                                                           const PatchSet &patches)
+  const typename RecoveredGradient<Number>::Stencil &
+  RecoveredGradient<Number>::stencil_at(const NodeIndex a, const PatchSet &patches)
   {
     if (const auto found = stencils_.find({a, patches}); found != stencils_.end())
       return found->second;
@@ -250,9 +252,9 @@ namespace retroforge
     }
     if (along_bar.size() == 2)
     {
-      const Vec3 across_bar =
-        reverse_unit(stencil.across,
-                     reverse_directions_across(stencil.across / stencil.across.norm(), {{along_bar[0], along_bar[1]}}));
+      const Vec3 across_bar = reverse_unit(
+        stencil.across,
+        reverse_directions_across(stencil.across / stencil.across.norm(), {{along_bar[0], along_bar[1]}}));
       for (const unsigned int f : stencil.faces)
       {
         const auto &[x, y, z] = mesh_.faces[f].nodes;

@@ -109,8 +109,10 @@ namespace retroforge
 
     /// The node whose value bounds row k, or none.
     template <typename Number>
-    NodeIndex
-    bound(const BasicTransfer<Number> &J, const unsigned int k, const std::vector<Number> &q, const Number &free)
+    NodeIndex bound(const BasicTransfer<Number> &J,
+                    const unsigned int           k,
+                    const std::vector<Number>   &q,
+                    const Number                &free)
     {
       const auto [least, largest] = extremes(J, k, q);
       if (value_of(free) < value_of(q[least]))

@@ -4,9 +4,24 @@
 #include <retroforge/transfer/transfer_row.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace retroforge
 {
+  namespace
+  {
+    // In the middle of an edge the other corners have no part but rounding.
+    void drop_rounding(std::vector<double> &weights)
+    {
+      for (double &weight : weights)
+        if (weight < 1e-14)
+          weight = 0.;
+      const double sum = std::accumulate(weights.begin(), weights.end(), 0.);
+      for (double &weight : weights)
+        weight /= sum;
+    }
+  } // namespace
+
   RowFinder::RowFinder(const TetMesh              &mesh,
                        const NodalVectors<double> &X,
                        RecoveredGradient<double>  &gradient,
@@ -33,12 +48,12 @@ namespace retroforge
       BoundaryPoint point = boundary_->locate(x, patches);
       source              = {std::move(point.nodes), std::move(point.weights), std::move(point.patches)};
     }
+    drop_rounding(source.weights);
     // All gradients or none: else linear fields are not exact.
-    source.has_gradient =
-      interpolation_ == Interpolation::half_gradient && source.corners.size() > 1 &&
-      std::all_of(source.corners.begin(), source.corners.end(), [&](const NodeIndex a) {
-        return gradient_.has(a, source.patches);
-      });
+    source.has_gradient = interpolation_ == Interpolation::half_gradient && source.corners.size() > 1 &&
+                          std::all_of(source.corners.begin(), source.corners.end(), [&](const NodeIndex a) {
+                            return gradient_.has(a, source.patches);
+                          });
     return source;
   }
 
@@ -90,9 +105,8 @@ namespace retroforge
   } // namespace
 
   template <typename Number>
-  std::vector<Number> projected_weights(const RowSource            &source,
-                                        const Vector3<Number>      &y,
-                                        const NodalVectors<Number> &X)
+  std::vector<Number>
+  projected_weights(const RowSource &source, const Vector3<Number> &y, const NodalVectors<Number> &X)
   {
     const Span<Number>  span(source, X);
     std::vector<Number> right;
@@ -153,10 +167,10 @@ namespace retroforge
           merged.back().second += weight;
         else
           merged.emplace_back(node, weight);
-      merged.erase(
-        std::remove_if(
-          merged.begin(), merged.end(), [](const auto &entry) { return value_of(entry.second) == 0.; }),
-        merged.end());
+      merged.erase(std::remove_if(merged.begin(),
+                                  merged.end(),
+                                  [](const auto &entry) { return value_of(entry.second) == 0.; }),
+                   merged.end());
       const auto largest = std::max_element(merged.begin(), merged.end(), [](const auto &a, const auto &b) {
         return value_of(a.second) < value_of(b.second);
       });
@@ -202,11 +216,13 @@ namespace retroforge
     return tidy(source.has_gradient ? with_gradient(linear, source.patches, X, gradient) : std::move(linear));
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                                                              \
-  template std::vector<Number> projected_weights(                                                                   \
-    const RowSource &, const Vector3<Number> &, const NodalVectors<Number> &);                                      \
-  template TransferRow<Number> row_from(                                                                            \
-    const RowSource &, const std::vector<Number> &, const NodalVectors<Number> &, RecoveredGradient<Number> &);
+#define RETROFORGE_INSTANTIATE(Number)                                         \
+  template std::vector<Number> projected_weights(                              \
+    const RowSource &, const Vector3<Number> &, const NodalVectors<Number> &); \
+  template TransferRow<Number> row_from(const RowSource &,                     \
+                                        const std::vector<Number> &,           \
+                                        const NodalVectors<Number> &,          \
+                                        RecoveredGradient<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE

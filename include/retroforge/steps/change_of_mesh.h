@@ -77,7 +77,8 @@ namespace retroforge
 
     /// @param q      the member on the old mesh
     /// @param q_bar  its costate on the new mesh
-    void operator()(const NodalVectors<double> &q, const NodalVectors<double> &q_bar, NodalVectors<double> &to);
+    void
+    operator()(const NodalVectors<double> &q, const NodalVectors<double> &q_bar, NodalVectors<double> &to);
     void operator()(const NodeField<double> &q, const NodeField<double> &q_bar, NodeField<double> &to);
     void operator()(const NodeVectorField<3, double> &v,
                     const NodeVectorField<3, double> &v_bar,
@@ -119,8 +120,8 @@ namespace retroforge
     AssertDimension(remesh.transfer.n_old, old_mesh.n_nodes());
     AssertDimension(remesh.transfer.n_new(), remesh.mesh.n_nodes());
     AssertDimension(before.X.size(), old_mesh.n_nodes());
-    const auto X_new = moved_positions(old_mesh, remesh, before.X, dies, states);
-    const auto J     = moved_transfer(old_mesh, remesh, before.X, X_new);
+    const auto                X_new = moved_positions(old_mesh, remesh, before.X, dies, states);
+    const auto                J     = moved_transfer(old_mesh, remesh, before.X, X_new);
     WorkpieceState<3, Number> after;
     internal::for_each_member(
       MemberTransfer<Number>{old_mesh, remesh.mesh, before.X, X_new, J}, before, after);

@@ -33,12 +33,12 @@ namespace retroforge
     bool             is_kept(NodeIndex k) const;
     const RowSource &source(NodeIndex k);
 
-    const TetMesh                         &old_mesh_, &new_mesh_;
-    const NodalVectors<double>            &X_old_;
-    const TransferOperator                &J_;
-    const std::vector<PatchSet>            patches_;
-    RecoveredGradient<double>              gradient_;
-    RowFinder                              finder_;
-    std::vector<std::optional<RowSource>>  sources_;
+    const TetMesh                        &old_mesh_, &new_mesh_;
+    const NodalVectors<double>           &X_old_;
+    const TransferOperator               &J_;
+    const std::vector<PatchSet>           patches_;
+    RecoveredGradient<double>             gradient_;
+    RowFinder                             finder_;
+    std::vector<std::optional<RowSource>> sources_;
   };
 } // namespace retroforge

@@ -59,10 +59,10 @@ namespace retroforge
     {
       std::vector<NodeIndex>             nodes;
       std::vector<Vector3<Number>>       directions;
-      std::vector<unsigned int>          faces;            ///< of a patch: the sum of their normals is `across`
-      Vector3<Number>                    across;           ///< [mm^2]
+      std::vector<unsigned int>          faces;  ///< of a patch: the sum of their normals is `across`
+      Vector3<Number>                    across; ///< [mm^2]
       NodeIndex                          first = 0, last = 0; ///< of a ridge: the ends of its chord
-      std::optional<GradientFit<Number>> fit;              ///< none where there is no gradient
+      std::optional<GradientFit<Number>> fit;                 ///< none where there is no gradient
 
       /// Along the directions.
       Vector3<Number> components(const Vector3<Number> &v) const;
@@ -79,9 +79,9 @@ namespace retroforge
                                         NodalVectors<double>      &X_bar,
                                         Vec3                      &direction_bar) const;
 
-    const TetMesh                                   &mesh_;
-    const NodalVectors<Number>                      &X_;
-    Rows<unsigned int>                               cells_at_, faces_at_;
+    const TetMesh                                    &mesh_;
+    const NodalVectors<Number>                       &X_;
+    Rows<unsigned int>                                cells_at_, faces_at_;
     std::map<std::pair<NodeIndex, PatchSet>, Stencil> stencils_; ///< those that were used last
   };
 

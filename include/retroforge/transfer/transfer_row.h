@@ -40,12 +40,12 @@ namespace retroforge
     RowSource find(const Vec3 &x, const PatchSet &patches);
 
   private:
-    const TetMesh                  &mesh_;
-    const NodalVectors<double>     &X_;
-    RecoveredGradient<double>      &gradient_;
-    const Interpolation             interpolation_;
-    std::optional<CellLocator>      cells_;
-    std::optional<BoundaryLocator>  boundary_;
+    const TetMesh                 &mesh_;
+    const NodalVectors<double>    &X_;
+    RecoveredGradient<double>     &gradient_;
+    const Interpolation            interpolation_;
+    std::optional<CellLocator>     cells_;
+    std::optional<BoundaryLocator> boundary_;
   };
 
   template <typename Number>

@@ -69,8 +69,10 @@ namespace
     std::iota(all.begin(), all.end(), 0);
     meshes.remesh.X_before  = meshes.X;
     meshes.remesh.mesh      = std::move(made.mesh);
-    meshes.remesh.transfer  = make_transfer(meshes.old_mesh, meshes.X, meshes.remesh.mesh, made.old_node);
     meshes.remesh.positions = tape.tape(all);
+    meshes.remesh.mesh.X =
+      moved_positions<double>(meshes.old_mesh, meshes.remesh, meshes.X, no_dies, no_states);
+    meshes.remesh.transfer = make_transfer(meshes.old_mesh, meshes.X, meshes.remesh.mesh, made.old_node);
     return meshes;
   }
 
@@ -117,6 +119,13 @@ namespace
   template <typename Number>
   using State = WorkpieceState<3, Number>;
 
+  State<double> reversed(const Meshes &meshes, const State<double> &at, const State<double> &y)
+  {
+    std::vector<DieState<double>> no_bar;
+    MovingTransfer moving(meshes.old_mesh, meshes.X, meshes.remesh.mesh, meshes.remesh.transfer);
+    return reverse_change_mesh(meshes.old_mesh, meshes.remesh, at, no_dies, no_states, y, moving, no_bar);
+  }
+
   /// |<A x_dot, y> - <x_dot, A^T y>|, relative.
   double defect_of_state(const Meshes &meshes)
   {
@@ -126,10 +135,7 @@ namespace
     const auto dir    = randomised(at),
                y      = randomised(zero_costate<3>(new_mesh.n_nodes(), new_mesh.n_cells(), true, true, true));
     const auto after  = change_mesh<Dual>(old_mesh, meshes.remesh, along<State>(at, dir), no_dies, {});
-    std::vector<DieState<double>> no_bar;
-    return defect(dots(after, y),
-                  y,
-                  dot(dir, reverse_change_mesh(old_mesh, meshes.remesh, at, no_dies, no_states, y, no_bar)));
+    return defect(dots(after, y), y, dot(dir, reversed(meshes, at, y)));
   }
 
   Everything<double> everything(const TetMesh &mesh)
@@ -154,13 +160,15 @@ namespace
     Everything<double>                bar;
     const std::vector<DieState<Dual>> no_dual_states;
     std::vector<DieState<double>>     no_bar;
+    const TetMesh                    &old_mesh = meshes.old_mesh, &new_mesh = meshes.remesh.mesh;
+    const auto X_new = moved_positions(old_mesh, meshes.remesh, dual.X, no_dies, no_dual_states);
+    const auto J     = moved_transfer(old_mesh, meshes.remesh, dual.X, X_new);
+    internal::for_each_member(MemberTransfer<Dual>{old_mesh, new_mesh, dual.X, X_new, J}, dual, after);
+    MovingTransfer        moving(old_mesh, meshes.X, new_mesh, meshes.remesh.transfer);
+    ReverseMemberTransfer reverse(old_mesh, meshes.remesh, at.X, moving, bar.X);
     internal::for_each_member(
-      MemberTransfer<Dual>{meshes.old_mesh, meshes.remesh, dual.X, no_dies, no_dual_states}, dual, after);
-    internal::for_each_member(
-      ReverseMemberTransfer{meshes.old_mesh, meshes.remesh, at.X, no_dies, no_states, bar.X, no_bar},
-      at,
-      y,
-      bar);
+      [&](const auto &q, const auto &q_bar, auto &to) { reverse(q, q_bar, to); }, at, y, bar);
+    reverse.reverse_positions(no_dies, no_states, no_bar);
     return defect(dots(after, y), y, dot(dir, bar));
   }
 } // namespace
@@ -233,14 +241,7 @@ int main(int argc, char **argv)
                                        none(y.vectors);
                                      }))
             << "\n";
-  std::vector<DieState<double>> no_bar;
-  const auto                    nothing = reverse_change_mesh(old_mesh,
-                                           meshes.remesh,
-                                           before,
-                                           no_dies,
-                                           no_states,
-                                           zero_costate<3>(new_mesh.n_nodes(), new_mesh.n_cells()),
-                                           no_bar);
+  const auto nothing = reversed(meshes, before, zero_costate<3>(new_mesh.n_nodes(), new_mesh.n_cells()));
   std::cout << "nothing comes of nothing: " << yes(dot(nothing, nothing) == 0.)
             << ", in each old cell: " << yes(nothing.strain.size() == old_mesh.n_cells()) << "\n";
 }

@@ -139,7 +139,12 @@ double defect_of_dual(const TransferOperator &J)
       dual[k][d]                 = x[k][d];
       dual[k][d].fastAccessDx(0) = x_dot[k][d];
     }
-  const auto transferred = J.apply(dual);
+  BasicTransfer<Dual> with_duals;
+  with_duals.n_old = J.n_old;
+  with_duals.begin = J.begin;
+  with_duals.node  = J.node;
+  with_duals.weight.assign(J.weight.begin(), J.weight.end());
+  const auto transferred = with_duals.apply(dual);
   const auto value = J.apply(x), derivative = J.apply(x_dot);
   double     defect = 0;
   for (NodeIndex k = 0; k < J.n_new(); ++k)
