@@ -166,7 +166,6 @@ void check_reverse(const unsigned int n)
   double turned = 0.;
   for (unsigned int i = 0; n > 1 && i < 50; ++i)
     turned = std::max(turned, dependence_on_axes(n, n_unknowns, random));
-  std::cerr << n << " dimensions: dot product " << worst << ", turned " << turned << "\n";
   std::cout << n << " dimensions: dot product to 1e-8: " << yes(worst < 1e-8)
             << ", the same on other axes to 1e-8: " << yes(turned < 1e-8) << "\n";
 }

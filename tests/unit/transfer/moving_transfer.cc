@@ -188,16 +188,13 @@ namespace
       of_old{both.old_dot, NodalVectors<double>(meshes.new_mesh.n_nodes())},
       of_new{NodalVectors<double>(meshes.X.size()), both.new_dot};
     const auto reverse = [&](const Motion &motion) {
-      const double defect = defect_of_reverse(moving, meshes, J, motion);
-      std::fprintf(stderr, "%s: dot product %.1e\n", name, defect);
-      return yes(defect < 1e-10);
+      return yes(defect_of_reverse(moving, meshes, J, motion) < 1e-10);
     };
     const auto held        = [&](const Meshes &there) { return moving.at(there.X, there.new_mesh.X); };
     const auto anew        = [](const Meshes &there) { return there.transfer(); };
     const auto held_coarse = defect_of_difference(moving, meshes, both, 1e-2, held),
                held_fine   = defect_of_difference(moving, meshes, both, 1e-3, held),
                made_anew   = defect_of_difference(moving, meshes, both, 1e-6, anew);
-    std::fprintf(stderr, "%s: differences %.1e %.1e, anew %.1e\n", name, held_coarse, held_fine, made_anew);
     std::cout << name << "\n  where J was made: " << yes(defect_of_values(moving, meshes, J) < 1e-13)
               << "\n  dot product, old positions: " << reverse(of_old) << ", new ones: " << reverse(of_new)
               << ", both: " << reverse(both)
