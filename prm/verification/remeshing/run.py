@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
 """Remeshing again and again a cylinder and a gear-like star that are upset to a third: angles, nodes kept, volume, and what
-becomes of a Gaussian, by local remeshing and by rebuilding:   run.py BUILD quick | many | tripod | diffusion | diffusion_10k
+becomes of a Gaussian, by local remeshing and by rebuilding; and slopes of runs that are remeshed, everything decided anew:
+run.py BUILD quick | many | tripod | diffusion | diffusion_10k | slopes
 
 The Gaussian has a standard deviation of two mean edge lengths, so that when the workpiece is upset it is left with less than one
 along the axis, on any mesh; the last row of diffusion_10k has the Gaussian of the coarse mesh on the fine one."""
@@ -41,8 +42,53 @@ def tripod(build):
     case_tools.figure("tripod_volume_lost", abs(summary["volume_final"] / summary["volume_initial"] - 1))
 
 
+BALL = {"Billet/shape": "cylinder", "Billet/radius": 16, "Billet/height": 24, "Billet/sector angle": 90, "Billet/element size": 4.75,
+        "Dies/names": "lower, upper", "Die lower/facing": "0, 0, 1", "Die lower/friction": 0.3,
+        "Die upper/shape": "stl", "Die upper/file": "ball.stl", "Die upper/point": "0, 0, 24.05", "Die upper/facing": "0, 0, -1",
+        "Die upper/rotation angle": 2.3, "Die upper/velocity": "0, 0, -100", "Die upper/friction": 0.3,
+        "Material/consistency": 10, "Material/strain rate sensitivity": 0.15, "Press/stroke": 4.5, "Press/increments": 9,
+        "Remeshing/when": "increments", "Remeshing/every": 4, "Objectives/names": "energy, force", "Objective force/type": "maximum effort",
+        "Design/parameters": "billet/radius, die upper/offset, die upper/friction", "Check/steps": "1e-4, 1e-5, 1e-6",
+        "Check/taylor halvings": 2, "Output/fields every": 0, "Output/record": "false"}
+
+
+def write_ball(path):
+    """The lower 50 degrees of a ball of radius 20 that stands on the origin."""
+    def at(i, j):
+        polar, around = np.radians(50) * i / 14, 2 * np.pi * j / 72
+        return 20 * np.array([np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), 1 - np.cos(polar)])
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("solid ball\n")
+        for i in range(14):
+            for j in range(72):
+                for a, b, c in [[at(i, j), at(i + 1, j + 1), at(i, j + 1)]] * (i > 0) + [[at(i, j), at(i + 1, j), at(i + 1, j + 1)]]:
+                    n = np.cross(b - a, c - a)
+                    if n[2] > 0:
+                        b, c, n = c, b, -n
+                    corners = "".join("vertex {:.9g} {:.9g} {:.9g}\n".format(*x) for x in (a, b, c))
+                    file.write("facet normal {:.9g} {:.9g} {:.9g}\nouter loop\n".format(*n / np.linalg.norm(n)) + corners + "endloop\nendfacet\n")
+        file.write("endsolid ball\n")
+
+
+def slopes(build):
+    """A quarter of a cylinder under a ball, remeshed twice: energy and largest force, differences that decide everything anew beside the adjoint, as
+    `check` fits them."""
+    write_ball("ball.stl")
+    with open("ball.prm", "w", encoding="utf-8"):
+        pass
+    for name, pair in (("mini", "mini"), ("p2_p1", "P2-P1")):
+        summary, _ = case_tools.run(build, "check", "ball.prm", {**BALL, "Discretization/element": pair}, f"run_slopes_{name}", may_fail=True)
+        smooth = [row for row in summary["check"] if "random" not in row["parameter"]]
+        for row in smooth:
+            print(f"{pair}, {row['objective']} by {row['parameter']}: {row['free']['slope'] / row['adjoint'] - 1:.1e} "
+                  f"+- {row['free']['uncertainty'] / abs(row['adjoint']):.1e}")
+        case_tools.figure(f"slopes_{name}", max(abs(row["free"]["slope"] / row["adjoint"] - 1) for row in smooth))
+
+
 def main():
     build, what = sys.argv[1:3]
+    if what == "slopes":
+        return slopes(build)
     print("| shape | method | nodes | remeshings | L2 error | least angle | nodes kept | volume per remeshing | drift of the side | us per tet |\n" + "| --- " * 10 + "|")
     if what == "tripod":
         tripod(build)
@@ -67,4 +113,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
