@@ -8,6 +8,45 @@
 
 namespace retroforge
 {
+  namespace
+  {
+    template <typename T>
+    std::size_t bytes_of(const std::vector<T> &values)
+    {
+      return values.size() * sizeof(T);
+    }
+
+    std::size_t bytes_of(const IncrementRecord &increment)
+    {
+      std::size_t bytes = sizeof(increment) + bytes_of(increment.pairs);
+      if (increment.parameters)
+        bytes += increment.parameters->size();
+      for (const SolveRecord &solve : increment.solves)
+        bytes += bytes_of(solve.V) + bytes_of(solve.P) + bytes_of(solve.active) +
+                 (solve.vertices ? bytes_of(*solve.vertices) : 0);
+      if (const auto &remesh = increment.remesh)
+        bytes += bytes_of(remesh->X_before) + bytes_of(remesh->mesh.X) + bytes_of(remesh->mesh.cells) +
+                 bytes_of(remesh->mesh.faces) + remesh->transfer.memory_consumption() +
+                 remesh->positions.memory_consumption();
+      return bytes;
+    }
+  } // namespace
+
+  void Recording::keep(const IncrementRecord &increment)
+  {
+    if (!keeps_)
+      return;
+    const std::size_t bytes = bytes_of(increment);
+    keeps_                  = bytes <= memory_left_;
+    if (keeps_)
+    {
+      memory_left_ -= bytes;
+      increments_.push_back(increment);
+    }
+    else
+      increments_ = {};
+  }
+
   std::function<const IncrementRecord &(unsigned int)> Recording::access() const
   {
     if (!increments_.empty())

@@ -9,6 +9,7 @@
 #include <retroforge/run/forward_run.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace retroforge
@@ -99,6 +100,22 @@ namespace retroforge
   {
   }
 
+  namespace
+  {
+    std::size_t bytes_to(const ForwardRun::Keep keep)
+    {
+      switch (keep)
+      {
+        case ForwardRun::Keep::increments:
+          return std::numeric_limits<std::size_t>::max();
+        case ForwardRun::Keep::few:
+          return ForwardRun::few_bytes;
+        default:
+          return 0;
+      }
+    }
+  } // namespace
+
   ForwardRun::ForwardRun(ForgingProblem     problem,
                          const Keep         keep,
                          Timings           &timings,
@@ -108,7 +125,7 @@ namespace retroforge
       , first_epoch_(std::make_shared<MeshEpoch>(*problem_.billet, problem_.model, timings_))
       , trace_(problem_.objectives, problem_.process)
       , can_go_back_(keep == Keep::increments || !directory.empty())
-      , recording_(directory, keep == Keep::increments)
+      , recording_(directory, bytes_to(keep))
       , state_(Forging::start(first_epoch_, problem_.process, problem_.X_0))
   {
     enter(0);

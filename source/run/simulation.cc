@@ -58,23 +58,21 @@ namespace retroforge
           size(vertices), "Objective " + objective.name, "its derivative by the vertices of a die");
     }
 
-    /// A check reads the increments many times over; a gradient once, from the record.
-    bool kept_in_memory(const Case &forging_case)
+    /// A check reads the increments many times over; a gradient once, from the record where they are many.
+    ForwardRun::Keep kept_of(const Case &forging_case)
     {
-      return forging_case.command.command == Command::check ||
-             (forging_case.command.command == Command::gradient && !forging_case.parameters.output.record);
+      const bool is_gradient = forging_case.command.command == Command::gradient;
+      if (forging_case.command.command == Command::check ||
+          (is_gradient && !forging_case.parameters.output.record))
+        return ForwardRun::Keep::increments;
+      return is_gradient ? ForwardRun::Keep::few : ForwardRun::Keep::nothing;
     }
   } // namespace
 
   Simulation::Simulation(const CommandLine &command, MPI_Comm comm)
       : case_(command, timings_, comm)
       , root_(dealii::Utilities::MPI::this_mpi_process(comm) == 0)
-      , run_(case_,
-             case_.process,
-             case_.X_0,
-             kept_in_memory(case_) ? ForwardRun::Keep::increments : ForwardRun::Keep::nothing,
-             timings_,
-             command.output_directory)
+      , run_(case_, case_.process, case_.X_0, kept_of(case_), timings_, command.output_directory)
       , warnings_(run_.check())
   {
   }

@@ -9,14 +9,14 @@
 
 namespace retroforge
 {
-  /// The increments of a run as they are recorded: in memory, where they are read many times over, on the
-  /// disk, or both.
+  /// The increments of a run as they are recorded: in memory, on the disk, or both.
   class Recording
   {
   public:
     /// @param directory  of the run's results
-    Recording(std::string directory, const bool in_memory)
-        : directory_(std::move(directory)), in_memory_(in_memory)
+    /// @param memory     most bytes that increments may take in memory, where all are kept or none
+    Recording(std::string directory, const std::size_t memory)
+        : directory_(std::move(directory)), memory_left_(memory), keeps_(memory > 0)
     {
     }
 
@@ -31,11 +31,7 @@ namespace retroforge
     }
 
     /// An increment that was solved, or restored from the disk: into memory.
-    void keep(const IncrementRecord &increment)
-    {
-      if (in_memory_)
-        increments_.push_back(increment);
-    }
+    void keep(const IncrementRecord &increment);
 
     /// All increments are written.
     void finish()
@@ -52,7 +48,8 @@ namespace retroforge
 
   private:
     std::string                  directory_;
-    bool                         in_memory_;
+    std::size_t                  memory_left_; ///< [bytes]
+    bool                         keeps_;       ///< none was too much
     std::vector<IncrementRecord> increments_;
     std::optional<RecordWriter>  writer_;
   };

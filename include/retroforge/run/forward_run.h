@@ -47,8 +47,10 @@ namespace retroforge
     enum class Keep
     {
       nothing,
+      few,       ///< increments in memory, where they take less than `few_bytes`
       increments ///< in memory
     };
+    static constexpr std::size_t few_bytes = 1 << 26;
 
     /// @param timings  must live as long
     /// @param directory  where increments are recorded, or were; none: nowhere

@@ -3,8 +3,10 @@
 // Proves: what is written is read to the bit (largest numbers, signed zero, denormals, empty lists included),
 // while a run goes on, after resume and after finish, a change of mesh too; and a solve of n nodes costs less
 // than 56 n bytes: velocity and pressure are 32 n, the 500 pairs 22 bytes and 1 per solve, so 0.64 plus
-// HDF5's own.
+// HDF5's own. Increments that are kept in memory are those; where there is room for some of them only, all are
+// read from the disk.
 #include "record_test_tools.h"
+#include <retroforge/record/recording.h>
 
 #include <limits>
 
@@ -55,6 +57,22 @@ void print_size(const std::string  &title,
   std::cout << title << ": " << bytes / (56. * n_solves * n_nodes) << " of 56 bytes per node and solve\n";
 }
 
+/// Of increments that are kept, where so many bytes of memory are free. Those in a folder of another name are in
+/// memory alone.
+bool keeps(const std::string                  &folder,
+           const std::size_t                   memory,
+           const std::vector<IncrementRecord> &increments)
+{
+  Recording recording(folder, memory);
+  for (const IncrementRecord &increment : increments)
+    recording.keep(increment);
+  const auto record = recording.access();
+  bool       equal  = true;
+  for (unsigned int i = increments.size(); i-- > 0;)
+    equal = equal && same(record(i), increments[i]);
+  return equal;
+}
+
 int main()
 {
   const std::string  folder     = fresh_folder("round_trip_run");
@@ -91,6 +109,10 @@ int main()
             << yes(reads_back(folder, header, increments)) << ", goes on after "
             << RecordWriter::resume(folder).n_increments() << '\n';
   RecordWriter::resume(folder).finish();
+
+  std::cout << "kept in memory: " << yes(keeps("nowhere", 1 << 20, increments))
+            << ", no room for all: " << yes(keeps(folder, 20000, increments))
+            << ", for none: " << yes(keeps(folder, 0, increments)) << '\n';
 
   const auto [nodes, edges] = count_points(folder, 0);
   std::cout << "points: " << nodes << " nodes and " << edges << " edges\n";
