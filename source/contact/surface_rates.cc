@@ -7,25 +7,14 @@
 
 namespace retroforge
 {
-  CellIndex cell_behind(const TetMesh &mesh, const Topology &topology, const unsigned int face)
-  {
-    const auto &corners = mesh.faces[face].nodes;
-    for (const CellIndex c : topology.cells[corners[0]])
-      if (const auto &nodes = mesh.cells[c];
-          std::all_of(corners.begin(), corners.end(), [&](const NodeIndex k) {
-            return std::find(nodes.begin(), nodes.end(), k) != nodes.end();
-          }))
-        return c;
-    AssertThrow(false, dealii::ExcMessage("a face of the boundary belongs to a cell"));
-    return invalid_index;
-  }
-
   std::vector<CellIndex>
   cells_behind(const TetMesh &mesh, const Topology &topology, const ContactPoint &point)
   {
     std::vector<CellIndex> cells;
-    point.for_each_face(
-      mesh, topology, [&](const unsigned int f) { cells.push_back(cell_behind(mesh, topology, f)); });
+    point.for_each_face(mesh, topology, [&](const unsigned int f) {
+      cells.push_back(topology.cell_of_face[f]);
+      Assert(cells.back() != invalid_index, dealii::ExcMessage("a face of the boundary belongs to a cell"));
+    });
     return cells;
   }
 

@@ -126,11 +126,34 @@ namespace retroforge
     }
   } // namespace
 
+  namespace
+  {
+    std::vector<CellIndex> cells_of_faces(const TetMesh &mesh, const Rows<CellIndex> &cells)
+    {
+      std::vector<CellIndex> of_face(mesh.faces.size(), invalid_index);
+      for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+      {
+        const auto &corners = mesh.faces[f].nodes;
+        for (const CellIndex c : cells[corners[0]])
+          if (const auto &nodes = mesh.cells[c];
+              std::all_of(corners.begin(), corners.end(), [&](const NodeIndex k) {
+                return std::find(nodes.begin(), nodes.end(), k) != nodes.end();
+              }))
+          {
+            of_face[f] = c;
+            break;
+          }
+      }
+      return of_face;
+    }
+  } // namespace
+
   Topology::Topology(const TetMesh &mesh)
       : surface_faces(surface_faces_at_nodes(mesh))
       , surface_edges(edges_of_surface(mesh))
       , edge_images(images_of_edges(mesh, surface_edges))
       , cells(cells_at_nodes(mesh))
+      , cell_of_face(cells_of_faces(mesh, cells))
       , neighbours(neighbours_of_nodes(mesh, cells))
       , fixed_directions(
           symmetry_directions(mesh, mesh.n_nodes(), [](const BoundaryFace &face) { return face.nodes; }))

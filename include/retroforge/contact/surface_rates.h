@@ -20,9 +20,6 @@
 /// differentiable of any.
 namespace retroforge
 {
-  /// The cell behind a face of the boundary.
-  CellIndex cell_behind(const TetMesh &mesh, const Topology &topology, unsigned int face);
-
   /// The cells behind a point, in the order of its faces.
   std::vector<CellIndex>
   cells_behind(const TetMesh &mesh, const Topology &topology, const ContactPoint &point);

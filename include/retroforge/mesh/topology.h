@@ -24,6 +24,8 @@ namespace retroforge
     std::vector<std::array<unsigned int, 2>> edge_images;
     /// Cells at each node, ascending.
     Rows<CellIndex> cells;
+    /// The cell of each face of the mesh; invalid_index of one that belongs to none.
+    std::vector<CellIndex> cell_of_face;
     /// Nodes that share a cell with each node, itself included, ascending.
     Rows<NodeIndex> neighbours;
     /// Orthonormal directions in which the symmetry planes hold each node: none, one on a plane, two on the

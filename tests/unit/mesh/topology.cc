@@ -2,7 +2,8 @@
 // Copyright (C) 2026 The Retroforge authors
 
 // Lists of neighbours on an eighth of a cube (three symmetry planes) and on sectors. Proved: each surface
-// face appears at its three nodes and no symmetry face does; each cell appears at its four nodes; neighbours
+// face appears at its three nodes and no symmetry face does; each cell appears at its four nodes, and the cell of a
+// face has its nodes; neighbours
 // are symmetric, sorted and include the node; Euler's formula  nodes - edges + faces - cells = 1  of a ball
 // holds; the fixed directions are orthonormal and span the normals of all planes the node is on; three of
 // them has only the corner at the centre of the cube, and one node on the axis of the half sector. By hand, a
@@ -93,6 +94,16 @@ double span_defect(const TetMesh &mesh, const Topology &topology)
   return defect;
 }
 
+bool cells_of_faces_are_right(const TetMesh &mesh, const Topology &topology)
+{
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    for (const NodeIndex k : mesh.faces[f].nodes)
+      if (const auto &cell = mesh.cells[topology.cell_of_face[f]];
+          std::find(cell.begin(), cell.end(), k) == cell.end())
+        return false;
+  return topology.cell_of_face.size() == mesh.faces.size();
+}
+
 void report(const std::string &title, const TetMesh &mesh)
 {
   const Topology topology(mesh);
@@ -100,6 +111,7 @@ void report(const std::string &title, const TetMesh &mesh)
   const int      n_faces = (4 * mesh.n_cells() + mesh.faces.size()) / 2;
   std::cout << title << "\n  faces at nodes: " << yes(faces_at_nodes_are_right(mesh, topology))
             << "\n  cells at nodes: " << yes(cells_at_nodes_are_right(mesh, topology))
+            << "\n  cells of faces: " << yes(cells_of_faces_are_right(mesh, topology))
             << "\n  neighbours: " << yes(neighbours_are_right(mesh, topology)) << "\n  Euler: "
             << static_cast<int>(mesh.n_nodes()) - n_edges + n_faces - static_cast<int>(mesh.n_cells())
             << "\n  directions orthonormal: " << yes(orthonormality_defect(topology) < 1e-14)
