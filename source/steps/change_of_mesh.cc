@@ -2,27 +2,30 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/steps/change_of_mesh.h>
 
+#include <type_traits>
+
 namespace retroforge
 {
-  template <>
-  TransferOperator moved_transfer(const TetMesh              &old_mesh,
-                                  const RemeshRecord         &remesh,
-                                  const NodalVectors<double> &X_old,
-                                  const NodalVectors<double> &X_new)
+  template <typename Number>
+  BasicTransfer<Number> moved_transfer(const TetMesh              &old_mesh,
+                                       const RemeshRecord         &remesh,
+                                       const NodalVectors<Number> &X_old,
+                                       const NodalVectors<Number> &X_new)
   {
-    if (X_old == remesh.X_before && X_new == remesh.mesh.X)
-      return remesh.transfer;
+    if constexpr (std::is_same_v<Number, double>)
+      if (X_old == remesh.X_before && X_new == remesh.mesh.X)
+        return remesh.transfer;
     return MovingTransfer(old_mesh, remesh.X_before, remesh.mesh, remesh.transfer).at(X_old, X_new);
   }
 
-  template <>
-  BasicTransfer<Dual> moved_transfer(const TetMesh            &old_mesh,
-                                     const RemeshRecord       &remesh,
-                                     const NodalVectors<Dual> &X_old,
-                                     const NodalVectors<Dual> &X_new)
-  {
-    return MovingTransfer(old_mesh, remesh.X_before, remesh.mesh, remesh.transfer).at(X_old, X_new);
-  }
+  template TransferOperator    moved_transfer(const TetMesh &,
+                                              const RemeshRecord &,
+                                              const NodalVectors<double> &,
+                                              const NodalVectors<double> &);
+  template BasicTransfer<Dual> moved_transfer(const TetMesh &,
+                                              const RemeshRecord &,
+                                              const NodalVectors<Dual> &,
+                                              const NodalVectors<Dual> &);
 
   template <typename Number>
   void MemberTransfer<Number>::operator()(const NodalVectors<Number> &, NodalVectors<Number> &to) const

@@ -33,16 +33,6 @@ namespace retroforge
                                        const RemeshRecord         &remesh,
                                        const NodalVectors<Number> &X_old,
                                        const NodalVectors<Number> &X_new);
-  template <>
-  TransferOperator moved_transfer(const TetMesh &,
-                                  const RemeshRecord &,
-                                  const NodalVectors<double> &,
-                                  const NodalVectors<double> &);
-  template <>
-  BasicTransfer<Dual> moved_transfer(const TetMesh &,
-                                     const RemeshRecord &,
-                                     const NodalVectors<Dual> &,
-                                     const NodalVectors<Dual> &);
 
   /// Takes a member of the state to the new mesh, each kind by its overload; on dual numbers its tangent.
   template <typename Number>

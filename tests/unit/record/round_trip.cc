@@ -73,6 +73,20 @@ bool keeps(const std::string                  &folder,
   return equal;
 }
 
+/// Whether increments for which there is too little memory are looked for on the disk, where there are none.
+bool leaves_to_the_disk(const std::vector<IncrementRecord> &increments)
+{
+  try
+  {
+    keeps("nowhere", 20000, increments);
+  }
+  catch (const Error &)
+  {
+    return true;
+  }
+  return false;
+}
+
 int main()
 {
   const std::string  folder     = fresh_folder("round_trip_run");
@@ -112,6 +126,7 @@ int main()
 
   std::cout << "kept in memory: " << yes(keeps("nowhere", 1 << 20, increments))
             << ", no room for all: " << yes(keeps(folder, 20000, increments))
+            << ", these are not kept: " << yes(leaves_to_the_disk(increments))
             << ", for none: " << yes(keeps(folder, 0, increments)) << '\n';
 
   const auto [nodes, edges] = count_points(folder, 0);
