@@ -199,16 +199,27 @@ namespace retroforge
     public:
       Operator(const BlockOperator &of, const la::BlockVector &like) : of_(of), x_(like), y_(like) {}
 
+      /// Keeps what it returns from now on, one vector after the other.
+      void keep_in(const std::shared_ptr<Directions> &images)
+      {
+        images_ = images;
+        n_kept_ = 0;
+      }
+
       void Apply(const MultiVector &x, MultiVector &y, Belos::ETrans) const override
       {
         copy(dynamic_cast<const Directions &>(x)[0], x_);
         of_(y_, x_);
         copy(y_, dynamic_cast<Directions &>(y)[0]);
+        if (images_ && n_kept_ < images_->GetNumberVecs())
+          copy(y_, (*images_)[n_kept_++]);
       }
 
     private:
-      const BlockOperator    &of_;
-      mutable la::BlockVector x_, y_;
+      const BlockOperator        &of_;
+      mutable la::BlockVector     x_, y_;
+      std::shared_ptr<Directions> images_;
+      mutable int                 n_kept_ = 0;
     };
 
     using Vectors = Belos::MultiVecTraits<double, MultiVector>;
@@ -250,6 +261,29 @@ namespace retroforge
       return gmres.getCurSubspaceDim();
     }
 
+    /// y = R^(-1) y, or R^(-T) y
+    void solve_triangle(const Dense &R, const Teuchos::ETransp transposition, Dense &y)
+    {
+      Teuchos::BLAS<int, double>().TRSM(Teuchos::LEFT_SIDE,
+                                        Teuchos::UPPER_TRI,
+                                        transposition,
+                                        Teuchos::NON_UNIT_DIAG,
+                                        y.numRows(),
+                                        1,
+                                        1.,
+                                        R.values(),
+                                        R.stride(),
+                                        y.values(),
+                                        y.stride());
+    }
+
+    std::vector<int> first_numbers(const int n)
+    {
+      std::vector<int> numbers(n);
+      std::iota(numbers.begin(), numbers.end(), 0);
+      return numbers;
+    }
+
     /// x += Z y with the least residual, which it returns; x is unchanged where that is not a number.
     double
     add_directions(const Belos::GmresIterationState<double, MultiVector> &state, const int n, MultiVector &x)
@@ -258,25 +292,51 @@ namespace retroforge
       if (n == 0)
         return residual;
       Dense y(Teuchos::Copy, *state.z, n, 1);
-      Teuchos::BLAS<int, double>().TRSM(Teuchos::LEFT_SIDE,
-                                        Teuchos::UPPER_TRI,
-                                        Teuchos::NO_TRANS,
-                                        Teuchos::NON_UNIT_DIAG,
-                                        n,
-                                        1,
-                                        1.,
-                                        state.H->values(),
-                                        state.H->stride(),
-                                        y.values(),
-                                        y.stride());
+      solve_triangle(*state.H, Teuchos::NO_TRANS, y);
       if (!std::isfinite(residual + y.normOne()))
         return std::numeric_limits<double>::quiet_NaN();
-      std::vector<int> numbers(n);
-      std::iota(numbers.begin(), numbers.end(), 0);
-      Vectors::MvTimesMatAddMv(1., *Vectors::CloneView(*state.Z, numbers), y, 1., x);
+      Vectors::MvTimesMatAddMv(1., *Vectors::CloneView(*state.Z, first_numbers(n)), y, 1., x);
       return residual;
     }
   } // namespace
+
+  struct KrylovSpace::Basis
+  {
+    Teuchos::RCP<const MultiVector> Z, W;
+    Dense                           R; ///< W R^(-1) is orthonormal
+
+    /// r -= W y;  returns y.
+    Dense remove_from(la::BlockVector &r) const
+    {
+      Directions residual(r);
+      Dense      y(R.numRows(), 1);
+      residual.MvTransMv(1., *W, y);
+      solve_triangle(R, Teuchos::TRANS, y);
+      solve_triangle(R, Teuchos::NO_TRANS, y);
+      residual.MvTimesMatAddMv(-1., *W, y, 1.);
+      copy(residual[0], r);
+      return y;
+    }
+  };
+
+  KrylovSpace::KrylovSpace()  = default;
+  KrylovSpace::~KrylovSpace() = default;
+
+  void KrylovSpace::reduce(la::BlockVector &x, la::BlockVector &r) const
+  {
+    if (empty())
+      return;
+    Directions  solution(x);
+    const Dense y = basis_->remove_from(r);
+    solution.MvTimesMatAddMv(1., *basis_->Z, y, 1.);
+    copy(solution[0], x);
+  }
+
+  void KrylovSpace::project(la::BlockVector &r) const
+  {
+    if (!empty())
+      basis_->remove_from(r);
+  }
 
   KrylovResult solve_by_flexible_gmres(const BlockOperator   &M,
                                        const BlockOperator   &P,
@@ -284,10 +344,12 @@ namespace retroforge
                                        la::BlockVector       &x,
                                        const double           tolerance,
                                        const unsigned int     limit,
-                                       const unsigned int     restart)
+                                       const unsigned int     restart,
+                                       KrylovSpace           *space)
   {
     const auto X = rcp(new Directions(x)), B = rcp(new Directions(b));
-    const auto problem = rcp(new Problem(rcp(new Operator(M, b)), X, B));
+    const auto matrix  = rcp(new Operator(M, b));
+    const auto problem = rcp(new Problem(matrix, X, B));
     problem->setRightPrec(rcp(new Operator(P, b)));
     problem->setProblem();
     problem->setLSIndex({0});
@@ -296,7 +358,8 @@ namespace retroforge
     norm->defineResForm(Norm::Implicit, Belos::TwoNorm);
     norm->defineScaleForm(Belos::None, Belos::TwoNorm);
     Teuchos::ParameterList list;
-    list.set("Num Blocks", std::min<int>(std::min(restart, limit), X->GetGlobalLength()));
+    const int              room = std::min<int>(std::min(restart, limit), X->GetGlobalLength());
+    list.set("Num Blocks", room);
     Gmres gmres(problem,
                 rcp(new Belos::OutputManager<double>(Belos::Errors)),
                 rcp(new Either(Either::OR, rcp(new Limit(limit)), norm)),
@@ -315,9 +378,19 @@ namespace retroforge
       r->MvScale(1. / residual);
       (*z)(0, 0) = residual;
       gmres.initializeGmres(first);
-      const int n       = iterate(gmres);
-      residual          = add_directions(gmres.getState(), n, *X);
+      const auto images =
+        std::shared_ptr<Directions>(space ? dynamic_cast<Directions *>(X->Clone(room)) : nullptr);
+      matrix->keep_in(images);
+      const int  n     = iterate(gmres);
+      const auto state = gmres.getState();
+      matrix->keep_in(nullptr);
+      residual          = add_directions(state, n, *X);
       result.iterations = gmres.getNumIters();
+      if (space && n > 0 && std::isfinite(residual))
+        space->basis_ = std::make_unique<KrylovSpace::Basis>(
+          KrylovSpace::Basis{Vectors::CloneView(*state.Z, first_numbers(n)),
+                             Vectors::CloneView(*images, first_numbers(n)),
+                             Dense(Teuchos::Copy, *state.H, n, n)});
       if (residual > tolerance)
       {
         problem->computeCurrResVec(r.get());

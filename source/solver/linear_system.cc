@@ -47,12 +47,13 @@ namespace retroforge
                                               SharedTolerance                  &tolerance,
                                               Field<double>                    &solution,
                                               const std::vector<Field<double>> &guesses,
-                                              const Transposition               transposition)
+                                              const Transposition               transposition,
+                                              KrylovSpace                      *shared)
   {
     la::BlockVector b = matrix_.vector(), x = matrix_.vector();
     matrix_.load(rhs, transposition, b);
-    const unsigned int iterations =
-      solver_.solve_penalised_first(b, tolerance, starts_from(guesses, transposition), transposition, x);
+    const unsigned int iterations = solver_.solve_penalised_first(
+      b, tolerance, starts_from(guesses, transposition), transposition, x, shared);
     matrix_.unload(x, rhs, transposition, solution);
     ++n_solves;
     return iterations;

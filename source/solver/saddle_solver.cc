@@ -125,12 +125,13 @@ namespace retroforge
                                    const double                        tolerance,
                                    const std::vector<la::BlockVector> &guesses,
                                    const Transposition                 asked,
-                                   la::BlockVector                    &x)
+                                   la::BlockVector                    &x,
+                                   KrylovSpace                        *shared)
   {
     const Transposition transposition = simplest(asked);
     x                                 = 0.;
     if (parameters_.method != Method::direct)
-      return solve_iteratively(b, tolerance, guesses, transposition, x);
+      return solve_iteratively(b, tolerance, guesses, transposition, x, shared);
     solve_directly(b, transposition, x);
     return 0;
   }
@@ -139,7 +140,8 @@ namespace retroforge
                                                    SharedTolerance             &tolerance,
                                                    std::vector<la::BlockVector> guesses,
                                                    const Transposition          asked,
-                                                   la::BlockVector             &x)
+                                                   la::BlockVector             &x,
+                                                   KrylovSpace                 *shared)
   {
     const Transposition transposition = simplest(asked);
     if (parameters_.method == Method::direct)
@@ -149,7 +151,8 @@ namespace retroforge
     nothing                    = 0.;
     for (la::BlockVector &guess : guesses)
       polish_penalised(nothing, transposition, guess);
-    const unsigned int iterations = solve(rest, tolerance.next(rest.l2_norm()), guesses, transposition, x);
+    const unsigned int iterations =
+      solve(rest, tolerance.next(rest.l2_norm()), guesses, transposition, x, shared);
     x += first;
     polish_penalised(b, transposition, x);
     return iterations;
@@ -180,10 +183,10 @@ namespace retroforge
     return r;
   }
 
-  double SaddleSolver::start_from(const std::vector<la::BlockVector> &guesses,
-                                  const la::BlockVector              &b,
-                                  const Transposition                 transposition,
-                                  la::BlockVector                    &x) const
+  la::BlockVector SaddleSolver::start_from(const std::vector<la::BlockVector> &guesses,
+                                           const la::BlockVector              &b,
+                                           const Transposition                 transposition,
+                                           la::BlockVector                    &x) const
   {
     la::BlockVector              r = b;
     std::vector<la::BlockVector> images, sources;
@@ -209,7 +212,7 @@ namespace retroforge
       images.push_back(y);
       sources.push_back(source);
     }
-    return r.l2_norm();
+    return r;
   }
 
   void SaddleSolver::multiply(const Transposition    transposition,
@@ -273,7 +276,8 @@ namespace retroforge
                                                const double                        tolerance,
                                                const std::vector<la::BlockVector> &guesses,
                                                const Transposition                 transposition,
-                                               la::BlockVector                    &x)
+                                               la::BlockVector                    &x,
+                                               KrylovSpace                        *shared)
   {
     const double norm = b.l2_norm();
     if (norm == 0.)
@@ -282,7 +286,11 @@ namespace retroforge
       blocks_->update();
     else
       blocks_ = std::make_unique<Blocks>(system_.matrix);
-    const double start = start_from(guesses, b, transposition, x);
+    la::BlockVector r        = start_from(guesses, b, transposition, x);
+    const bool      deflated = shared && !shared->empty();
+    if (deflated)
+      shared->reduce(x, r);
+    const double start = r.l2_norm();
     if (start <= tolerance * norm)
       return 0;
     const double decades = std::max(0.5, std::log10(start / (tolerance * norm)));
@@ -292,26 +300,20 @@ namespace retroforge
       const bool fresh = !preconditioner_;
       if (fresh)
         make_preconditioner();
-      const auto M = [&](la::BlockVector &y, const la::BlockVector &v) { multiply(transposition, y, v); };
-      const auto P = [&](la::BlockVector &z, const la::BlockVector &r) {
-        if (transposition == Transposition::plain)
-          preconditioner_->vmult(z, r);
-        else
-          preconditioner_->Tvmult(z, r);
-      };
       const unsigned int limit =
-        fresh ? parameters_.max_iterations
-              : std::min<unsigned int>(parameters_.max_iterations,
-                                       patience * first_rate_ * decades + spare_iterations);
-      const auto         timing = timings_.scope("krylov");
+        first_rate_ == 0. ? parameters_.max_iterations
+                          : std::min<unsigned int>(parameters_.max_iterations,
+                                                   patience * first_rate_ * decades + spare_iterations);
       const KrylovResult krylov =
-        solve_by_flexible_gmres(M, P, b, x, tolerance * norm, limit, parameters_.restart);
+        iterate(b, r, tolerance * norm, limit, transposition, x, attempt == 0 ? shared : nullptr);
       total += krylov.iterations;
       if (krylov.converged)
       {
         polish_penalised(b, transposition, x);
         const double rate = krylov.iterations / decades;
-        if (fresh)
+        if (deflated)
+          return total; // what it took says little about others
+        if (first_rate_ == 0.)
           first_rate_ = rate;
         else if (rate > aged * first_rate_ + 1.)
           reset();
@@ -330,6 +332,41 @@ namespace retroforge
                   "or spin freely");
     solve_directly(b, transposition, x);
     return total;
+  }
+
+  KrylovResult SaddleSolver::iterate(const la::BlockVector &b,
+                                     la::BlockVector       &r,
+                                     const double           tolerance,
+                                     const unsigned int     limit,
+                                     const Transposition    transposition,
+                                     la::BlockVector       &x,
+                                     KrylovSpace           *shared) const
+  {
+    const auto timing = timings_.scope("krylov");
+    const auto P      = [&](la::BlockVector &z, const la::BlockVector &y) {
+      if (transposition == Transposition::plain)
+        preconditioner_->vmult(z, y);
+      else
+        preconditioner_->Tvmult(z, y);
+    };
+    if (!shared || shared->empty())
+    {
+      const auto M = [&](la::BlockVector &y, const la::BlockVector &v) { multiply(transposition, y, v); };
+      return solve_by_flexible_gmres(M, P, b, x, tolerance, limit, parameters_.restart, shared);
+    }
+    const auto M = [&](la::BlockVector &y, const la::BlockVector &v) {
+      multiply(transposition, y, v);
+      shared->project(y);
+    };
+    la::BlockVector dx(x), image(x);
+    dx                        = 0.;
+    const KrylovResult krylov = solve_by_flexible_gmres(M, P, r, dx, tolerance, limit, parameters_.restart);
+    // What was projected away has its solution in the shared space.
+    multiply(transposition, image, dx);
+    image *= -1.;
+    shared->reduce(dx, image);
+    x += dx;
+    return krylov;
   }
 
   void SaddleSolver::solve_directly(const la::BlockVector &b,

@@ -96,6 +96,7 @@ namespace retroforge
       const EquilibriumView<double> view = at->view();
       system_.assemble(at->stage, at->W, at->active);
       earlier_lambdas_[s].resize(costates.size());
+      KrylovSpace shared;
       for (std::size_t j = 0; j < costates.size(); ++j)
       {
         IncrementBar                 &bar     = bars[j];
@@ -124,7 +125,12 @@ namespace retroforge
         Field<double> minus_rhs(scene_.discretization), lambda;
         minus_rhs.add(-1., rhs);
         auto &guesses = earlier_lambdas_[s][j];
-        system_.solve_derivative(minus_rhs, tolerances[j], lambda, guesses, Transposition::transposed);
+        system_.solve_derivative(minus_rhs,
+                                 tolerances[j],
+                                 lambda,
+                                 guesses,
+                                 Transposition::transposed,
+                                 costates.size() > 1 ? &shared : nullptr);
         reverse_residual(view, lambda, stage_bar);
         guesses.insert(guesses.begin(), std::move(lambda));
         guesses.resize(std::min(guesses.size(), n_starts));

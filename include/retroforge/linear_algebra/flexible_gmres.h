@@ -5,6 +5,7 @@
 #include <retroforge/linear_algebra/types.h>
 
 #include <functional>
+#include <memory>
 
 namespace retroforge
 {
@@ -18,6 +19,36 @@ namespace retroforge
     bool         converged  = false;
   };
 
+  /// Directions Z of a solve and what the matrix makes of them, W = M Z: what other right-hand sides of the
+  /// same matrix need not find again [deSturler1996].
+  class KrylovSpace
+  {
+  public:
+    KrylovSpace();
+    ~KrylovSpace();
+
+    bool empty() const { return !basis_; }
+
+    /// x += Z y,  r -= W y  with the y that leaves the least of the residual r.
+    void reduce(la::BlockVector &x, la::BlockVector &r) const;
+
+    /// r -= W y  with the same y.
+    void project(la::BlockVector &r) const;
+
+  private:
+    struct Basis;
+    friend KrylovResult solve_by_flexible_gmres(const BlockOperator &,
+                                                const BlockOperator &,
+                                                const la::BlockVector &,
+                                                la::BlockVector &,
+                                                double,
+                                                unsigned int,
+                                                unsigned int,
+                                                KrylovSpace *);
+
+    std::unique_ptr<Basis> basis_; ///< null where there are none
+  };
+
   /// Solves M x = b by flexible GMRES [Saad1993], Belos' of Trilinos: P, which approximates M^(-1), may change
   /// from one application to the next. Directions are orthogonalised against all others at once, and then once
   /// more. Collective; the same bits on the same number of ranks.
@@ -26,11 +57,13 @@ namespace retroforge
   /// @param tolerance  of the residual's norm, as the iteration itself knows it
   /// @param limit      of the number of iterations
   /// @param restart    directions that are kept
+  /// @param space      becomes that of the last of them
   KrylovResult solve_by_flexible_gmres(const BlockOperator   &M,
                                        const BlockOperator   &P,
                                        const la::BlockVector &b,
                                        la::BlockVector       &x,
                                        double                 tolerance,
                                        unsigned int           limit,
-                                       unsigned int           restart);
+                                       unsigned int           restart,
+                                       KrylovSpace           *space = nullptr);
 } // namespace retroforge

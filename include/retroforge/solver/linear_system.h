@@ -31,11 +31,13 @@ namespace retroforge
     /// Solves as solve() does for right-hand sides that are derivatives: of a residual, which a moving die
     /// makes large where it pushes, or of an objective, which contact forces make large there
     /// (SaddleSolver::solve_penalised_first).
+    /// @param shared  what derivatives of this stage and this transposition have in common
     unsigned int solve_derivative(const Field<double>              &rhs,
                                   SharedTolerance                  &tolerance,
                                   Field<double>                    &solution,
                                   const std::vector<Field<double>> &guesses       = {},
-                                  Transposition                     transposition = Transposition::plain);
+                                  Transposition                     transposition = Transposition::plain,
+                                  KrylovSpace                      *shared        = nullptr);
 
     /// The same of a system by itself.
     unsigned int solve_derivative(const Field<double>              &rhs,

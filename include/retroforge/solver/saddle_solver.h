@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/core/timer.h>
+#include <retroforge/linear_algebra/flexible_gmres.h>
 #include <retroforge/linear_algebra/preconditioner.h>
 #include <retroforge/solver/saddle_matrix.h>
 
@@ -47,12 +48,15 @@ namespace retroforge
 
     /// @param tolerance  relative to b
     /// @param guesses    like the solutions of earlier systems: the best combination of them is the start
+    /// @param shared     what solves with this same matrix have found, of which this one need only find the rest;
+    /// empty: becomes what this one finds
     /// @return number of Krylov iterations, 0 for a direct solve
     unsigned int solve(const la::BlockVector              &b,
                        double                              tolerance,
                        const std::vector<la::BlockVector> &guesses,
                        Transposition                       transposition,
-                       la::BlockVector                    &x);
+                       la::BlockVector                    &x,
+                       KrylovSpace                        *shared = nullptr);
 
     /// Solves as solve() does for a right-hand side that is large in penalised rows, as that of the motion of
     /// a die or of an objective of contact forces. These rows, which would dwarf the others in the norm, are
@@ -62,7 +66,8 @@ namespace retroforge
                                        SharedTolerance             &tolerance,
                                        std::vector<la::BlockVector> guesses,
                                        Transposition                transposition,
-                                       la::BlockVector             &x);
+                                       la::BlockVector             &x,
+                                       KrylovSpace                 *shared = nullptr);
 
     /// Discards the preconditioner: the next solve makes a new one.
     void reset() { preconditioner_.reset(); }
@@ -81,13 +86,22 @@ namespace retroforge
                                    double                              tolerance,
                                    const std::vector<la::BlockVector> &guesses,
                                    Transposition                       transposition,
-                                   la::BlockVector                    &x);
-    /// Sets x to the combination of the guesses with the least residual, and returns its norm.
-    double start_from(const std::vector<la::BlockVector> &guesses,
-                      const la::BlockVector              &b,
-                      Transposition                       transposition,
-                      la::BlockVector                    &x) const;
-    void   make_preconditioner();
+                                   la::BlockVector                    &x,
+                                   KrylovSpace                        *shared);
+    /// Sets x to the combination of the guesses with the least residual, and returns that.
+    la::BlockVector start_from(const std::vector<la::BlockVector> &guesses,
+                               const la::BlockVector              &b,
+                               Transposition                       transposition,
+                               la::BlockVector                    &x) const;
+    /// Iterates from x, whose residual is r, with the preconditioner that there is.
+    KrylovResult iterate(const la::BlockVector &b,
+                         la::BlockVector       &r,
+                         double                 tolerance,
+                         unsigned int           limit,
+                         Transposition          transposition,
+                         la::BlockVector       &x,
+                         KrylovSpace           *shared) const;
+    void         make_preconditioner();
     /// Sets penalised components of x, and nothing else, so that their rows have no residual, and returns
     /// what that leaves of b.
     la::BlockVector
@@ -116,6 +130,6 @@ namespace retroforge
     Timings                        &timings_;
     std::unique_ptr<Blocks>         blocks_;
     std::unique_ptr<Preconditioner> preconditioner_;
-    double                          first_rate_ = 0.; ///< iterations per decade when it was fresh
+    double first_rate_ = 0.; ///< iterations per decade when it was fresh; 0: not known
   };
 } // namespace retroforge

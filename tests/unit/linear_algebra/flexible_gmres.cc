@@ -4,6 +4,8 @@
 // Flexible GMRES, on one rank and on two. Proved:
 // - an unsymmetric system of two blocks on a ring of nodes is solved as MUMPS solves it, with a preconditioner
 //   that is another one each time; the residual that ended it is the true one; twice the same bits;
+// - its directions and their images hold the solution; of another right-hand side they take all they can at once, and what
+//   they leave is the residual;
 // - with room for 6 directions it goes on from its last iterate, in more iterations, to the same solution;
 // - a diagonal matrix of five values takes five iterations, no more and, with a limit of four, no less: what
 //   it has then is the best so far, and a start;
@@ -125,6 +127,29 @@ namespace
     const la::BlockVector first = x;
     solve(160);
     say("same bits again", same_bits(first, x));
+    x = 0.;
+    KrylovSpace space;
+    solve_by_flexible_gmres(M, P, b, x, 1e-12 * b.l2_norm(), 1000, 160, &space);
+    la::BlockVector r(b), again(b), changed(b), left(b), other(b);
+    again = 0.;
+    space.reduce(again, r);
+    say("its space has the solution", !space.empty() && r.l2_norm() < 2e-12 * b.l2_norm());
+    // The rest of another right-hand side: what is left of it cannot be taken by the space, and is the residual.
+    changed.block(0).begin()[0] += 1.;
+    other = 0.;
+    left  = changed;
+    space.reduce(other, left);
+    M(r, other);
+    r.sadd(-1., 1., changed);
+    r -= left;
+    say("what it leaves is the residual", r.l2_norm() < 1e-11 * b.l2_norm());
+    la::BlockVector projected(changed), twice(left);
+    space.project(projected);
+    projected -= left;
+    space.reduce(other, twice);
+    twice -= left;
+    say("of which it takes nothing more",
+        projected.l2_norm() < 1e-14 * b.l2_norm() && twice.l2_norm() < 1e-11 * b.l2_norm());
     const KrylovResult restarted = solve(6);
     say("solved by six directions, in more iterations",
         restarted.converged && error() < 1e-11 && restarted.iterations > whole.iterations);
