@@ -70,7 +70,7 @@ namespace retroforge
     AssertDimension(touch.size(), view.dies.size());
     const std::size_t      n    = view.mesh.n_nodes();
     const FrictionRamp     ramp = fading(gap);
-    ThermalSurface<Number> surface{{}, std::vector<Number>(n, Number(0.))};
+    ThermalSurface<Number> surface{{}, {}, std::vector<Number>(n, Number(0.))};
     for (unsigned int d = 0; d < view.dies.size(); ++d)
       for (NodeIndex k = 0; k < n && touch[d]; ++k)
       {
@@ -97,6 +97,7 @@ namespace retroforge
                     for (const auto &corners : at)
                     {
                       const Number w = product(surface, corners);
+                      surface.faces.push_back({corners, third * w});
                       for (const unsigned int i : corners)
                         surface.touching[i].area += third * w;
                       free *= 1. - w;
@@ -119,6 +120,7 @@ namespace retroforge
                                std::vector<DieState<double>> &dies_bar)
   {
     std::vector<double> weight_bar = bar.weight;
+    unsigned int        face_index = 0;
     for_each_face(view.mesh,
                   entries_of(surface, view.dies.size(), view.mesh.n_nodes()),
                   [&](const BoundaryFace &face, const std::vector<std::array<unsigned int, 3>> &at) {
@@ -132,7 +134,7 @@ namespace retroforge
                     for (unsigned int j = 0; j < at.size(); ++j)
                     {
                       const double w     = product(surface, at[j]);
-                      double       w_bar = 0., others = 1.;
+                      double       w_bar = third * bar.face_area[face_index++], others = 1.;
                       for (const unsigned int i : at[j])
                         w_bar += third * bar.touching_area[i];
                       area_bar += w_bar / third * w;

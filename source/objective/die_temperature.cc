@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
-#include <retroforge/heat/heat_flow.h>
+#include <retroforge/heat/surface_temperature.h>
 #include <retroforge/objective/die_temperature.h>
 #include <retroforge/objective/objective_settings.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/heat/healing.h>
+#include <retroforge/heat/surface_temperature.h>
 #include <retroforge/steps/heating.h>
 
 #include <tuple>

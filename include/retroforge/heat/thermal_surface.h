@@ -21,10 +21,19 @@ namespace retroforge
     Number       area = Number(0.); ///< of its part of the surface that touches the die [mm^2]
   };
 
+  /// A face of which all nodes are in reach of a die.
+  template <typename Number>
+  struct TouchingFace
+  {
+    std::array<unsigned int, 3> corners;           ///< entries of `touching`
+    Number                      area = Number(0.); ///< what touches, of each corner's third [mm^2]
+  };
+
   template <typename Number>
   struct ThermalSurface
   {
     std::vector<TouchingNode<Number>> touching; ///< by die, then by node, ascending
+    std::vector<TouchingFace<Number>> faces;
     std::vector<Number>               free; ///< part of the surface at each node that touches no die [mm^2]
   };
 
@@ -32,11 +41,13 @@ namespace retroforge
   struct ThermalSurfaceBar
   {
     std::vector<double> weight, touching_area; ///< of each entry of `touching`
+    std::vector<double> face_area;             ///< of each of `faces`
     std::vector<double> free;
 
     explicit ThermalSurfaceBar(const ThermalSurface<double> &surface)
         : weight(surface.touching.size(), 0.)
         , touching_area(surface.touching.size(), 0.)
+        , face_area(surface.faces.size(), 0.)
         , free(surface.free.size(), 0.)
     {
     }

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/heat/heat_flow.h>
+#include <retroforge/heat/surface_temperature.h>
 
 #include "../mesh/block_mesh.h"
 #include "../random_numbers.h"

@@ -5,15 +5,15 @@
 // - By hand: effusivities of 12 and 4 are 3 together, of which the metal has 1/4 and the die 3/4 of the drop in the skins.
 //   A skin of e = 3 under a film of 3 has y = 2, as y²/(1+y) = 4/3 e h/b² = 4/3; the metal's part is as thick as 24 mm, far
 //   more than elements of a millimetre leave unresolved, so that R = 2·3/4 and the die's surface has
-//   T_d + 0.6 (T - T_d) = 680 C beneath metal of 1000 C, T_d = 200 C. Beneath metal of 999 C on a part of the surface it has
-//   679.4 C there, and the mean is that of both, by their areas. A die that touches nothing has its own temperature, and so has one
+//   T_d + 0.6 (T - T_d) = 680 C beneath metal of 1000 C, T_d = 200 C, and 679.4 C beneath nodes of 999 C: a face has the mean
+//   of its nodes, a node that of its faces, and the largest is the smooth one of these, by their areas. A die that touches nothing has its own temperature, and so has one
 //   that is not in the press.
 // - The reverse against dual numbers in positions, displacements, vertices and temperatures of the dies, temperatures and
 //   skins of the metal, and the numbers of heat, each alone, and the Taylor order along all: between a wavy die that a box
 //   touches in part, and a plane across its corner, with thin skins and thick ones.
 
 #include <retroforge/billet/billet.h>
-#include <retroforge/heat/thermal_surface.h>
+#include <retroforge/mesh/surface_areas.h>
 #include <retroforge/objective/die_temperature.h>
 
 #include <deal.II/base/mpi.h>
@@ -150,19 +150,37 @@ namespace
       known_law());
     errors.compare("even metal", problem.value(lower), 680.);
     errors.compare("nothing touches", problem.value(upper), 200.);
-    const auto surface =
-      thermal_surface(problem.scene.view(problem.at.dies, problem.at.X), {true, true}, problem.at.law.gap);
-    double hot = 0., cold = 0.;
-    for (const auto &at : surface.touching)
+    const auto          is_cold = [](const NodeIndex k) { return k % 2 == 0; };
+    std::vector<double> area(problem.at.T.size(), 0.), t(area); // of thirds of faces, and their temperatures
+    const TetMesh      &mesh = problem.scene.mesh;
+    for (NodeIndex k = 0; k < area.size(); ++k)
+      problem.at.T[k] = is_cold(k) ? 999. : 1000.;
+    for (const BoundaryFace &face : mesh.faces)
     {
-      const bool is_cold    = at.node % 2 == 0;
-      problem.at.T[at.node] = is_cold ? 999. : 1000.;
-      (is_cold ? cold : hot) += at.area;
+      const auto &n = face.nodes;
+      if (mesh.X[n[0]][2] + mesh.X[n[1]][2] + mesh.X[n[2]][2] > 1e-9)
+        continue;
+      const double third = triangle_area(n, mesh.X) / 3.,
+                   mean  = 680. - 0.2 * (is_cold(n[0]) + is_cold(n[1]) + is_cold(n[2]));
+      for (const NodeIndex k : n)
+      {
+        area[k] += third;
+        t[k] += third * mean;
+      }
     }
-    const double weight = cold * std::exp(-0.6);
-    errors.compare("two temperatures", problem.value(lower), (hot * 680. + weight * 679.4) / (hot + weight));
+    double largest = 0., weights = 0., weighted = 0.;
+    for (NodeIndex k = 0; k < area.size(); ++k)
+      if (area[k] > 0.)
+        largest = std::max(largest, t[k] /= area[k]);
+    for (NodeIndex k = 0; k < area.size(); ++k)
+    {
+      const double weight = area[k] * std::exp(t[k] - largest);
+      weights += weight;
+      weighted += weight * t[k];
+    }
+    errors.compare("two temperatures", problem.value(lower), weighted / weights);
     const auto decisions = problem.decide(lower);
-    errors.compare("true maximum", lower.details({}, decisions).at("true maximum"), 680.);
+    errors.compare("true maximum", lower.details({}, decisions).at("true maximum"), largest);
     problem.at.dies[0].in_press = 0;
     errors.compare("not in the press", problem.value(lower), 200.);
     errors.print(1e-12);
