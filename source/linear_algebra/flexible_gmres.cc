@@ -319,8 +319,10 @@ namespace retroforge
     }
   };
 
-  KrylovSpace::KrylovSpace()  = default;
-  KrylovSpace::~KrylovSpace() = default;
+  KrylovSpace::KrylovSpace() = default;
+  KrylovSpace::KrylovSpace(std::unique_ptr<Basis> basis) : basis_(std::move(basis)) {}
+  KrylovSpace &KrylovSpace::operator=(KrylovSpace &&) noexcept = default;
+  KrylovSpace::~KrylovSpace()                                  = default;
 
   void KrylovSpace::reduce(la::BlockVector &x, la::BlockVector &r) const
   {
@@ -387,10 +389,10 @@ namespace retroforge
       residual          = add_directions(state, n, *X);
       result.iterations = gmres.getNumIters();
       if (space && n > 0 && std::isfinite(residual))
-        space->basis_ = std::make_unique<KrylovSpace::Basis>(
+        *space = KrylovSpace(std::make_unique<KrylovSpace::Basis>(
           KrylovSpace::Basis{Vectors::CloneView(*state.Z, first_numbers(n)),
                              Vectors::CloneView(*images, first_numbers(n)),
-                             Dense(Teuchos::Copy, *state.H, n, n)});
+                             Dense(Teuchos::Copy, *state.H, n, n)}));
       if (residual > tolerance)
       {
         problem->computeCurrResVec(r.get());

@@ -24,7 +24,11 @@ namespace retroforge
   class KrylovSpace
   {
   public:
+    struct Basis;
+
     KrylovSpace();
+    explicit KrylovSpace(std::unique_ptr<Basis> basis);
+    KrylovSpace &operator=(KrylovSpace &&) noexcept;
     ~KrylovSpace();
 
     bool empty() const { return !basis_; }
@@ -36,16 +40,6 @@ namespace retroforge
     void project(la::BlockVector &r) const;
 
   private:
-    struct Basis;
-    friend KrylovResult solve_by_flexible_gmres(const BlockOperator &,
-                                                const BlockOperator &,
-                                                const la::BlockVector &,
-                                                la::BlockVector &,
-                                                double,
-                                                unsigned int,
-                                                unsigned int,
-                                                KrylovSpace *);
-
     std::unique_ptr<Basis> basis_; ///< null where there are none
   };
 
