@@ -4,6 +4,7 @@
 #include <retroforge/mesh/surface_areas.h>
 
 #include <algorithm>
+#include <map>
 
 namespace retroforge
 {
@@ -14,6 +15,113 @@ namespace retroforge
       FrictionRamp ramp;
       ramp.width = gap;
       return ramp;
+    }
+
+    /// A node off the die by a quarter of the gap, because an edge there holds it, touches as the edge does.
+    constexpr double steepness = 4.;
+
+    template <typename Number>
+    Vector3<Number> middle_of(const NodalVectors<Number> &X, const std::array<NodeIndex, 2> &nodes)
+    {
+      return 0.5 * (X[nodes[0]] + X[nodes[1]]);
+    }
+
+    template <typename Number>
+    Vec3 values(const Vector3<Number> &x)
+    {
+      return Vec3({value_of(x[0]), value_of(x[1]), value_of(x[2])});
+    }
+
+    /// What a die is in reach of: nodes, ascending, and edges, their ends not known yet.
+    struct Seen
+    {
+      std::map<NodeIndex, DieFeature> nodes;
+      std::vector<TouchingEdge>       edges;
+    };
+
+    template <typename Number>
+    Seen seen_by(const ContactView<Number> &view, const unsigned int d, const double gap)
+    {
+      const Die &die          = view.dies[d];
+      const Vec3 displacement = values(view.states[d].displacement);
+      const auto delta        = [&](const Vec3 &x, const DieFeature &feature) {
+        return value_of(die.project(Vector3<Number>(x), view.states[d], feature).delta);
+      };
+      Seen seen;
+      for (NodeIndex k = 0; k < view.mesh.n_nodes(); ++k)
+        if (view.topology.is_on_surface(k))
+        {
+          const Vec3       x       = values(view.X[k]);
+          const DieFeature feature = die.closest(x, displacement, gap);
+          if (feature.found() && delta(x, feature) < gap)
+            seen.nodes.emplace(k, feature);
+        }
+      for (std::size_t e = 0; e < view.topology.surface_edges.size() && die.surface(); ++e)
+      {
+        const auto      &nodes   = view.topology.surface_edges[e];
+        const Vec3       x       = values(middle_of(view.X, nodes));
+        const DieFeature feature = die.closest(x, displacement, gap);
+        if (!feature.found() || !(delta(x, feature) < gap))
+          continue;
+        double                    bulge = -delta(x, feature);
+        std::array<DieFeature, 2> ends;
+        for (unsigned int i = 0; i < 2; ++i)
+        {
+          const Vec3 end   = values(view.X[nodes[i]]);
+          const auto found = seen.nodes.find(nodes[i]);
+          ends[i]          = found != seen.nodes.end() ? found->second
+                                                       : die.closest(end, displacement, gap + (end - x).norm());
+          if (ends[i].found())
+            bulge += 0.5 * delta(end, ends[i]);
+        }
+        if (!ends[0].found() || !ends[1].found() || !(bulge > 0.))
+          continue;
+        for (unsigned int i = 0; i < 2; ++i)
+          seen.nodes.emplace(nodes[i], ends[i]);
+        const auto &images = view.topology.edge_images[e];
+        seen.edges.push_back({d, feature, nodes, {{invalid_index, invalid_index}}, {{images[0], images[1]}}});
+      }
+      return seen;
+    }
+
+    /// Gaps of what touches [mm].
+    template <typename Number>
+    struct Gaps
+    {
+      std::vector<Number> of_nodes, of_middles;
+
+      Gaps(const ContactView<Number> &view, const ThermalSurface<Number> &surface)
+      {
+        const auto delta = [&](const unsigned int d, const Vector3<Number> &x, const DieFeature &feature) {
+          return view.dies[d].project(x, view.states[d], feature).delta;
+        };
+        for (const auto &at : surface.touching)
+          of_nodes.push_back(delta(at.die, view.X[at.node], at.feature));
+        for (const auto &edge : surface.edges)
+          of_middles.push_back(delta(edge.die, middle_of(view.X, edge.nodes), edge.feature));
+      }
+
+      /// Of the die into edge e.
+      Number bulge(const TouchingEdge &edge, const unsigned int e) const
+      {
+        return 0.5 * (of_nodes[edge.ends[0]] + of_nodes[edge.ends[1]]) - of_middles[e];
+      }
+
+      /// As far as the ends of edge e count as where its middle is.
+      Number part(const TouchingEdge &edge, const unsigned int e, const FrictionRamp &ramp) const
+      {
+        return 1. - ramp(Number(steepness * bulge(edge, e)), true);
+      }
+    };
+
+    /// The factors of weights, in a fixed order: `use(edge, entry of an end)`.
+    template <typename Number, typename Use>
+    void for_each_factor(const ThermalSurface<Number> &surface, const Use &use)
+    {
+      for (unsigned int e = 0; e < surface.edges.size(); ++e)
+        for (unsigned int i = 0; i < 2; ++i)
+          for (unsigned int image = 0; image < surface.edges[e].images[i]; ++image)
+            use(e, surface.edges[e].ends[i]);
     }
 
     /// For each die, the entry of each node in `touching`; none: invalid_index.
@@ -68,27 +176,32 @@ namespace retroforge
   thermal_surface(const ContactView<Number> &view, const std::vector<bool> &touch, const double gap)
   {
     AssertDimension(touch.size(), view.dies.size());
-    const std::size_t      n    = view.mesh.n_nodes();
-    const FrictionRamp     ramp = fading(gap);
-    ThermalSurface<Number> surface{{}, {}, std::vector<Number>(n, Number(0.))};
+    const std::size_t      n = view.mesh.n_nodes();
+    ThermalSurface<Number> surface{{}, {}, {}, std::vector<Number>(n, Number(0.))};
     for (unsigned int d = 0; d < view.dies.size(); ++d)
-      for (NodeIndex k = 0; k < n && touch[d]; ++k)
+      if (touch[d])
       {
-        if (!view.topology.is_on_surface(k))
-          continue;
-        Vec3 x, displacement;
-        for (unsigned int i = 0; i < 3; ++i)
+        const Seen                        seen = seen_by(view, d, gap);
+        std::map<NodeIndex, unsigned int> entries;
+        for (const auto &[k, feature] : seen.nodes)
         {
-          x[i]            = value_of(view.X[k][i]);
-          displacement[i] = value_of(view.states[d].displacement[i]);
+          entries.emplace(k, surface.touching.size());
+          surface.touching.push_back({k, d, feature, Number(0.)});
         }
-        const DieFeature feature = view.dies[d].closest(x, displacement, gap);
-        if (!feature.found())
-          continue;
-        const Number delta = view.dies[d].project(view.X[k], view.states[d], feature).delta;
-        if (value_of(delta) < gap)
-          surface.touching.push_back({k, d, feature, ramp(delta, true)});
+        for (TouchingEdge edge : seen.edges)
+        {
+          edge.ends = {{entries.at(edge.nodes[0]), entries.at(edge.nodes[1])}};
+          surface.edges.push_back(edge);
+        }
       }
+    const Gaps<Number> gaps(view, surface);
+    const FrictionRamp ramp = fading(gap);
+    for (unsigned int i = 0; i < surface.touching.size(); ++i)
+      surface.touching[i].weight = ramp(gaps.of_nodes[i], true);
+    for_each_factor(surface, [&](const unsigned int e, const unsigned int i) {
+      Number &weight = surface.touching[i].weight;
+      weight += (1. - weight) * gaps.part(surface.edges[e], e, ramp) * ramp(gaps.of_middles[e], true);
+    });
     for_each_face(view.mesh,
                   entries_of(surface, view.dies.size(), n),
                   [&](const BoundaryFace &face, const std::vector<std::array<unsigned int, 3>> &at) {
@@ -148,26 +261,59 @@ namespace retroforge
                     }
                     reverse_triangle_area(face.nodes, view.X, area_bar / 3., X_bar);
                   });
-    const FrictionRamp ramp = fading(gap);
+    const Gaps<double>  gaps(view, surface);
+    const FrictionRamp  ramp = fading(gap);
+    std::vector<double> at, before, gaps_bar(surface.touching.size(), 0.),
+      middles_bar(surface.edges.size(), 0.);
+    for (const double gap_there : gaps.of_nodes)
+      at.push_back(ramp(gap_there, true));
+    std::vector<std::array<unsigned int, 2>> factors;
+    for_each_factor(surface, [&](const unsigned int e, const unsigned int i) {
+      factors.push_back({{e, i}});
+      before.push_back(at[i]);
+      at[i] += (1. - at[i]) * gaps.part(surface.edges[e], e, ramp) * ramp(gaps.of_middles[e], true);
+    });
+    for (std::size_t f = factors.size(); f-- > 0;)
+    {
+      const auto &[e, i]       = factors[f];
+      const TouchingEdge &edge = surface.edges[e];
+      const double        part = gaps.part(edge, e, ramp), w = ramp(gaps.of_middles[e], true),
+                   missing_bar = (1. - before[f]) * weight_bar[i],
+                   bulge_bar =
+                     -missing_bar * w * steepness * ramp.derivative(steepness * gaps.bulge(edge, e));
+      middles_bar[e] += missing_bar * part * ramp.derivative(gaps.of_middles[e]) - bulge_bar;
+      for (const unsigned int end : edge.ends)
+        gaps_bar[end] += 0.5 * bulge_bar;
+      weight_bar[i] *= 1. - part * w;
+    }
+    const auto reverse_project =
+      [&](const unsigned int d, const Vec3 &x, const DieFeature &feature, const double bar) {
+        Vec3              x_bar;
+        DieState<double> &die_bar = dies_bar[d];
+        view.dies[d].reverse_project(x,
+                                     view.states[d].displacement,
+                                     feature,
+                                     bar,
+                                     Vec3(),
+                                     x_bar,
+                                     die_bar.displacement,
+                                     die_bar.vertices.empty() ? nullptr : &die_bar.vertices);
+        return x_bar;
+      };
     for (unsigned int i = 0; i < surface.touching.size(); ++i)
     {
-      const TouchingNode<double> &at = surface.touching[i];
-      if (weight_bar[i] == 0.)
-        continue;
-      const DieState<double> &die = view.states[at.die];
-      const double            delta_bar =
-        weight_bar[i] * ramp.derivative(view.dies[at.die].project(view.X[at.node], die, at.feature).delta);
-      if (delta_bar == 0.)
-        continue;
-      DieState<double> &die_bar = dies_bar[at.die];
-      view.dies[at.die].reverse_project(view.X[at.node],
-                                        die.displacement,
-                                        at.feature,
-                                        delta_bar,
-                                        Vec3(),
-                                        X_bar[at.node],
-                                        die_bar.displacement,
-                                        die_bar.vertices.empty() ? nullptr : &die_bar.vertices);
+      const TouchingNode<double> &node      = surface.touching[i];
+      const double                delta_bar = gaps_bar[i] + weight_bar[i] * ramp.derivative(gaps.of_nodes[i]);
+      if (delta_bar != 0.)
+        X_bar[node.node] += reverse_project(node.die, view.X[node.node], node.feature, delta_bar);
     }
+    for (unsigned int e = 0; e < surface.edges.size(); ++e)
+      if (const TouchingEdge &edge = surface.edges[e]; middles_bar[e] != 0.)
+      {
+        const Vec3 x_bar =
+          reverse_project(edge.die, middle_of(view.X, edge.nodes), edge.feature, middles_bar[e]);
+        for (const NodeIndex k : edge.nodes)
+          X_bar[k] += 0.5 * x_bar;
+      }
   }
 } // namespace retroforge

@@ -7,18 +7,32 @@
 /// @file
 /// Which part of the surface at each node touches which die, and which is free. A node touches a die as far as
 ///   w(delta/gap),  1 - 10t³ + 15t⁴ - 6t⁵,
-/// says of its gap delta; a face as the product of its nodes. A third of a face's area is a node's.
+/// says of its gap delta. Where a die bulges into edges and their middles hold the metal, nodes stand off it, and touch as
+/// for friction (contact_kinematics.h),
+///   1 - (1 - w(delta/gap)) product_m (1 - (1 - w(4 b_m/gap)) w(delta_m/gap)),
+/// b_m the bulge into the edge with the middle m. A face touches as the product of its nodes. A third of a face's area is a
+/// node's.
 namespace retroforge
 {
-  /// A node in reach of a die.
+  /// A node in reach of a die, or with an edge that is.
   template <typename Number>
   struct TouchingNode
   {
     NodeIndex    node;
     unsigned int die;
     DieFeature   feature;           ///< of the die, closest to the node
-    Number       weight;            ///< w
+    Number       weight;            ///< as far as it touches
     Number       area = Number(0.); ///< of its part of the surface that touches the die [mm^2]
+  };
+
+  /// An edge of the surface whose middle is in reach of a die that bulges into it.
+  struct TouchingEdge
+  {
+    unsigned int                die;
+    DieFeature                  feature; ///< of the die, closest to the middle
+    std::array<NodeIndex, 2>    nodes;
+    std::array<unsigned int, 2> ends;   ///< entries of `touching`
+    std::array<unsigned int, 2> images; ///< how often it stands at each end in the whole
   };
 
   /// A face of which all nodes are in reach of a die.
@@ -33,6 +47,7 @@ namespace retroforge
   struct ThermalSurface
   {
     std::vector<TouchingNode<Number>> touching; ///< by die, then by node, ascending
+    std::vector<TouchingEdge>         edges;
     std::vector<TouchingFace<Number>> faces;
     std::vector<Number>               free; ///< part of the surface at each node that touches no die [mm^2]
   };

@@ -4,6 +4,7 @@
 
 #include <retroforge/heat/surface_temperature.h>
 
+#include "../geometry/geometry_test_tools.h"
 #include "../mesh/block_mesh.h"
 #include "../random_numbers.h"
 
@@ -12,11 +13,6 @@
 
 namespace retroforge
 {
-  inline std::string yes(const bool condition)
-  {
-    return condition ? "yes" : "NO";
-  }
-
   /// A box [0, size] of n[0] x n[1] x n[2] blocks of six tetrahedra, without planes of symmetry.
   inline TetMesh box_mesh(const Vec3 &size, const std::array<unsigned int, 3> &n)
   {
