@@ -127,7 +127,7 @@ namespace retroforge
 
     /// A relative name of a file that is there, for a parameter file in another folder; others are left as
     /// they are.
-    std::string seen_from(const std::string &folder, const std::filesystem::path &name)
+    std::string name_seen_from(const std::string &folder, const std::filesystem::path &name)
     {
       std::error_code             failed;
       const std::filesystem::path there =
@@ -146,6 +146,29 @@ namespace retroforge
       std::vector<std::string> all = dealii::Utilities::split_string_list(names);
       std::transform(all.begin(), all.end(), all.begin(), one);
       return join(all);
+    }
+
+    /// Gives other names to the files that parameters name.
+    template <typename Rename>
+    void rename_files(dealii::ParameterHandler &prm, const Rename &rename)
+    {
+      for (const ParameterEntry &entry : declared_parameters(prm))
+        if (const SettingTags::Files files = Parameters::tags().files(entry.path());
+            files != SettingTags::Files::none)
+        {
+          for (const std::string &section : entry.sections)
+            prm.enter_subsection(section);
+          prm.set(entry.name, renamed(files, entry.value, rename));
+          for (std::size_t i = 0; i < entry.sections.size(); ++i)
+            prm.leave_subsection();
+        }
+    }
+
+    std::string text_of(const dealii::ParameterHandler &prm)
+    {
+      std::ostringstream text;
+      print_parameters(prm, text);
+      return text.str();
     }
   } // namespace
 
@@ -172,58 +195,47 @@ namespace retroforge
     return of_lines("", parameter_lines_of(text, "parameters of the record"), ignored);
   }
 
-  Parameters
-  Parameters::of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo)
+  void Parameters::assign(std::vector<ParameterLine> lines, dealii::ParameterHandler &prm)
   {
     const auto                 values = parameter_values(lines);
-    Parameters                 parameters;
-    dealii::ParameterHandler   prm;
     std::vector<NamedSections> named;
-    parameters.add_parameters(
-      prm, [&](const std::string &kind, const std::string &list, const std::string &by_default) {
-        named.push_back({kind, list, names_in(values, list, by_default)});
-        if (kind == "Objective")
-          check_objective_names(values, named.back().names);
-        return named.back().names;
-      });
+    add_parameters(prm, [&](const std::string &kind, const std::string &list, const std::string &by_default) {
+      named.push_back({kind, list, names_in(values, list, by_default)});
+      if (kind == "Objective")
+        check_objective_names(values, named.back().names);
+      return named.back().names;
+    });
     for (const auto &[kind, list, names] : named)
       for (const std::string &section : unlisted_sections(lines, kind, names))
       {
         lines = without_section(std::move(lines), section);
-        parameters.without_effect.push_back("section `" + section + "' is not read, as " + list +
-                                            " does not name it");
+        without_effect.push_back("section `" + section + "' is not read, as " + list + " does not name it");
       }
     set_parameters(prm, lines);
-    for (const ParameterEntry &entry : declared_parameters(prm))
-      if (const SettingTags::Files files = tags().files(entry.path()); files != SettingTags::Files::none)
-      {
-        for (const std::string &section : entry.sections)
-          prm.enter_subsection(section);
-        prm.set(entry.name,
-                renamed(files, entry.value, [&](const std::string &name) { return beside(file, name); }));
-        for (std::size_t i = 0; i < entry.sections.size(); ++i)
-          prm.leave_subsection();
-      }
+  }
+
+  Parameters
+  Parameters::of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo)
+  {
+    Parameters               parameters;
+    dealii::ParameterHandler prm;
+    parameters.assign(std::move(lines), prm);
+    rename_files(prm, [&](const std::string &name) { return beside(file, name); });
     parameters.check_all();
     parameters.find_without_effect(declared_parameters(prm));
-    std::ostringstream text;
-    print_parameters(prm, text);
-    echo = text.str();
+    echo = text_of(prm);
     return parameters;
   }
 
-  std::vector<std::pair<std::string, std::string>> Parameters::files_seen_from(const std::string &folder,
-                                                                               const std::string &echo)
+  std::string Parameters::seen_from(const std::string                                      &folder,
+                                    const std::string                                      &echo,
+                                    const std::vector<std::pair<std::string, std::string>> &changes)
   {
-    std::vector<std::pair<std::string, std::string>> overrides;
-    for (const auto &[path, names] : parameter_values(parameter_lines_of(echo, "parameters")))
-      if (const SettingTags::Files files = tags().files(path); files != SettingTags::Files::none)
-      {
-        const std::string there =
-          renamed(files, names, [&](const std::string &name) { return seen_from(folder, name); });
-        if (there != names)
-          overrides.emplace_back(path, there);
-      }
-    return overrides;
+    Parameters               parameters;
+    dealii::ParameterHandler prm;
+    parameters.assign(parameter_lines_of(echo, "parameters"), prm);
+    rename_files(prm, [&](const std::string &name) { return name_seen_from(folder, name); });
+    set_parameters(prm, override_lines(changes));
+    return text_of(prm);
   }
 } // namespace retroforge

@@ -41,16 +41,13 @@ namespace retroforge
       return false;
     }
 
-    /// A case's, at another design. @param mu  parameters of that case  @param files  other names of files
-    std::string parameters_at(const Case                                             &forging_case,
-                              const std::vector<double>                              &mu,
-                              const std::vector<std::pair<std::string, std::string>> &files = {})
+    /// A case's, at another design. @param mu  parameters of that case
+    std::string parameters_at(const Case &forging_case, const std::vector<double> &mu)
     {
       CommandLine there = forging_case.command;
       there.case_text   = forging_case.echo;
       there.at.clear();
       there.overrides.emplace_back("Design/at", values_by_name(forging_case.design.parameters(), mu));
-      there.overrides.insert(there.overrides.end(), files.begin(), files.end());
       std::string parameters;
       Parameters::read(there, parameters);
       return parameters;
@@ -294,19 +291,20 @@ namespace retroforge
     results_.write_json(problem_.path_of("optimisation.json"));
     for (std::size_t o = 0; o < problem_.scenarios.size(); ++o)
     {
-      const Case               &forging_case = problem_.scenarios.at(o);
-      const std::vector<double> mu           = problem_.scenarios.values(o, results_.best.mu);
-      auto more = Parameters::files_seen_from(problem_.main.command.output_directory, forging_case.echo);
+      const Case                                      &forging_case = problem_.scenarios.at(o);
+      const std::vector<double>                        mu = problem_.scenarios.values(o, results_.best.mu);
+      std::vector<std::pair<std::string, std::string>> repeated;
       // With them it is forged to the same bits.
       if (const Evaluation *steps = problem_.journal.find_steps(problem_.scenarios.name(o));
           steps && steps->mu != mu)
       {
         const std::string file = problem_.scenarios.titled("steps", o) + ".csv";
         write_file(problem_.path_of(file), table_of_steps(steps->steps));
-        more.emplace_back("Press/steps", file);
+        repeated.emplace_back("Press/steps", file);
       }
       write_file(problem_.path_of(problem_.scenarios.titled("best", o) + ".prm"),
-                 parameters_at(forging_case, mu, more));
+                 Parameters::seen_from(
+                   problem_.main.command.output_directory, parameters_at(forging_case, mu), repeated));
     }
   }
 } // namespace retroforge

@@ -108,14 +108,18 @@ namespace retroforge
     /// Wanted length of the edges in remeshing [mm]; of a billet from a file, the mean length there is.
     double edge_length(const TetMesh &billet) const;
 
-    /// Overrides with which parameters name the same files from a parameter file in another folder.
-    /// @param echo  these parameters
-    static std::vector<std::pair<std::string, std::string>> files_seen_from(const std::string &folder,
-                                                                            const std::string &echo);
+    /// Returns parameters, `echo`, as a parameter file in another folder has them: they name the same files as seen
+    /// from there. No file is read.
+    /// @param changes  other values, as they stand in that file
+    static std::string seen_from(const std::string                                      &folder,
+                                 const std::string                                      &echo,
+                                 const std::vector<std::pair<std::string, std::string>> &changes = {});
 
   private:
     /// @param file  of the case, beside which other files are looked for
     static Parameters of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo);
+    /// Declares what the lines name, and takes their values.
+    void assign(std::vector<ParameterLine> lines, dealii::ParameterHandler &prm);
 
     // Once defaults are resolved:
     double edge_stiffness_ = 1.; ///< penalty of edges over that of nodes

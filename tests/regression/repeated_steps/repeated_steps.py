@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
 """Increments that are given (Press/steps) or repeated (Design/repeat steps). A run repeated by its own history gives the same bits; a list of a
-user's own is followed, stretched, and bent where it is too coarse; the designs of a scan and of an optimisation all make those of the nominal one, and the best design by hand gives the same bits.  Usage: repeated_steps.py RETROFORGE"""
+user's own is followed, stretched, and bent where it is too coarse; the designs of a scan and of an optimisation all make those of the nominal one, and the best design by hand gives the same bits, from its folder, where a table of stresses has another name.  Usage: repeated_steps.py RETROFORGE"""
 import csv
 import json
 import os
@@ -17,7 +17,7 @@ CYLINDER = changed(upsetting("cylinder", {"radius": 10, "height": 15}, 5, 15, 7.
 BARREL = changed(CYLINDER, {
     "Billet": {"shape": "profile", "control points": "10, 0; 10, 5; 10, 10; 10, 15", "symmetry planes": "-1, 0, 0; 0, -1, 0; 0, 0, -1",
                "volume held by": "control point 4 r"},
-    "Dies": {"names": "upper"}, "Press": {"stroke": 7, "accuracy": 2e-4}, "Objectives": {"names": "barrel"},
+    "Material": {"law": "table", "table": "stresses.csv"}, "Dies": {"names": "upper"}, "Press": {"stroke": 7, "accuracy": 2e-4}, "Objectives": {"names": "barrel"},
     "Objective barrel": {"type": "cylinder distance", "patches": "side outer"},
     "Design": {"parameters": "billet/control point 1 r, billet/control point 2 r"},
     "Scan": {"parameter": ""}, "Optimisation": {"objective": "barrel", "noise runs": 0, "confirmation": 0, "iterations": 5}})
@@ -77,6 +77,9 @@ def scanned():
 
 
 def optimised():
+    # With a table, of which best.prm tells from its own folder.
+    write("stresses.csv", "strain,strain rate,temperature,flow stress\n" + "".join(f"{q},{rate},1000,{60 * (3 ** 0.5 * rate) ** 0.139 * (1 + 0.2 * q)}\n"
+                                                                      for q in (0.01, 1, 3) for rate in (0.01, 1, 100)))
     for output, repeats in (("best", "true"), ("best_own", "false")):
         done = run("optimize", output, f"Design/repeat steps={repeats}", case="barrel.prm")
         judge(f"{output}: ends", done.returncode in (0, 2), done.stderr)
@@ -85,6 +88,7 @@ def optimised():
     judge("an optimisation repeats the increments of its start", len(number["best"]) > 2 and len(set(number["best"])) == 1, number["best"])
     judge("best.prm names them", "set steps" in text_of("best", "best.prm") and "steps.csv" in text_of("best", "best.prm") and
           "steps.csv" not in text_of("best_own", "best.prm"))
+    judge("and the table", "set table = ../stresses.csv" in text_of("best", "best.prm"))
     hand = run("simulate", "hand", case="best/best.prm")
     best = json.loads(text_of("best", "optimisation.json"))["objective"]["best"]
     judge("the best by hand: the same bits", hand.returncode == 0 and value_of("hand") == best, f"{hand.stderr} {best}")
