@@ -296,6 +296,47 @@ namespace retroforge
           "that does not matter");
     }
 
+    /// Numbers in units other than asked for, by powers of ten beyond those of any metal.
+    void warn_of_heat(const HeatLaw<double> &heat, Warnings &warnings)
+    {
+      struct Usual
+      {
+        const char *name, *unit, *of_metals;
+        double      value, least, largest;
+      };
+      const auto warn = [&](const Usual &of) {
+        if (of.value != 0. && !(of.value >= of.least && of.value <= of.largest))
+          warnings.push_back("Heat/" + std::string(of.name) + " = " + as_text(of.value) + ": " +
+                             of.of_metals + ", in " + of.unit);
+      };
+      if (!heat.warms())
+        return;
+      warn({"heat capacity",
+            "MPa/K, which is MJ/(m^3 K): divide J/(m^3 K) by 1e6",
+            "metals have 1 to 10",
+            heat.capacity,
+            0.3,
+            30.});
+      if (!heat.conducts())
+        return;
+      warn({"conductivity", "W/(m K)", "metals have 5 to 430", heat.conductivity, 1., 2000.});
+      for (const auto &[name, film] :
+           {std::make_pair("contact film", heat.contact_film), std::make_pair("dwell film", heat.dwell_film)})
+        warn({name, "kW/(m^2 K): divide W/(m^2 K) by 1000", "contacts have 0.1 to 100", film, 1e-3, 500.});
+      warn({"air film",
+            "kW/(m^2 K): divide W/(m^2 K) by 1000",
+            "still air has 0.01, a water jet 10",
+            heat.air_film,
+            1e-4,
+            100.});
+      warn({"die effusivity",
+            "kW s^(1/2)/(m^2 K): divide W s^(1/2)/(m^2 K) by 1000",
+            "metals have 2 to 40",
+            heat.die_effusivity,
+            0.1,
+            1e3});
+    }
+
     void warn_of_friction(const View &view, const SceneEstimate &estimate, Warnings &warnings)
     {
       const double radius = radius_of(view, estimate.height), shear = estimate.flow_stress / std::sqrt(3.);
@@ -420,6 +461,7 @@ namespace retroforge
       slab_force(view, std::max(thinnest * estimate.height, estimate.height - view.closing()));
     warn_of_sizes(view, estimate.warnings);
     warn_of_material(view, estimate, estimate.warnings);
+    warn_of_heat(view.process.heat, estimate.warnings);
     warn_of_press(view, estimate, estimate.warnings);
     warn_of_friction(view, estimate, estimate.warnings);
     warn_of_ways(view, estimate.warnings);

@@ -132,8 +132,8 @@ namespace retroforge
                     "leave a range between them");
       if (start[j] < lower_[j] || start[j] > upper_[j])
         throw Error("Optimisation/" + std::string(start[j] < lower_[j] ? "lower" : "upper") + " bounds",
-                    name + " begins at " + as_text(start[j]) + " " + parameter.unit + ", outside of " +
-                      as_text(lower_[j]) + " to " + as_text(upper_[j]),
+                    name + " begins at " + as_text(start[j]) + (parameter.unit.empty() ? "" : " ") +
+                      parameter.unit + ", outside of " + as_text(lower_[j]) + " to " + as_text(upper_[j]),
                     "an optimisation begins within its bounds",
                     "widen them, or begin elsewhere with --at");
     }

@@ -438,12 +438,12 @@ namespace retroforge
     for (std::size_t j = 0; j < space.size(); ++j)
       out << "  " << std::left << std::setw(28) << space.parameters()[j].name << std::right
           << std::setprecision(7) << std::setw(14) << start.mu[j] << std::setw(14) << best.mu[j] << ' '
-          << std::left << std::setw(8) << space.parameters()[j].unit << std::right
+          << std::left << std::setw(8) << space.parameters()[j].unit << std::right << ' '
           << in_words(space.at(best.mu, j)) << '\n';
     if (const auto &held = space.held())
       out << "  " << std::left << std::setw(28) << held->name << std::right << std::setprecision(7)
           << std::setw(14) << start.values.back() << std::setw(14) << best.values.back() << ' ' << std::left
-          << std::setw(8) << held->unit << std::right << "follows from the volume\n";
+          << std::setw(8) << held->unit << std::right << " follows from the volume\n";
     print_limits(out);
     for (std::size_t o = 0; o < details.size(); ++o)
       for (const auto &[what, detail] : details[o])

@@ -86,8 +86,8 @@ namespace retroforge
                   objective.gradient[j],
                   effect(j),
                   unit.c_str());
-      if (mu[j] == 0.)
-        std::printf(" (of %.4g %s)", parameter.scale, parameter.unit.c_str());
+      if (std::abs(parameter.scale - std::abs(mu[j])) > 1e-6 * parameter.scale) // of a length, or of 100 K
+        std::printf(" (of %.4g %s)", parameter.scale, parameter.unit == "C" ? "K" : parameter.unit.c_str());
       std::printf("%s%s\n", tells_trust ? "; " : "", tells_trust ? objective.trust[j].c_str() : "");
     }
   }
@@ -105,7 +105,9 @@ namespace retroforge
       std::printf("  %s %.3g K on the mean", work, heat.warming);
       if (std::isfinite(heat.mean_temperature))
         std::printf(", which ends at %.5g C", heat.mean_temperature);
-      if (heat.conducts)
+      if (heat.conducts && heat.chilled == 0.)
+        std::printf("; no heat went to dies");
+      else if (heat.conducts)
         std::printf("; in %.3g s dies chilled a skin of %.2g mm, %.2g elements",
                     heat.seconds,
                     heat.chilled,

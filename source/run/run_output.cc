@@ -116,8 +116,8 @@ namespace retroforge
       const std::string unit = " [" + objectives[j].unit() + "]";
       columns.emplace_back(objectives[j].name + unit, evaluations[j].value);
       for (const auto *numbers : {&evaluations[j].parts, &evaluations[j].details})
-        for (const auto &[name, value] : *numbers)
-          columns.emplace_back(objectives[j].name + ": " + name + unit, value);
+        for (const auto &[name, value] : *numbers) // some have a unit of their own
+          columns.emplace_back(objectives[j].name + ": " + name + (name.back() == ']' ? "" : unit), value);
     }
     if (objectives_)
       objectives_->add(whole_stroke(case_.process, place(state)), columns);

@@ -66,12 +66,17 @@ namespace retroforge
       heat.conducts              = law.conducts();
       heat.warming               = law.fraction * forged.energy.deformation / (law.capacity * volume);
       heat.seconds               = process.time_on_dies(forged.stroke, forged.operation);
+      bool chills                = !heat.conducts || law.contact_film > 0.;
       if (heat.conducts)
         for (unsigned int o = 0; o <= forged.operation; ++o)
-          heat.waits.push_back({process.operations[o].waiting.transfer, process.operations[o].waiting.dwell});
-      heat.chilled =
-        std::sqrt((heat.conducts ? law.conductivity / law.capacity : diffusivity) * heat.seconds);
-      heat.elements = heat.chilled / edge_length;
+        {
+          const auto &waiting = process.operations[o].waiting;
+          heat.waits.push_back({waiting.transfer, waiting.dwell});
+          chills = chills || (law.dwell_film > 0. && waiting.dwell > 0.);
+        }
+      const double a = heat.conducts ? law.conductivity / law.capacity : diffusivity;
+      heat.chilled   = chills ? std::sqrt(a * heat.seconds) : 0.;
+      heat.elements  = heat.chilled / edge_length;
       if (!forged.workpiece.temperature.empty())
         heat.mean_temperature = mean_temperature(forged.epoch->scene.mesh, forged.workpiece);
       return heat;
