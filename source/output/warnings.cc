@@ -65,12 +65,19 @@ namespace retroforge
         100. * std::abs(change),
         change < 0. ? "less" : "more");
     }
+    /// Of edges that touch, which span corners.
+    constexpr double many = 0.05;
   } // namespace
+
+  bool is_in_die(const Summary::Depth &deepest, const Summary::Spanned &spanned, const double largest_depth)
+  {
+    return deepest.relative > largest_depth || spanned.share() > many;
+  }
 
   std::vector<std::string>
   warnings_of(const Summary &summary, const double largest_depth, const std::vector<std::string> &untouched)
   {
-    constexpr double         much = 0.002, many = 0.05;
+    constexpr double         much = 0.002;
     std::vector<std::string> warnings;
     if (std::abs(summary.volume_change()) > much)
       warnings.push_back(of_volume(summary.volume_change()));

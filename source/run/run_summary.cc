@@ -122,14 +122,18 @@ namespace retroforge
     const auto &table = process.material.table;
     if (!table)
       return "";
-    const double strain = *std::max_element(workpiece.strain.begin(), workpiece.strain.end());
-    const auto  &T      = workpiece.temperature;
-    const double warmest =
-      T.empty() ? process.material.initial.temperature : *std::max_element(T.begin(), T.end());
-    if (strain <= table->largest_strain() && warmest <= table->largest_temperature())
+    const double strain  = *std::max_element(workpiece.strain.begin(), workpiece.strain.end());
+    const auto  &T       = workpiece.temperature;
+    const double before  = process.material.initial.temperature,
+                 warmest = T.empty() ? before : *std::max_element(T.begin(), T.end()),
+                 coldest = T.empty() ? before : *std::min_element(T.begin(), T.end());
+    // Where the run begins outside of the table, a warning before it tells so.
+    const bool cools = coldest < std::min(before, table->least_temperature());
+    if (strain <= table->largest_strain() && warmest <= table->largest_temperature() && !cools)
       return "";
-    return "the metal was strained up to " + as_text(strain) + " and is up to " + as_text(warmest) +
-           " C warm, and Material/table ends at " + as_text(table->largest_strain()) + " and " +
+    return "the metal was strained up to " + as_text(strain) + " and is at " + as_text(coldest) + " to " +
+           as_text(warmest) + " C, and Material/table ends at " + as_text(table->largest_strain()) +
+           " and at " + as_text(table->least_temperature()) + " and " +
            as_text(table->largest_temperature()) + " C: beyond, stresses are those at its edge.";
   }
 
@@ -165,6 +169,7 @@ namespace retroforge
           return;
         worst.part     = std::min(worst.part, spans[o]->part);
         worst.remeshed = std::max(worst.remeshed, spans[o]->remeshed);
+        worst.in_die   = worst.in_die || spans[o]->in_die;
       }
     constexpr double rounding = 1e-6, percent = 0.01;
     const double     value = sensitivity.value;

@@ -321,7 +321,12 @@ namespace retroforge
       differentiate_directly();
     else
       sweep_back();
-    const auto spans = spans_of(run_.objectives(), run_.trace(), output_->decisions());
+    auto       spans = spans_of(run_.objectives(), run_.trace(), output_->decisions());
+    const bool in_die =
+      is_in_die(output_->deepest(), output_->spanned(), case_.parameters.contact.largest_depth);
+    for (auto &span : spans)
+      if (span)
+        span->in_die = in_die;
     for (std::size_t j = 0; j < sensitivities_.size(); ++j)
     {
       check_finite(sensitivities_[j], case_.design);

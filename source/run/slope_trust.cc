@@ -18,6 +18,8 @@ namespace retroforge
     /// The most that single slopes of a class of values were off, rms over nearby designs.
     const char *measured(const ValueSpan &span)
     {
+      if (span.in_die)
+        return "metal was in a die, see the warning: scan";
       if (span.remeshed > 1)
         return span.is_short() ? "off by up to 70 %: scan" : "within 15 %";
       return span.is_short() ? "within 20 %" : "within 5 %";

@@ -6,6 +6,9 @@
 
 namespace retroforge
 {
+  /// Whether the surface was deeper in a die than needs no word, or many of its edges spanned corners of dies.
+  bool is_in_die(const Summary::Depth &deepest, const Summary::Spanned &spanned, double largest_depth);
+
   /// Returns the warnings that a user must know to trust the numbers of a finished run: each a sentence or
   /// two, with a remedy.
   /// @param largest_depth  of the surface in a die, over the element size, that needs no word

@@ -32,6 +32,10 @@ namespace retroforge
     unsigned int cuts       = 0;       ///< increments within that were halved
     unsigned int remeshed   = 0;       ///< within and before, but for one before the first increment
 
+    /// Metal was deeper in a die, or edges spanned more of its corners, than needs no word: what it takes to come out
+    /// again follows single nodes.
+    bool in_die = false;
+
     /// Few increments make the value.
     bool is_short() const { return part < 0.35; }
   };

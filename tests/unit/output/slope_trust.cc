@@ -101,5 +101,10 @@ int main()
               trust_in_slope(once, 4e-4, false).c_str(),
               trust_in_slope(few_once, -0.0049, false).c_str(),
               trust_in_slope(few_once, 0.01, true).c_str());
+  ValueSpan sunk = none;
+  sunk.in_die    = true;
+  std::printf("metal in a die: [%s], proportional: [%s]\n",
+              trust_in_slope(sunk, 0.01, false).c_str(),
+              trust_in_slope(sunk, 0.01, true).c_str());
   std::printf("no increments: part %.0f\n", span_of({}, {}).part);
 }
