@@ -47,18 +47,25 @@ namespace retroforge
       const auto delta        = [&](const Vec3 &x, const DieFeature &feature) {
         return value_of(die.project(Vector3<Number>(x), view.states[d], feature).delta);
       };
-      Seen seen;
+      Seen              seen;
+      std::vector<bool> touches(view.mesh.n_nodes(), false); // by itself, as far as can be
       for (NodeIndex k = 0; k < view.mesh.n_nodes(); ++k)
         if (view.topology.is_on_surface(k))
         {
           const Vec3       x       = values(view.X[k]);
           const DieFeature feature = die.closest(x, displacement, gap);
-          if (feature.found() && delta(x, feature) < gap)
+          if (!feature.found())
+            continue;
+          const double off = delta(x, feature);
+          if (off < gap)
             seen.nodes.emplace(k, feature);
+          touches[k] = off <= 0.;
         }
       for (std::size_t e = 0; e < view.topology.surface_edges.size() && die.surface(); ++e)
       {
-        const auto      &nodes   = view.topology.surface_edges[e];
+        const auto &nodes = view.topology.surface_edges[e];
+        if (touches[nodes[0]] && touches[nodes[1]])
+          continue;
         const Vec3       x       = values(middle_of(view.X, nodes));
         const DieFeature feature = die.closest(x, displacement, gap);
         if (!feature.found() || !(delta(x, feature) < gap))
