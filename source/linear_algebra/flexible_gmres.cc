@@ -380,6 +380,8 @@ namespace retroforge
       r->MvScale(1. / residual);
       (*z)(0, 0) = residual;
       gmres.initializeGmres(first);
+      if (space)
+        *space = KrylovSpace(); // directions before take the same room
       const auto images =
         std::shared_ptr<Directions>(space ? dynamic_cast<Directions *>(X->Clone(room)) : nullptr);
       matrix->keep_in(images);
