@@ -56,10 +56,7 @@ namespace retroforge
     {
       return {skin_arguments(flow, k, touching, skin[k], Number(1.)), T[k], partner[k]};
     }
-  } // namespace
 
-  namespace
-  {
     /// The nodes of a face that touches.
     template <typename Number>
     std::array<NodeIndex, 3> nodes_of(const ThermalSurface<Number> &surface, const TouchingFace<Number> &face)
