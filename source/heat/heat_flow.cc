@@ -197,8 +197,7 @@ namespace retroforge
           },
           x_bar);
         skin_bar[k] = x_bar.e;
-        bar.dt += x_bar.dt;
-        nodes.reverse_arguments(flow, k, touching, x_bar, bar);
+        nodes.reverse_arguments(flow, k, touching, dt, x_bar, bar);
       }
     nodes.reverse_touching(flow, bar);
   }

@@ -197,7 +197,7 @@ namespace retroforge
         T_bar[k] += x_bar.T;
         partner_bar[k] = x_bar.partner;
         skin_bar[k] += x_bar.skin.e;
-        nodes.reverse_arguments(flow, k, touching, x_bar.skin, bar);
+        nodes.reverse_arguments(flow, k, touching, 1., x_bar.skin, bar);
       }
     }
     for (std::size_t i = 0; i < flow.surface.touching.size(); ++i)

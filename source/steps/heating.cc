@@ -8,6 +8,12 @@
 
 namespace retroforge
 {
+  enum class HalfOfIncrement
+  {
+    first,
+    second
+  };
+
   /// A time that heat flows, in steps.
   template <typename Number>
   struct Spell
@@ -78,55 +84,97 @@ namespace retroforge
       return of == Of::dwell ? heat.dwell_film : heat.contact_film;
     }
 
+    /// Where the dies stand, and how they move, for the first half; where they stand for the second.
     StrokeStep place_of(const HalfOfIncrement half, const StrokeStep &at)
     {
-      return {half == HalfOfIncrement::first ? at.stroke : at.stroke + at.step, 0., at.operation};
+      return half == HalfOfIncrement::first ? at : StrokeStep{at.stroke + at.step, 0., at.operation};
+    }
+
+    /// Metal comes nearer to dies under the press only.
+    template <typename Number>
+    ThermalReach reach_of(const Spell<Number> &spell, const HeatLaw<Number> &heat, const StrokeStep &at)
+    {
+      return {value_of(heat.gap), spell.of == Spell<Number>::Of::press ? at.step : 0.};
+    }
+
+    /// Lets heat flow for a spell.
+    template <typename Number>
+    void conduct_for(const Spell<Number>             &spell,
+                     const NetworkEdges              &edges,
+                     const ConductionNetwork<Number> &network,
+                     const ThermalSurface<Number>    &surface,
+                     const HeatLaw<Number>           &heat,
+                     const Physics<Number>           &physics,
+                     WorkpieceState<3, Number>       &state)
+    {
+      if (spell.heals())
+        heal_skins(surface, heat, spell.time, state.skin);
+      for (const double part : spell.parts)
+        conduct({edges, network, surface, heat, film_of(heat, spell.of), physics.dies},
+                Number(part * spell.time),
+                state.temperature,
+                state.skin);
     }
   } // namespace
 
   template <typename Number>
-  Number conduct_over(const HalfOfIncrement       half,
-                      const Scene                &scene,
-                      const NetworkEdges         &edges,
-                      const Process<Number>      &process,
-                      const StrokeStep           &at,
-                      const NodalVectors<Number> &X,
-                      WorkpieceState<3, Number>  &state)
+  ThermalSurface<Number> conduct_before(const Scene               &scene,
+                                        const NetworkEdges        &edges,
+                                        const Process<Number>     &process,
+                                        const StrokeStep          &at,
+                                        WorkpieceState<3, Number> &state)
   {
-    Number heat(0.);
+    ThermalSurface<Number> surface;
     if (!process.heat.conducts())
-      return heat;
-    const auto   dies    = process.over(place_of(half, at)).dies;
-    const auto   network = conduction_network(scene.mesh, edges, X);
-    const double gap     = value_of(process.heat.gap);
-    for (const auto &spell : spells_of(half, process, at))
+      return surface;
+    const auto physics = process.over(place_of(HalfOfIncrement::first, at));
+    const auto network = conduction_network(scene.mesh, edges, state.X);
+    const auto view    = scene.view(physics.dies, state.X, &state.velocity);
+    for (const auto &spell : spells_of(HalfOfIncrement::first, process, at))
     {
-      const auto surface = thermal_surface(scene.view(dies, X), spell.touch, gap);
-      if (spell.heals())
-        heal_skins(surface, process.heat, spell.time, state.skin);
-      for (const double part : spell.parts)
-        heat += conduct({edges, network, surface, process.heat, film_of(process.heat, spell.of), dies},
-                        Number(part * spell.time),
-                        state.temperature,
-                        state.skin);
+      surface = thermal_surface(view, spell.touch, reach_of(spell, process.heat, at));
+      conduct_for(spell, edges, network, surface, process.heat, physics, state);
     }
-    return heat;
+    return surface;
   }
 
-  template double conduct_over(HalfOfIncrement,
-                               const Scene &,
-                               const NetworkEdges &,
-                               const Process<double> &,
-                               const StrokeStep &,
-                               const NodalVectors<double> &,
-                               WorkpieceState<3, double> &);
-  template Dual   conduct_over(HalfOfIncrement,
-                               const Scene &,
-                               const NetworkEdges &,
-                               const Process<Dual> &,
-                               const StrokeStep &,
-                               const NodalVectors<Dual> &,
-                               WorkpieceState<3, Dual> &);
+  template <typename Number>
+  void conduct_after(const ThermalSurface<Number> &start,
+                     const Scene                  &scene,
+                     const NetworkEdges           &edges,
+                     const Process<Number>        &process,
+                     const StrokeStep             &at,
+                     const NodalVectors<Number>   &X,
+                     WorkpieceState<3, Number>    &state)
+  {
+    if (!process.heat.conducts())
+      return;
+    const auto physics = process.over(place_of(HalfOfIncrement::second, at));
+    const auto network = conduction_network(scene.mesh, edges, X);
+    for (const auto &spell : spells_of(HalfOfIncrement::second, process, at))
+    {
+      const auto surface =
+        thermal_surface_after(start, scene.view(physics.dies, X), spell.touch, value_of(process.heat.gap));
+      conduct_for(spell, edges, network, surface, process.heat, physics, state);
+    }
+  }
+
+#define RETROFORGE_INSTANTIATE(Number)                                          \
+  template ThermalSurface<Number> conduct_before(const Scene &,                 \
+                                                 const NetworkEdges &,          \
+                                                 const Process<Number> &,       \
+                                                 const StrokeStep &,            \
+                                                 WorkpieceState<3, Number> &);  \
+  template void                   conduct_after(const ThermalSurface<Number> &, \
+                                                const Scene &,                  \
+                                                const NetworkEdges &,           \
+                                                const Process<Number> &,        \
+                                                const StrokeStep &,             \
+                                                const NodalVectors<Number> &,   \
+                                                WorkpieceState<3, Number> &);
+  RETROFORGE_INSTANTIATE(double)
+  RETROFORGE_INSTANTIATE(Dual)
+#undef RETROFORGE_INSTANTIATE
 
   std::array<std::vector<double>, 2> surface_temperatures(const Scene                     &scene,
                                                           const Process<double>           &process,
@@ -140,20 +188,26 @@ namespace retroforge
     return surface_temperatures(heat.flow, state.temperature, state.skin);
   }
 
+  /// Steps of a half, remembered.
   struct ReversibleConduction::Steps
   {
     const Scene                        &scene;
     const NetworkEdges                 &edges;
     const Process<double>              &process;
+    const HalfOfIncrement               half;
     const StrokeStep                    at, place;
     const NodalVectors<double>         &X;
-    const std::vector<DieState<double>> dies       = process.over(place).dies;
-    const ConductionNetwork<double>     network    = conduction_network(scene.mesh, edges, X);
-    std::vector<Spell<double>>          spells     = {};
+    const NodalVectors<double>         *velocity   = nullptr; ///< of the increment before
+    const Steps                        *earlier    = nullptr; ///< the first half, of a second one
+    std::vector<DieState<double>>       dies       = process.over(place).dies;
+    ConductionNetwork<double>           network    = conduction_network(scene.mesh, edges, X);
+    std::vector<Spell<double>>          spells     = spells_of(half, process, at);
     std::vector<ThermalSurface<double>> surfaces   = {}; ///< of each spell
     std::vector<NodeField<double>>      not_healed = {}; ///< skins before each
     /// Temperatures and skins before each step of each spell.
     std::vector<std::vector<std::pair<NodeField<double>, NodeField<double>>>> before = {};
+
+    ContactView<double> view() const { return scene.view(dies, X, velocity); }
 
     HeatFlow<double> flow(const std::size_t i) const
     {
@@ -163,72 +217,46 @@ namespace retroforge
     {
       conduct(flow(i), part * spells[i].time, T, skin);
     }
-  };
 
-  ReversibleConduction::ReversibleConduction(const HalfOfIncrement            half,
-                                             const Scene                     &scene,
-                                             const NetworkEdges              &edges,
-                                             const Process<double>           &process,
-                                             const StrokeStep                &at,
-                                             const NodalVectors<double>      &X,
-                                             const WorkpieceState<3, double> &state)
-  {
-    if (!process.heat.conducts())
-      return;
-    const auto steps       = std::make_shared<Steps>(Steps{scene, edges, process, at, place_of(half, at), X});
-    steps->spells          = spells_of(half, process, at);
-    const auto        view = scene.view(steps->dies, X);
-    NodeField<double> T = state.temperature, skin = state.skin;
-    for (std::size_t i = 0; i < steps->spells.size(); ++i)
+    /// Goes through all steps but the last.
+    void go(NodeField<double> T, NodeField<double> skin)
     {
-      const Spell<double> &spell = steps->spells[i];
-      steps->surfaces.push_back(thermal_surface(view, spell.touch, process.heat.gap));
-      steps->not_healed.push_back(skin);
-      if (spell.heals())
-        heal_skins(steps->surfaces[i], process.heat, spell.time, skin);
-      auto &before = steps->before.emplace_back();
-      for (const double part : spell.parts)
+      for (std::size_t i = 0; i < spells.size(); ++i)
       {
-        before.emplace_back(T, skin);
-        // What the last one leads to only take() asks for.
-        if (i + 1 < steps->spells.size() || before.size() < spell.parts.size())
-          steps->take(i, part, T, skin);
+        const Spell<double> &spell = spells[i];
+        surfaces.push_back(
+          earlier ? thermal_surface_after(earlier->surfaces.back(), view(), spell.touch, process.heat.gap)
+                  : thermal_surface(view(), spell.touch, reach_of(spell, process.heat, at)));
+        not_healed.push_back(skin);
+        if (spell.heals())
+          heal_skins(surfaces[i], process.heat, spell.time, skin);
+        auto &states = before.emplace_back();
+        for (const double part : spell.parts)
+        {
+          states.emplace_back(T, skin);
+          if (i + 1 < spells.size() || states.size() < spell.parts.size())
+            take(i, part, T, skin);
+        }
       }
     }
-    steps_ = steps;
-  }
 
-  void ReversibleConduction::take(WorkpieceState<3, double> &state) const
-  {
-    if (!steps_)
-      return;
-    std::tie(state.temperature, state.skin) = steps_->before.back().back();
-    steps_->take(
-      steps_->spells.size() - 1, steps_->spells.back().parts.back(), state.temperature, state.skin);
-  }
-
-  void ReversibleConduction::reverse(std::vector<Costate> &costates) const
-  {
-    if (!steps_)
-      return;
-    using Of            = Spell<double>::Of;
-    const Steps &of     = *steps_;
-    const auto  &spells = of.spells;
-    const auto   view   = of.scene.view(of.dies, of.X);
-    const double gap    = of.process.heat.gap;
-    for (Costate &costate : costates)
+    /// Takes a costate back over all of them.
+    /// @param start_bar  in what touches under the press in the first half, from what the second made of it on entry
+    void reverse(Costate &costate, ThermalSurfaceBar &start_bar) const
     {
+      using Of                             = Spell<double>::Of;
       WorkpieceState<3, double> &workpiece = costate.workpiece;
-      if (is_zero(workpiece.temperature) && is_zero(workpiece.skin))
-        continue;
-      PhysicsBar                physics(of.scene.dies);
-      ConductionNetwork<double> network_bar = no_derivatives(of.network);
-      Waiting<double>           waiting_bar;
-      double                    press_bar = 0.; // in the increment's time
+      PhysicsBar                 physics(scene.dies);
+      ConductionNetwork<double>  network_bar = no_derivatives(network);
+      Waiting<double>            waiting_bar;
+      double                     press_bar = 0.; // in the increment's time
       for (std::size_t i = spells.size(); i-- > 0;)
       {
-        ThermalSurfaceBar surface_bar(of.surfaces[i]);
-        double            time_bar = 0.;
+        const bool        last = i + 1 == spells.size();
+        ThermalSurfaceBar surface_bar(surfaces[i]);
+        if (!earlier && last)
+          surface_bar = start_bar;
+        double time_bar = 0.;
         for (std::size_t s = spells[i].parts.size(); s-- > 0;)
         {
           double      dt_bar = 0.;
@@ -238,23 +266,39 @@ namespace retroforge
                           film_of(physics.heat, spells[i].of),
                           physics.dies,
                           dt_bar};
-          reverse_conduct(of.flow(i),
+          reverse_conduct(flow(i),
                           spells[i].parts[s] * spells[i].time,
-                          of.before[i][s].first,
-                          of.before[i][s].second,
+                          before[i][s].first,
+                          before[i][s].second,
                           workpiece.temperature,
                           workpiece.skin,
                           bar);
           time_bar += spells[i].parts[s] * dt_bar;
         }
         if (spells[i].heals())
-          reverse_heal_skins(of.surfaces[i],
-                             of.process.heat,
+          reverse_heal_skins(surfaces[i],
+                             process.heat,
                              spells[i].time,
-                             of.not_healed[i],
+                             not_healed[i],
                              workpiece.skin,
                              {surface_bar, physics.heat, time_bar});
-        reverse_thermal_surface(view, of.surfaces[i], gap, surface_bar, workpiece.X, physics.dies);
+        if (earlier)
+          reverse_thermal_surface_after(earlier->surfaces.back(),
+                                        view(),
+                                        surfaces[i],
+                                        process.heat.gap,
+                                        surface_bar,
+                                        start_bar,
+                                        workpiece.X,
+                                        physics.dies);
+        else
+          reverse_thermal_surface(view(),
+                                  surfaces[i],
+                                  reach_of(spells[i], process.heat, at),
+                                  surface_bar,
+                                  workpiece.X,
+                                  physics.dies,
+                                  velocity && !velocity->empty() ? &workpiece.velocity : nullptr);
         switch (spells[i].of)
         {
           case Of::transfer:
@@ -268,14 +312,87 @@ namespace retroforge
             break;
         }
       }
-      reverse_conduction_network(of.scene.mesh, of.edges, of.X, network_bar, workpiece.X);
+      reverse_conduction_network(scene.mesh, edges, X, network_bar, workpiece.X);
       costate.process.add_once([&](Process<double> &part) {
-        reverse_over(of.process, of.place, 0., physics, part);
-        PhysicsBar time(of.scene.dies);
+        reverse_over(process, place, 0., physics, part);
+        PhysicsBar time(scene.dies);
         time.dt = press_bar;
-        reverse_over(of.process, of.at, 0., time, part);
-        add_numbers(waiting_bar, part.operations[of.at.operation].waiting);
+        reverse_over(process, at, 0., time, part);
+        add_numbers(waiting_bar, part.operations[at.operation].waiting);
       });
     }
+  };
+
+  ReversibleConduction::ReversibleConduction(const Scene                     &scene,
+                                             const NetworkEdges              &edges,
+                                             const Process<double>           &process,
+                                             const StrokeStep                &at,
+                                             const WorkpieceState<3, double> &state)
+  {
+    if (!process.heat.conducts())
+      return;
+    const auto steps = std::make_shared<Steps>(Steps{scene,
+                                                     edges,
+                                                     process,
+                                                     HalfOfIncrement::first,
+                                                     at,
+                                                     place_of(HalfOfIncrement::first, at),
+                                                     state.X,
+                                                     &state.velocity});
+    steps->go(state.temperature, state.skin);
+    first_ = steps;
+  }
+
+  void ReversibleConduction::take(WorkpieceState<3, double> &state) const
+  {
+    if (!first_)
+      return;
+    std::tie(state.temperature, state.skin) = first_->before.back().back();
+    first_->take(
+      first_->spells.size() - 1, first_->spells.back().parts.back(), state.temperature, state.skin);
+  }
+
+  namespace
+  {
+    bool follows_heat(const Costate &costate)
+    {
+      return !is_zero(costate.workpiece.temperature) || !is_zero(costate.workpiece.skin);
+    }
+  } // namespace
+
+  void ReversibleConduction::reverse_after(const NodalVectors<double>      &X,
+                                           const WorkpieceState<3, double> &state,
+                                           std::vector<Costate>            &costates)
+  {
+    if (!first_)
+      return;
+    const Steps &first = *first_;
+    Steps        second{first.scene,
+                 first.edges,
+                 first.process,
+                 HalfOfIncrement::second,
+                 first.at,
+                 place_of(HalfOfIncrement::second, first.at),
+                 X,
+                 nullptr,
+                 &first};
+    second.go(state.temperature, state.skin);
+    start_bars_.assign(costates.size(), ThermalSurfaceBar(first.surfaces.back()));
+    for (std::size_t j = 0; j < costates.size(); ++j)
+      if (follows_heat(costates[j]))
+        second.reverse(costates[j], start_bars_[j]);
+  }
+
+  void ReversibleConduction::reverse_before(std::vector<Costate> &costates) const
+  {
+    if (!first_)
+      return;
+    AssertDimension(start_bars_.size(), costates.size());
+    for (std::size_t j = 0; j < costates.size(); ++j)
+      if (follows_heat(costates[j]))
+      {
+        ThermalSurfaceBar start_bar = start_bars_[j];
+        first_->reverse(costates[j], start_bar);
+      }
   }
 } // namespace retroforge

@@ -17,16 +17,24 @@ namespace retroforge
     return *edges_;
   }
 
-  std::optional<WorkpieceState<3, double>> Increment::conducted(const Process<double>           &process,
-                                                                const WorkpieceState<3, double> &state,
-                                                                const IncrementRecord           &record) const
+  template <typename Solve>
+  SolvedIncrement Increment::after_first_half(const Process<double>           &process,
+                                              const WorkpieceState<3, double> &state,
+                                              const IncrementRecord           &record,
+                                              const Solve                     &solve) const
   {
     if (!process.heat.conducts())
-      return {};
-    const auto timing = timings_.scope("heat");
-    auto       half   = state;
-    conduct_over(HalfOfIncrement::first, scene_, edges(), process, place(record), state.X, half);
-    return half;
+      return solve(state);
+    WorkpieceState<3, double> half = state;
+    ThermalSurface<double>    touching;
+    {
+      const auto timing = timings_.scope("heat");
+      touching          = conduct_before(scene_, edges(), process, place(record), half);
+    }
+    SolvedIncrement solved = solve(half);
+    solved.before          = without_motion(std::move(half));
+    solved.touching        = std::move(touching);
+    return solved;
   }
 
   SolvedIncrement Increment::forward(const Process<double>           &process,
@@ -35,22 +43,18 @@ namespace retroforge
                                      const InitialGuess              &guess,
                                      IncrementRecord                 &record)
   {
-    auto            half   = conducted(process, state, record);
-    SolvedIncrement solved = mechanics.forward(process, half ? *half : state, replay, guess, record);
-    if (half)
-      solved.before = without_motion(std::move(*half));
-    return solved;
+    return after_first_half(process, state, record, [&](const WorkpieceState<3, double> &at) {
+      return mechanics.forward(process, at, replay, guess, record);
+    });
   }
 
   SolvedIncrement Increment::recorded(const Process<double>           &process,
                                       const WorkpieceState<3, double> &state,
                                       const IncrementRecord           &record) const
   {
-    auto            half   = conducted(process, state, record);
-    SolvedIncrement solved = mechanics.recorded(process, half ? *half : state, record);
-    if (half)
-      solved.before = without_motion(std::move(*half));
-    return solved;
+    return after_first_half(process, state, record, [&](const WorkpieceState<3, double> &at) {
+      return mechanics.recorded(process, at, record);
+    });
   }
 
   WorkpieceState<3, double> Increment::advance(const Process<double>     &process,
@@ -67,7 +71,7 @@ namespace retroforge
     {
       const auto timing = timings_.scope("heat");
       worked            = without_motion(state);
-      conduct_over(HalfOfIncrement::second, scene_, edges(), process, place(record), solved.X, state);
+      conduct_after(solved.touching, scene_, edges(), process, place(record), solved.X, state);
     }
     state.X        = solved.X;
     state.velocity = solved.velocity;
@@ -79,8 +83,9 @@ namespace retroforge
                           const TangentObserver   &observer,
                           WorkpieceState<3, Dual> &state)
   {
+    ThermalSurface<Dual> touching;
     if (process.heat.conducts())
-      conduct_over(HalfOfIncrement::first, scene_, edges(), process, place(record), state.X, state);
+      touching = conduct_before(scene_, edges(), process, place(record), state);
     WorkpieceState<3, Dual> next = state;
     next.X =
       mechanics.tangent(process, state, record, [&](const EquilibriumView<Dual> &view, const Dual &dt) {
@@ -92,7 +97,7 @@ namespace retroforge
     for (std::size_t k = 0; k < next.X.size(); ++k)
       next.velocity[k] = (next.X[k] - state.X[k]) / dt;
     if (process.heat.conducts())
-      conduct_over(HalfOfIncrement::second, scene_, edges(), process, place(record), next.X, next);
+      conduct_after(touching, scene_, edges(), process, place(record), next.X, next);
     state = std::move(next);
   }
 
@@ -103,23 +108,18 @@ namespace retroforge
                           const AdjointSource             &source,
                           std::vector<Costate>            &costates)
   {
-    const double dt = process.duration(place(record));
-    if (process.heat.conducts())
-    {
-      const auto                 timing = timings_.scope("heat");
-      NodalVectors<double>       X      = state.X;
-      const NodalVectors<double> v      = mechanics.mean_velocity(record);
-      for (std::size_t k = 0; k < X.size(); ++k)
-        X[k] += dt * v[k];
-      ReversibleConduction(HalfOfIncrement::second, scene_, edges(), process, place(record), X, worked)
-        .reverse(costates);
-    }
+    const double                             dt = process.duration(place(record));
     std::optional<ReversibleConduction>      conduction;
     std::optional<WorkpieceState<3, double>> half;
     if (process.heat.conducts())
     {
       const auto timing = timings_.scope("heat");
-      conduction.emplace(HalfOfIncrement::first, scene_, edges(), process, place(record), state.X, state);
+      conduction.emplace(scene_, edges(), process, place(record), state);
+      NodalVectors<double>       X = state.X;
+      const NodalVectors<double> v = mechanics.mean_velocity(record);
+      for (std::size_t k = 0; k < X.size(); ++k)
+        X[k] += dt * v[k];
+      conduction->reverse_after(X, worked, costates);
       half = state;
       conduction->take(*half);
     }
@@ -135,7 +135,7 @@ namespace retroforge
     if (conduction)
     {
       const auto timing = timings_.scope("heat");
-      conduction->reverse(costates);
+      conduction->reverse_before(costates);
     }
   }
 } // namespace retroforge

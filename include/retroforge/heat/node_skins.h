@@ -70,6 +70,7 @@ namespace retroforge
     }
   };
 
+  /// The skin is there for the part of the time in which the node touches.
   template <typename Number>
   SkinArguments<Number> skin_arguments(const HeatFlow<Number>     &flow,
                                        const NodeIndex             k,
@@ -79,12 +80,12 @@ namespace retroforge
   {
     const HeatLaw<Number> &law = flow.law;
     return {e,
-            flow.contact_film * touching.weight[k],
+            flow.contact_film,
             law.conductivity,
             law.capacity,
             law.die_effusivity,
             flow.network.volumes[k] / touching.area[k],
-            dt};
+            touching.weight[k] * dt};
   }
 
   /// Derivatives in what of each node touches dies.
@@ -97,20 +98,22 @@ namespace retroforge
     {
     }
 
-    /// Reverse of skin_arguments(), but for e and dt.
+    /// Reverse of skin_arguments(), but for e.
     void reverse_arguments(const HeatFlow<double>      &flow,
                            const NodeIndex              k,
                            const NodeContacts<double>  &touching,
+                           const double                 dt,
                            const SkinArguments<double> &x_bar,
                            HeatFlowBar                 &bar)
     {
       const double of_node = touching.area[k];
-      bar.contact_film += x_bar.h * touching.weight[k];
+      bar.contact_film += x_bar.h;
+      bar.dt += x_bar.dt * touching.weight[k];
       bar.law.conductivity += x_bar.k;
       bar.law.capacity += x_bar.capacity;
       bar.law.die_effusivity += x_bar.die_effusivity;
       bar.network.volumes[k] += x_bar.depth / of_node;
-      weight[k] += x_bar.h * flow.contact_film;
+      weight[k] += x_bar.dt * dt;
       area[k] -= x_bar.depth * flow.network.volumes[k] / (of_node * of_node);
     }
 

@@ -77,10 +77,12 @@ namespace retroforge
     /// Of the mesh, found when heat first flows.
     const NetworkEdges &edges() const;
 
-    /// The state as the stages of mechanics find it, where heat flows.
-    std::optional<WorkpieceState<3, double>> conducted(const Process<double>           &process,
-                                                       const WorkpieceState<3, double> &state,
-                                                       const IncrementRecord           &record) const;
+    /// Solves mechanics from the state as its stages find it: `solve(state)`.
+    template <typename Solve>
+    SolvedIncrement after_first_half(const Process<double>           &process,
+                                     const WorkpieceState<3, double> &state,
+                                     const IncrementRecord           &record,
+                                     const Solve                     &solve) const;
 
     const Scene                        &scene_;
     Timings                            &timings_;

@@ -86,6 +86,8 @@ namespace retroforge
     NodalVectors<double>                            velocity; ///< of the nodes, its mean [mm/s]
     /// The state as its stages found it, without motion, where that is not the one at its start.
     std::optional<WorkpieceState<3, double>> before = {};
+    /// What touched its dies in the first half of its heat, where that flows.
+    ThermalSurface<double> touching = {};
 
     const SolvedStage &last() const { return *stages.back(); }
   };

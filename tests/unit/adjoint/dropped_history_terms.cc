@@ -75,6 +75,7 @@ namespace
     {"first half of conduction by position", Piece::first_half, Part::position, 0},
     {"first half of conduction by temperature and skin", Piece::first_half, Part::state, 0},
     {"first half of conduction by process", Piece::first_half, Part::number, 2},
+    {"first half of conduction by the velocity before", Piece::first_half, Part::velocity, 0},
     {"second half of conduction by position", Piece::second_half, Part::position, 0},
     {"second half of conduction by temperature and skin", Piece::second_half, Part::state, 0},
     {"second half of conduction by process", Piece::second_half, Part::number, 2},
@@ -170,6 +171,8 @@ namespace
       return;
     if (part == Part::position)
       costate.workpiece.X = before.workpiece.X;
+    if (part == Part::velocity)
+      costate.workpiece.velocity = before.workpiece.velocity;
     if (part == Part::number)
       costate.process = before.process;
     if (part == Part::state || part == Part::all)
@@ -191,7 +194,7 @@ namespace
     std::vector<std::pair<NodeField<double>, NodeField<double>>> before     = {}; // temperatures and skins
   };
 
-  /// What comes before the stroke of an operation, as conduct_over() has it, to be gone back over without a term.
+  /// What comes before the stroke of an operation, as conduct_before() has it, to be gone back over without a term.
   class Wait
   {
   public:
@@ -332,39 +335,29 @@ namespace
     WorkpieceState<3, double> state     = end.workpiece;
     Mechanics                &mechanics = run.first_epoch().increment.mechanics;
     const NetworkEdges        edges(run.scene.mesh, run.scene.topology);
-    const auto                X            = positions_of(run);
-    const auto                conduct_back = [&](const HalfOfIncrement            half,
-                                  const IncrementRecord           &record,
-                                  const NodalVectors<double>      &X,
-                                  const WorkpieceState<3, double> &before) {
-      const Piece piece = half == HalfOfIncrement::first ? Piece::first_half : Piece::second_half;
-      without(omission.piece == piece, omission.part, costate, [&] {
-        Process<double>           process = run.process();
-        WorkpieceState<3, double> waited  = before;
-        std::optional<Wait>       wait;
-        if (half == HalfOfIncrement::first && record.stroke == 0.)
-        {
-          wait.emplace(run, edges, place(record), waited);
-          process.operations[record.operation].waiting = {};
-        }
-        ReversibleConduction(half, run.scene, edges, process, place(record), X, waited).reverse(costates);
-        if (wait)
-          wait->reverse(omission, costate);
-      });
-    };
+    const auto                X = positions_of(run);
     for (unsigned int i = run.records.size(); i-- > 0;)
     {
-      const IncrementRecord      &record = run.records[i];
-      const double                dt     = run.process().duration(place(record));
-      const NodalVectors<double> &X_end  = X[i + 1];
-      state                              = end.remembered[i].start;
-      state.X                            = X[i];
+      const IncrementRecord &record = run.records[i];
+      const double           dt     = run.process().duration(place(record));
+      state                         = end.remembered[i].start;
+      state.X                       = X[i];
       state.velocity.clear(); // an operation begins at rest
       if (i > 0 && run.records[i - 1].operation == record.operation)
         state.velocity = mechanics.mean_velocity(run.records[i - 1]);
-      conduct_back(HalfOfIncrement::second, record, X_end, end.remembered[i].worked);
-      WorkpieceState<3, double> half = state;
-      conduct_over(HalfOfIncrement::first, run.scene, edges, run.process(), place(record), state.X, half);
+      WorkpieceState<3, double> waited = state, half = state;
+      Process<double>           process = run.process();
+      conduct_before(run.scene, edges, process, place(record), half);
+      std::optional<Wait> wait;
+      if (record.stroke == 0.)
+      {
+        wait.emplace(run, edges, place(record), waited);
+        process.operations[record.operation].waiting = {};
+      }
+      ReversibleConduction conduction(run.scene, edges, process, place(record), waited);
+      without(omission.piece == Piece::second_half, omission.part, costate, [&] {
+        conduction.reverse_after(X[i + 1], end.remembered[i].worked, costates);
+      });
       without(omission.piece == Piece::law, omission.part, costate, [&] {
         mechanics.reverse(
           run.process(),
@@ -375,7 +368,11 @@ namespace
           },
           costates);
       });
-      conduct_back(HalfOfIncrement::first, record, state.X, state);
+      without(omission.piece == Piece::first_half, omission.part, costate, [&] {
+        conduction.reverse_before(costates);
+        if (wait)
+          wait->reverse(omission, costate);
+      });
     }
     return {costate.workpiece.X, costate.process.complete()};
   }
@@ -386,6 +383,8 @@ int main(int argc, char **argv)
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Parameters                               p = block_of_two_strokes();
   p.press.increments                         = 2;
+  p.heat.gap                                 = 2.; // less than what the die goes: nodes arrive
+  p.dies[2].point                            = Vec3({0., 0., 28.});
   for (DieParameters &die : p.dies)
     die.friction_law = "Tresca";
   Objectives hottest;
@@ -395,8 +394,9 @@ int main(int argc, char **argv)
                      invalid_index,
                      nullptr,
                      std::make_unique<TemperatureObjective>(TemperatureExtreme::spread, 5.)});
-  ForgingProblem problem                            = two_strokes(p, Meshes::one, std::move(hottest));
-  problem.process.operations[1].waiting.resting_die = 2; // a tilted one, which nodes touch in part
+  ForgingProblem problem = two_strokes(p, Meshes::one, std::move(hottest));
+  // On a tilted die, which nodes touch in part, and before skins are healed.
+  problem.process.operations[1].waiting = {0.02, 0.4, 2};
   RecordedRun                run(std::move(problem));
   const NodalVectors<double> still(run.scene.mesh.n_nodes());
   const std::vector<Way>     ways    = {{{"random X_0", random_vectors(still.size()), 0., 0., {}}},
@@ -411,7 +411,7 @@ int main(int argc, char **argv)
                                         {{"times of waiting", still, 0., 0., {}}, [](Process<double> &dot) {
                                     dot.operations[0].waiting.transfer = 0.3;
                                     dot.operations[0].waiting.dwell    = 0.05;
-                                    dot.operations[1].waiting.transfer = 0.1;
+                                    dot.operations[1].waiting.transfer = 0.01;
                                     dot.operations[1].waiting.dwell    = 0.2;
                                   }}};
   const AdjointResult        library = run.adjoint(), complete = sweep(run, {"", Piece::none});

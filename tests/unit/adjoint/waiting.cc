@@ -57,7 +57,7 @@ namespace
     state.X                         = run.X_0();
     if (uniform)
       state.temperature.assign(state.temperature.size(), 1000.);
-    conduct_over(HalfOfIncrement::first, run.scene, edges, process, at, state.X, state);
+    conduct_before(run.scene, edges, process, at, state);
     return state;
   }
 

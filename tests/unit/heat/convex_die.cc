@@ -54,23 +54,6 @@ namespace
               << ", nor a flat die as far from the nodes: " << yes(of(flat, side) == 0.) << "\n";
   }
 
-  /// A function of all that the surface says.
-  template <typename Number>
-  Number value(const ThermalSurface<Number> &surface, RandomNumbers numbers)
-  {
-    Number sum(0.);
-    for (const auto &at : surface.touching)
-    {
-      sum += numbers.scalar() * at.weight;
-      sum += numbers.scalar() * at.area;
-    }
-    for (const auto &face : surface.faces)
-      sum += numbers.scalar() * face.area;
-    for (const Number &free : surface.free)
-      sum += numbers.scalar() * free;
-    return sum;
-  }
-
   void check_transpose()
   {
     RandomNumbers numbers;
@@ -91,18 +74,8 @@ namespace
         raised += delta > wide && at.weight > 0.01;
         in_part += at.weight > 0.01 && at.weight < 0.99;
       }
-    RandomNumbers     weights;
-    ThermalSurfaceBar bar(surface);
-    RandomNumbers     same = weights;
-    for (std::size_t i = 0; i < surface.touching.size(); ++i)
-    {
-      bar.weight[i]        = same.scalar();
-      bar.touching_area[i] = same.scalar();
-    }
-    for (double &of_face : bar.face_area)
-      of_face = same.scalar();
-    for (double &free : bar.free)
-      free = same.scalar();
+    const RandomNumbers           weights;
+    const ThermalSurfaceBar       bar = sum_of_all_bar(surface, weights);
     NodalVectors<double>          X_bar(body.mesh.n_nodes());
     std::vector<DieState<double>> dies_bar(1);
     dies_bar[0].vertices.resize(body.states[0].vertices.size());
@@ -113,20 +86,14 @@ namespace
     convert(body.states, states);
     double     of_X = 0., of_die = 0., of_vertices = 0.;
     const auto vary = [&](const Vec3 &x, const Vec3 &x_bar, Vector3<Dual> &to, double &sum) {
-      const Vec3 dot = numbers.vector();
-      for (unsigned int i = 0; i < 3; ++i)
-      {
-        to[i]                 = Dual(x[i]);
-        to[i].fastAccessDx(0) = dot[i];
-      }
-      sum += dot * x_bar;
+      sum += varied(x, numbers.vector(), to) * x_bar;
     };
     for (std::size_t k = 0; k < X.size(); ++k)
       vary(body.mesh.X[k], X_bar[k], X[k], of_X);
     vary(body.states[0].displacement, dies_bar[0].displacement, states[0].displacement, of_die);
     for (std::size_t v = 0; v < states[0].vertices.size(); ++v)
       vary(body.states[0].vertices[v], dies_bar[0].vertices[v], states[0].vertices[v], of_vertices);
-    const double forward = value(body.surface(states, X, wide), weights).dx(0),
+    const double forward = sum_of_all(body.surface(states, X, wide), weights).dx(0),
                  reverse = of_X + of_die + of_vertices;
     const auto counts    = [&](const double part) { return yes(std::abs(part / reverse) > 1e-3); };
     std::cout << "ends beyond the gap that touch, others in part: " << yes(raised > 2) << ' '

@@ -79,4 +79,62 @@ namespace retroforge
       return heat;
     }
   };
+
+  /// All that a surface says, by random weights.
+  template <typename Number>
+  Number sum_of_all(const ThermalSurface<Number> &surface, RandomNumbers numbers)
+  {
+    Number sum(0.);
+    for (const auto &at : surface.touching)
+    {
+      sum += numbers.scalar() * at.weight;
+      sum += numbers.scalar() * at.area;
+      sum += numbers.scalar() * at.later.part;
+      sum += numbers.scalar() * at.later.gap;
+    }
+    for (const auto &edge : surface.edges)
+    {
+      sum += numbers.scalar() * edge.later.part;
+      sum += numbers.scalar() * edge.later.gap;
+    }
+    for (const auto &face : surface.faces)
+      sum += numbers.scalar() * face.area;
+    for (const Number &free : surface.free)
+      sum += numbers.scalar() * free;
+    return sum;
+  }
+
+  /// Its derivatives.
+  inline ThermalSurfaceBar sum_of_all_bar(const ThermalSurface<double> &surface, RandomNumbers numbers)
+  {
+    ThermalSurfaceBar bar(surface);
+    for (std::size_t i = 0; i < surface.touching.size(); ++i)
+    {
+      bar.weight[i]        = numbers.scalar();
+      bar.touching_area[i] = numbers.scalar();
+      bar.later[i].part    = numbers.scalar();
+      bar.later[i].gap     = numbers.scalar();
+    }
+    for (auto &later : bar.later_of_edge)
+    {
+      later.part = numbers.scalar();
+      later.gap  = numbers.scalar();
+    }
+    for (auto *of : {&bar.face_area, &bar.free})
+      for (double &x : *of)
+        x = numbers.scalar();
+    return bar;
+  }
+
+  /// Sets a dual vector to x, with its derivative along a direction.
+  /// @return the direction
+  inline Vec3 varied(const Vec3 &x, const Vec3 &direction, Vector3<Dual> &to)
+  {
+    for (unsigned int i = 0; i < 3; ++i)
+    {
+      to[i]                 = Dual(x[i]);
+      to[i].fastAccessDx(0) = direction[i];
+    }
+    return direction;
+  }
 } // namespace retroforge
