@@ -189,7 +189,7 @@ namespace retroforge
 
     std::vector<NodalVectors<double>> starts; // of the increments that are left on the mesh at hand
 
-    const WorkpieceState<3, double> no_history;
+    const IncrementMemory no_history;
     epoch->increment.mechanics.forget();
     for (unsigned int i = end.increments; i-- > 0;)
     {
@@ -235,7 +235,7 @@ namespace retroforge
       std::vector<Costate> &of_increment = parts.empty() ? costates : parts;
       epoch->increment.reverse(run.process,
                                state,
-                               end.remembered.empty() ? no_history : end.remembered[i].worked,
+                               end.remembered.empty() ? no_history : end.remembered[i],
                                record,
                                source_of(run, rows_bar, combinations, i),
                                of_increment);

@@ -72,8 +72,7 @@ namespace retroforge
         for (unsigned int i = 0; i < 2; ++i)
           seen.nodes.emplace(nodes[i], ends[i]);
         const auto &images = view.topology.edge_images[e];
-        seen.edges.push_back(
-          {d, feature, nodes, {{invalid_index, invalid_index}}, {{images[0], images[1]}}, Number(0.)});
+        seen.edges.push_back({d, feature, nodes, {{invalid_index, invalid_index}}, {{images[0], images[1]}}});
       }
       return seen;
     }

@@ -139,24 +139,26 @@ namespace retroforge
   }
 
   template <typename Number>
-  void conduct_after(const ThermalSurface<Number> &start,
-                     const Scene                  &scene,
-                     const NetworkEdges           &edges,
-                     const Process<Number>        &process,
-                     const StrokeStep             &at,
-                     const NodalVectors<Number>   &X,
-                     WorkpieceState<3, Number>    &state)
+  ThermalSurface<Number> conduct_after(const ThermalSurface<Number> &start,
+                                       const Scene                  &scene,
+                                       const NetworkEdges           &edges,
+                                       const Process<Number>        &process,
+                                       const StrokeStep             &at,
+                                       const NodalVectors<Number>   &X,
+                                       WorkpieceState<3, Number>    &state)
   {
+    ThermalSurface<Number> surface;
     if (!process.heat.conducts())
-      return;
+      return surface;
     const auto physics = process.over(place_of(HalfOfIncrement::second, at));
     const auto network = conduction_network(scene.mesh, edges, X);
     for (const auto &spell : spells_of(HalfOfIncrement::second, process, at))
     {
-      const auto surface =
+      surface =
         thermal_surface_after(start, scene.view(physics.dies, X), spell.touch, value_of(process.heat.gap));
       conduct_for(spell, edges, network, surface, process.heat, physics, state);
     }
+    return surface;
   }
 
 #define RETROFORGE_INSTANTIATE(Number)                                          \
@@ -165,7 +167,7 @@ namespace retroforge
                                                  const Process<Number> &,       \
                                                  const StrokeStep &,            \
                                                  WorkpieceState<3, Number> &);  \
-  template void                   conduct_after(const ThermalSurface<Number> &, \
+  template ThermalSurface<Number> conduct_after(const ThermalSurface<Number> &, \
                                                 const Scene &,                  \
                                                 const NetworkEdges &,           \
                                                 const Process<Number> &,        \
@@ -197,25 +199,26 @@ namespace retroforge
     const HalfOfIncrement               half;
     const StrokeStep                    at, place;
     const NodalVectors<double>         &X;
+    const ThermalSurface<double>       &under_press;          ///< what touches dies
     const NodalVectors<double>         *velocity   = nullptr; ///< of the increment before
     const Steps                        *earlier    = nullptr; ///< the first half, of a second one
     std::vector<DieState<double>>       dies       = process.over(place).dies;
     ConductionNetwork<double>           network    = conduction_network(scene.mesh, edges, X);
     std::vector<Spell<double>>          spells     = spells_of(half, process, at);
-    std::vector<ThermalSurface<double>> surfaces   = {}; ///< of each spell
+    std::vector<ThermalSurface<double>> waiting    = {}; ///< what touches dies in each spell before the press
     std::vector<NodeField<double>>      not_healed = {}; ///< skins before each
     /// Temperatures and skins before each step of each spell.
     std::vector<std::vector<std::pair<NodeField<double>, NodeField<double>>>> before = {};
 
     ContactView<double> view() const { return scene.view(dies, X, velocity); }
 
+    const ThermalSurface<double> &surface(const std::size_t i) const
+    {
+      return i < waiting.size() ? waiting[i] : under_press;
+    }
     HeatFlow<double> flow(const std::size_t i) const
     {
-      return {edges, network, surfaces[i], process.heat, film_of(process.heat, spells[i].of), dies};
-    }
-    void take(const std::size_t i, const double part, NodeField<double> &T, NodeField<double> &skin) const
-    {
-      conduct(flow(i), part * spells[i].time, T, skin);
+      return {edges, network, surface(i), process.heat, film_of(process.heat, spells[i].of), dies};
     }
 
     /// Goes through all steps but the last.
@@ -224,18 +227,17 @@ namespace retroforge
       for (std::size_t i = 0; i < spells.size(); ++i)
       {
         const Spell<double> &spell = spells[i];
-        surfaces.push_back(
-          earlier ? thermal_surface_after(earlier->surfaces.back(), view(), spell.touch, process.heat.gap)
-                  : thermal_surface(view(), spell.touch, reach_of(spell, process.heat, at)));
+        if (spell.of != Spell<double>::Of::press)
+          waiting.push_back(thermal_surface(view(), spell.touch, reach_of(spell, process.heat, at)));
         not_healed.push_back(skin);
         if (spell.heals())
-          heal_skins(surfaces[i], process.heat, spell.time, skin);
+          heal_skins(surface(i), process.heat, spell.time, skin);
         auto &states = before.emplace_back();
         for (const double part : spell.parts)
         {
           states.emplace_back(T, skin);
           if (i + 1 < spells.size() || states.size() < spell.parts.size())
-            take(i, part, T, skin);
+            conduct(flow(i), part * spell.time, T, skin);
         }
       }
     }
@@ -253,7 +255,7 @@ namespace retroforge
       for (std::size_t i = spells.size(); i-- > 0;)
       {
         const bool        last = i + 1 == spells.size();
-        ThermalSurfaceBar surface_bar(surfaces[i]);
+        ThermalSurfaceBar surface_bar(surface(i));
         if (!earlier && last)
           surface_bar = start_bar;
         double time_bar = 0.;
@@ -276,16 +278,16 @@ namespace retroforge
           time_bar += spells[i].parts[s] * dt_bar;
         }
         if (spells[i].heals())
-          reverse_heal_skins(surfaces[i],
+          reverse_heal_skins(surface(i),
                              process.heat,
                              spells[i].time,
                              not_healed[i],
                              workpiece.skin,
                              {surface_bar, physics.heat, time_bar});
         if (earlier)
-          reverse_thermal_surface_after(earlier->surfaces.back(),
+          reverse_thermal_surface_after(earlier->under_press,
                                         view(),
-                                        surfaces[i],
+                                        surface(i),
                                         process.heat.gap,
                                         surface_bar,
                                         start_bar,
@@ -293,7 +295,7 @@ namespace retroforge
                                         physics.dies);
         else
           reverse_thermal_surface(view(),
-                                  surfaces[i],
+                                  surface(i),
                                   reach_of(spells[i], process.heat, at),
                                   surface_bar,
                                   workpiece.X,
@@ -327,7 +329,9 @@ namespace retroforge
                                              const NetworkEdges              &edges,
                                              const Process<double>           &process,
                                              const StrokeStep                &at,
-                                             const WorkpieceState<3, double> &state)
+                                             const WorkpieceState<3, double> &state,
+                                             const TouchedDies               &touching)
+      : touching_(touching)
   {
     if (!process.heat.conducts())
       return;
@@ -338,18 +342,10 @@ namespace retroforge
                                                      at,
                                                      place_of(HalfOfIncrement::first, at),
                                                      state.X,
+                                                     touching.first,
                                                      &state.velocity});
     steps->go(state.temperature, state.skin);
     first_ = steps;
-  }
-
-  void ReversibleConduction::take(WorkpieceState<3, double> &state) const
-  {
-    if (!first_)
-      return;
-    std::tie(state.temperature, state.skin) = first_->before.back().back();
-    first_->take(
-      first_->spells.size() - 1, first_->spells.back().parts.back(), state.temperature, state.skin);
   }
 
   namespace
@@ -374,10 +370,11 @@ namespace retroforge
                  first.at,
                  place_of(HalfOfIncrement::second, first.at),
                  X,
+                 touching_.second,
                  nullptr,
                  &first};
     second.go(state.temperature, state.skin);
-    start_bars_.assign(costates.size(), ThermalSurfaceBar(first.surfaces.back()));
+    start_bars_.assign(costates.size(), ThermalSurfaceBar(first.under_press));
     for (std::size_t j = 0; j < costates.size(); ++j)
       if (follows_heat(costates[j]))
         second.reverse(costates[j], start_bars_[j]);

@@ -57,25 +57,29 @@ namespace retroforge
     });
   }
 
-  WorkpieceState<3, double> Increment::advance(const Process<double>     &process,
-                                               const SolvedIncrement     &solved,
-                                               const IncrementRecord     &record,
-                                               WorkpieceState<3, double> &state) const
+  IncrementMemory Increment::advance(const Process<double>     &process,
+                                     const SolvedIncrement     &solved,
+                                     const IncrementRecord     &record,
+                                     WorkpieceState<3, double> &state) const
   {
+    IncrementMemory memory;
+    if (reads_history(process))
+      memory.start = without_motion(state);
     if (solved.before)
-      state = *solved.before;
+      state = memory.half = *solved.before;
     for (const auto &stage : solved.stages)
       add_history(stage->view(), solved.start->dt, state);
-    WorkpieceState<3, double> worked;
     if (process.heat.conducts())
     {
       const auto timing = timings_.scope("heat");
-      worked            = without_motion(state);
-      conduct_after(solved.touching, scene_, edges(), process, place(record), solved.X, state);
+      memory.worked     = without_motion(state);
+      memory.touching   = {
+          solved.touching,
+          conduct_after(solved.touching, scene_, edges(), process, place(record), solved.X, state)};
     }
     state.X        = solved.X;
     state.velocity = solved.velocity;
-    return worked;
+    return memory;
   }
 
   void Increment::tangent(const Process<Dual>     &process,
@@ -103,29 +107,30 @@ namespace retroforge
 
   void Increment::reverse(const Process<double>           &process,
                           const WorkpieceState<3, double> &state,
-                          const WorkpieceState<3, double> &worked,
+                          const IncrementMemory           &memory,
                           const IncrementRecord           &record,
                           const AdjointSource             &source,
                           std::vector<Costate>            &costates)
   {
-    const double                             dt = process.duration(place(record));
-    std::optional<ReversibleConduction>      conduction;
-    std::optional<WorkpieceState<3, double>> half;
+    const double                        dt = process.duration(place(record));
+    WorkpieceState<3, double>           half;
+    std::optional<ReversibleConduction> conduction;
     if (process.heat.conducts())
     {
       const auto timing = timings_.scope("heat");
-      conduction.emplace(scene_, edges(), process, place(record), state);
+      conduction.emplace(scene_, edges(), process, place(record), state, memory.touching);
       NodalVectors<double>       X = state.X;
       const NodalVectors<double> v = mechanics.mean_velocity(record);
       for (std::size_t k = 0; k < X.size(); ++k)
         X[k] += dt * v[k];
-      conduction->reverse_after(X, worked, costates);
-      half = state;
-      conduction->take(*half);
+      conduction->reverse_after(X, memory.worked, costates);
+      half          = memory.half;
+      half.X        = state.X;
+      half.velocity = state.velocity;
     }
     mechanics.reverse(
       process,
-      half ? *half : state,
+      conduction ? half : state,
       record,
       [&](const std::size_t j, const EquilibriumView<double> &view, EquilibriumBar &bar) {
         source(j, view, bar);

@@ -173,13 +173,11 @@ namespace retroforge
   {
     const NodalVectors<double> X_before      = state.workpiece.X;
     const CellField<double>    strain_before = state.workpiece.strain;
-    if (Increment::reads_history(process))
-      state.remembered.push_back({without_motion(state.workpiece), {}});
     {
       const auto timing = timings_.scope("checks");
-      auto       worked = state.epoch->increment.advance(process, solved, record, state.workpiece);
+      auto       memory = state.epoch->increment.advance(process, solved, record, state.workpiece);
       if (Increment::reads_history(process))
-        state.remembered.back().worked = std::move(worked);
+        state.remembered.push_back(std::move(memory));
     }
     state.next                 = state.epoch->increment.mechanics.guess_after(solved, record);
     const auto &discretization = state.epoch->scene.discretization;

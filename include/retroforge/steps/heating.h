@@ -14,6 +14,12 @@
 /// while it waits on the resting die, where dies stand at its start.
 namespace retroforge
 {
+  /// What touches dies under the press in either half of an increment.
+  struct TouchedDies
+  {
+    ThermalSurface<double> first, second;
+  };
+
   /// Takes temperatures and skins over the first half of an increment, and over what comes before the first one of an
   /// operation; changes nothing where heat does not flow.
   /// @param at     the increment
@@ -29,14 +35,15 @@ namespace retroforge
   /// Takes them over the second half.
   /// @param start  what conduct_before() returned
   /// @param X      where the nodes are at the end
+  /// @return what touches dies
   template <typename Number>
-  void conduct_after(const ThermalSurface<Number> &start,
-                     const Scene                  &scene,
-                     const NetworkEdges           &edges,
-                     const Process<Number>        &process,
-                     const StrokeStep             &at,
-                     const NodalVectors<Number>   &X,
-                     WorkpieceState<3, Number>    &state);
+  ThermalSurface<Number> conduct_after(const ThermalSurface<Number> &start,
+                                       const Scene                  &scene,
+                                       const NetworkEdges           &edges,
+                                       const Process<Number>        &process,
+                                       const StrokeStep             &at,
+                                       const NodalVectors<Number>   &X,
+                                       WorkpieceState<3, Number>    &state);
 
   /// Returns the temperatures of the metal's surface and of that of the dies where they touch, under the press after an
   /// increment (heat/heat_flow.h) [C]; none where heat does not flow.
@@ -50,15 +57,14 @@ namespace retroforge
   {
   public:
     /// Refers to all that it gets, and to nothing where heat does not flow.
-    /// @param state  at the start of the increment
+    /// @param state     at the start of the increment
+    /// @param touching  what both returned
     ReversibleConduction(const Scene                     &scene,
                          const NetworkEdges              &edges,
                          const Process<double>           &process,
                          const StrokeStep                &at,
-                         const WorkpieceState<3, double> &state);
-
-    /// Sets temperatures and skins to those after the first half, as conduct_before() does.
-    void take(WorkpieceState<3, double> &state) const;
+                         const WorkpieceState<3, double> &state,
+                         const TouchedDies               &touching);
 
     /// Reverse of conduct_after(): what of it hangs on the start of the increment is kept for reverse_before().
     /// @param X         where the nodes are at the end
@@ -73,6 +79,7 @@ namespace retroforge
 
   private:
     struct Steps;
+    const TouchedDies             &touching_;
     std::shared_ptr<const Steps>   first_;
     std::vector<ThermalSurfaceBar> start_bars_; ///< of each costate, in what touches in the first half
   };

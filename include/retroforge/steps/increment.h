@@ -12,8 +12,10 @@ namespace retroforge
   struct IncrementMemory
   {
     WorkpieceState<3, double> start; ///< the state at its start
-    WorkpieceState<3, double>
-      worked; ///< where heat flows: after mechanics and history, before the second half
+    // Where heat flows.
+    WorkpieceState<3, double> half;   ///< as the stages of mechanics find it
+    WorkpieceState<3, double> worked; ///< after mechanics and history, before the second half
+    TouchedDies               touching;
   };
 
   /// One increment of time as the list of its steps: heat that flows for half of it (steps/heating.h); mechanics,
@@ -47,11 +49,11 @@ namespace retroforge
                              const IncrementRecord           &record) const;
 
     /// Takes the state to the end of a solved increment.
-    /// @return IncrementMemory::worked
-    WorkpieceState<3, double> advance(const Process<double>     &process,
-                                      const SolvedIncrement     &solved,
-                                      const IncrementRecord     &record,
-                                      WorkpieceState<3, double> &state) const;
+    /// @return what reverse() asks for; nothing unless it reads_history()
+    IncrementMemory advance(const Process<double>     &process,
+                            const SolvedIncrement     &solved,
+                            const IncrementRecord     &record,
+                            WorkpieceState<3, double> &state) const;
 
     /// Takes the derivative of the state along (state, process) to the end of a recorded increment.
     /// @param observer  is called after each stage
@@ -62,11 +64,11 @@ namespace retroforge
 
     /// Takes costates from the end of a recorded increment to its start.
     /// @param state   at the start; all but motion may be missing unless reads_history()
-    /// @param worked  IncrementMemory::worked
+    /// @param memory  what advance() returned
     /// @param source  what objectives take from each stage
     void reverse(const Process<double>           &process,
                  const WorkpieceState<3, double> &state,
-                 const WorkpieceState<3, double> &worked,
+                 const IncrementMemory           &memory,
                  const IncrementRecord           &record,
                  const AdjointSource             &source,
                  std::vector<Costate>            &costates);

@@ -345,18 +345,20 @@ namespace
       state.velocity.clear(); // an operation begins at rest
       if (i > 0 && run.records[i - 1].operation == record.operation)
         state.velocity = mechanics.mean_velocity(run.records[i - 1]);
-      WorkpieceState<3, double> waited = state, half = state;
+      const IncrementMemory    &memory  = end.remembered[i];
       Process<double>           process = run.process();
-      conduct_before(run.scene, edges, process, place(record), half);
+      WorkpieceState<3, double> waited = state, half = memory.half;
+      half.X        = state.X;
+      half.velocity = state.velocity;
       std::optional<Wait> wait;
       if (record.stroke == 0.)
       {
         wait.emplace(run, edges, place(record), waited);
         process.operations[record.operation].waiting = {};
       }
-      ReversibleConduction conduction(run.scene, edges, process, place(record), waited);
+      ReversibleConduction conduction(run.scene, edges, process, place(record), waited, memory.touching);
       without(omission.piece == Piece::second_half, omission.part, costate, [&] {
-        conduction.reverse_after(X[i + 1], end.remembered[i].worked, costates);
+        conduction.reverse_after(X[i + 1], memory.worked, costates);
       });
       without(omission.piece == Piece::law, omission.part, costate, [&] {
         mechanics.reverse(
