@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
 """Conduction in whole runs: the heat of a closed body, temperatures that stay within what they are made of on twenty
-random scenes, the order in time, derivatives, a ball that stands off nodes, slopes against the trend, and what heat costs.
-run.py BUILD balance | bounds | order | derivatives | ball | trend | cost"""
+random scenes, the order in time, derivatives, a ball that stands off nodes, metal that arrives at dies, slopes against the trend, and what heat costs.
+run.py BUILD balance | bounds | order | derivatives | ball | arrivals | trend | cost"""
 import csv
+import json
 import math
 import os
 import random
@@ -122,6 +123,30 @@ def ball():
     case_tools.figure("ball", max(abs(t - found[2.5]) for t in found.values()) / (1100 - 200))
 
 
+def arrivals():
+    """Temperatures of dies by what moves them or the metal, on meshes that stay: slopes of nine designs against a cubic through the values, and what of
+    these lies off it. Increments are long: metal arrives in them."""
+    file = os.path.abspath("ball.stl")
+    dies.write(file, dies.sphere(22.0))
+    common = {"Remeshing/when": "never", "Objectives/names": "die temperature", "Output/fields every": 0, "Scan/points": 9}
+    small = {**common, "Billet/radius": 17, "Billet/height": 25, "Billet/symmetry planes": "0, -1, 0; -0.866025403784439, 0.5, 0",
+             "Die lower/friction": 0.3, "Die upper/friction": 0.3, "Die upper/shape": "stl", "Die upper/file": file, "Die upper/point": "0, 0, 25",
+             "Die upper/temperature": 200, "Press/stroke": 4.5, "Press/increments": 0, "Scan/parameter": "die upper/offset", "Scan/range": 0.002}
+    hub = {**common, "Press/stroke": 8, "Optimisation/objective": "", "Optimisation/at most": "", "Optimisation/lower bounds": "",
+           "Optimisation/upper bounds": "", "Optimisation/scales": "", "Scan/parameter": "billet/radius"}
+    noise = 0.0
+    for name, file_of, settings in (("ball_4.5", UPSETTING, {**small, "Billet/element size": 4.5}),
+                                    ("ball_3", UPSETTING, {**small, "Billet/element size": 3}), ("hub", HOT_HUB, hub)):
+        case_tools.run(BUILD, "scan", file_of, settings, name)
+        with open(os.path.join(name, "scan.json"), encoding="utf-8") as text:
+            found = json.load(text)["scans"][0]["objectives"][0]
+        noise = max(noise, found["noise_rms"])
+        print(f"{name}: {found['mean_value']:.1f} C, slope {found['mean_fit_slope']:.3f} K/mm, gradients beside it {100 * found['bias']:.2f} %, single ones "
+              f"{100 * found['roughness_max']:.1f} %; off the cubic {found['noise_rms']:.1e}", flush=True)
+    case_tools.figure("arrivals_off_cubic", noise)
+    case_tools.figure("arrivals_hub_slope", abs(found["bias"]))
+
+
 def trend():
     """The hot hub by the exponent of hardening, twelve designs within 20 %, meshes decided anew: the mean of their gradients against the slope of a parabola
     through their energies, and the standard deviation of that. Narrow intervals mislead: slopes through neighbours are printed, too."""
@@ -176,4 +201,4 @@ def cost():
 
 
 if __name__ == "__main__":
-    {"balance": balance, "bounds": bounds, "order": order, "derivatives": derivatives, "ball": ball, "trend": trend, "cost": cost}[sys.argv[2]]()
+    {"balance": balance, "bounds": bounds, "order": order, "derivatives": derivatives, "ball": ball, "arrivals": arrivals, "trend": trend, "cost": cost}[sys.argv[2]]()
