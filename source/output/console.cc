@@ -68,7 +68,9 @@ namespace retroforge
     std::stable_sort(order.begin(), order.end(), [&](const std::size_t a, const std::size_t b) {
       return std::abs(effect(a)) > std::abs(effect(b));
     });
-    const bool tells_trust = !objective.trust.empty();
+    const bool tells_trust = std::any_of(objective.trust.begin(),
+                                         objective.trust.end(),
+                                         [](const std::string &words) { return !words.empty(); });
     std::printf("\n  gradient of %s = %.10g%s\n  %-24s %14s   %18s   for +1 %%%s\n",
                 objective.name.c_str(),
                 objective.value,
@@ -88,7 +90,8 @@ namespace retroforge
                   unit.c_str());
       if (std::abs(parameter.scale - std::abs(mu[j])) > 1e-6 * parameter.scale) // of a length, or of 100 K
         std::printf(" (of %.4g %s)", parameter.scale, parameter.unit == "C" ? "K" : parameter.unit.c_str());
-      std::printf("%s%s\n", tells_trust ? "; " : "", tells_trust ? objective.trust[j].c_str() : "");
+      const std::string words = tells_trust ? objective.trust[j] : "";
+      std::printf("%s%s\n", words.empty() ? "" : "; ", words.c_str());
     }
   }
 

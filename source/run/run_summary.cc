@@ -7,6 +7,8 @@
 #include <retroforge/output/blas.h>
 #include <retroforge/run/run_summary.h>
 
+#include <algorithm>
+
 namespace retroforge
 {
   namespace
@@ -155,10 +157,23 @@ namespace retroforge
 
   void judge_slopes(const Combination                           &combination,
                     const std::vector<std::optional<ValueSpan>> &spans,
+                    const std::vector<IncrementDecisions>       &run,
                     const Design                                &design,
                     const std::vector<double>                   &mu,
                     ObjectiveSensitivity                        &sensitivity)
   {
+    constexpr double percent = 0.01;
+    const auto       effect  = [&](const std::size_t j) {
+      return percent * design.parameters()[j].scale * sensitivity.gradient[j];
+    };
+    if (sensitivity.unit == "C" || sensitivity.unit == "K")
+    {
+      const unsigned int remeshed = std::count_if(
+        run.begin(), run.end(), [&](const IncrementDecisions &at) { return at.remeshed && at.begin > 0.; });
+      for (std::size_t j = 0; j < mu.size(); ++j)
+        sensitivity.trust.push_back(trust_in_slope_of_temperature(remeshed, effect(j)));
+      return;
+    }
     // Of a sum, what made of the fewest increments and remeshed most often counts.
     ValueSpan worst;
     worst.part = 1.;
@@ -171,16 +186,13 @@ namespace retroforge
         worst.remeshed = std::max(worst.remeshed, spans[o]->remeshed);
         worst.in_die   = worst.in_die || spans[o]->in_die;
       }
-    constexpr double rounding = 1e-6, percent = 0.01;
-    const double     value = sensitivity.value;
+    constexpr double rounding = 1e-6;
+    const double     value    = sensitivity.value;
     for (std::size_t j = 0; j < mu.size(); ++j)
-    {
-      const double slope = sensitivity.gradient[j];
       sensitivity.trust.push_back(
         trust_in_slope(worst,
-                       percent * design.parameters()[j].scale * slope / value,
-                       std::abs(slope * mu[j] - value) <= rounding * std::abs(value)));
-    }
+                       effect(j) / value,
+                       std::abs(sensitivity.gradient[j] * mu[j] - value) <= rounding * std::abs(value)));
   }
 
   void summarise_objectives(const Case                                  &forging_case,
@@ -222,7 +234,7 @@ namespace retroforge
       for (const ObjectiveSensitivity &objective : sensitivities)
       {
         summary.parameters.back().gradient[objective.name] = objective.gradient[j];
-        if (!objective.trust.empty())
+        if (!objective.trust.empty() && !objective.trust[j].empty())
           summary.parameters.back().trust[objective.name] = objective.trust[j];
       }
     }

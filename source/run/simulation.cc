@@ -330,7 +330,8 @@ namespace retroforge
     for (std::size_t j = 0; j < sensitivities_.size(); ++j)
     {
       check_finite(sensitivities_[j], case_.design);
-      judge_slopes(case_.combinations[j], spans, case_.design, case_.mu, sensitivities_[j]);
+      judge_slopes(
+        case_.combinations[j], spans, output_->decisions(), case_.design, case_.mu, sensitivities_[j]);
       if (root_)
         print_gradient(sensitivities_[j], case_.design, case_.mu);
     }

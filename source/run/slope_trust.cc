@@ -15,6 +15,11 @@ namespace retroforge
     /// What remeshing scatters values by, from design to design, is felt in slopes of a smaller effect.
     constexpr double least_effect = 5e-3;
 
+    /// The same in temperatures, whose zero means nothing [K].
+    constexpr double least_warming = 3.;
+
+    constexpr const char *little = "little beside remeshing's scatter: scan";
+
     /// The most that single slopes of a class of values were off, rms over nearby designs.
     const char *measured(const ValueSpan &span)
     {
@@ -103,7 +108,11 @@ namespace retroforge
   {
     if (is_proportional)
       return "exact";
-    return span.remeshed > 0 && std::abs(effect) < least_effect ? "little beside remeshing's scatter: scan"
-                                                                : measured(span);
+    return span.remeshed > 0 && std::abs(effect) < least_effect ? little : measured(span);
+  }
+
+  std::string trust_in_slope_of_temperature(const unsigned int remeshed, const double effect)
+  {
+    return remeshed > 0 && std::abs(effect) < least_warming ? little : "";
   }
 } // namespace retroforge

@@ -27,9 +27,11 @@ namespace retroforge
                                                  const ObjectiveTrace                  &trace,
                                                  const std::vector<IncrementDecisions> &run);
 
-  /// Fills in how far the derivatives of a combination of objectives hold; where one of them has no span, nothing.
+  /// Fills in how far the derivatives of a combination of objectives hold; where one of them has no span, and it is no
+  /// temperature, nothing.
   void judge_slopes(const Combination                           &combination,
                     const std::vector<std::optional<ValueSpan>> &spans,
+                    const std::vector<IncrementDecisions>       &run,
                     const Design                                &design,
                     const std::vector<double>                   &mu,
                     ObjectiveSensitivity                        &sensitivity);

@@ -55,4 +55,10 @@ namespace retroforge
   /// @param effect  what 1 % of the parameter does to the value, over the value
   /// @param is_proportional  the value is proportional to the parameter, which moves no metal
   std::string trust_in_slope(const ValueSpan &span, double effect, bool is_proportional);
+
+  /// Returns the same of a temperature at the end: that it does not hold, where meshes are made anew and that scatters
+  /// the temperature by as much as 1 % of the parameter changes it; "" where nothing is known.
+  /// @param remeshed  increments on a new mesh, but for the first
+  /// @param effect    of 1 % of the parameter [K]
+  std::string trust_in_slope_of_temperature(unsigned int remeshed, double effect);
 } // namespace retroforge

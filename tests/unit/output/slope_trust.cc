@@ -8,7 +8,7 @@
 //     that of the first mesh. One over the last three increments has 0.3, one remeshing and one cut within; over the
 //     last two it begins on the new mesh, and no remeshing is within, but both count for it;
 //   - a note is made where few increments make the value and a decision lies within, and not elsewhere;
-//   - classes: nothing remeshed; once and twice, sum and few increments; less than remeshing scatters; exact.
+//   - classes: nothing remeshed; once and twice, sum and few increments; less than remeshing scatters; exact; temperatures.
 
 #include <retroforge/run/slope_trust.h>
 
@@ -106,5 +106,9 @@ int main()
   std::printf("metal in a die: [%s], proportional: [%s]\n",
               trust_in_slope(sunk, 0.01, false).c_str(),
               trust_in_slope(sunk, 0.01, true).c_str());
+  std::printf("temperatures: [%s], not remeshed: [%s], of more: [%s]\n",
+              trust_in_slope_of_temperature(2, -2.9).c_str(),
+              trust_in_slope_of_temperature(0, 0.1).c_str(),
+              trust_in_slope_of_temperature(2, 3.1).c_str());
   std::printf("no increments: part %.0f\n", span_of({}, {}).part);
 }
