@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/core/rank_sum.h>
+#include <retroforge/heat/thermal_surface.h>
 #include <retroforge/record/increment_record.h>
 #include <retroforge/solver/newton.h>
 #include <retroforge/solver/spent_power.h>
