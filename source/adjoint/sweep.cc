@@ -57,7 +57,7 @@ namespace retroforge
           add<NodalVectors<double>>(weight, bar.X, workpiece.X);
           add<std::vector<double>>(weight, bar.q, workpiece.strain);
           add<std::vector<double>>(weight, bar.T, workpiece.temperature);
-          add<std::vector<double>>(weight, bar.skin, workpiece.skin);
+          add<std::vector<Skin<double>>>(weight, bar.skin, workpiece.skin);
           add<std::vector<double>>(weight, bar.damage, workpiece.damage);
           PhysicsBar physics_bar(run.model.dies);
           add(weight, bar.heat, physics_bar.heat);

@@ -4,22 +4,14 @@
 #include <retroforge/heat/heat_flow.h>
 #include <retroforge/heat/node_skins.h>
 
+#include <optional>
+
 namespace retroforge
 {
   namespace
   {
     constexpr double stefan_boltzmann = 5.670374419e-11; // [mW/(mm² K⁴)]
     constexpr double absolute_zero    = -273.15;         // [C]
-
-    /// The skin after the time, and the mean of 1/(1 + R).
-    template <typename Number>
-    SkinStep<Number> beneath_contacts(const SkinArguments<Number> &of)
-    {
-      const auto [effusivity, metals_part] = joint_skins(of);
-      const SkinStep<Number> step          = skin_step(of.e, of.h, Number(effusivity * effusivity), of.dt);
-      const Number           y             = 1. / step.mean - 1.;
-      return {step.e, 1. / (1. + skin_resistance(of, metals_part, y))};
-    }
 
     /// Film of a free surface by convection and radiation.
     template <typename Number>
@@ -67,27 +59,125 @@ namespace retroforge
       };
     }
 
+    /// h/b, of metal and die together.
+    template <typename Number>
+    Number film_rate(const HeatFlow<Number> &flow)
+    {
+      const Number metal = metals_effusivity(flow.law.conductivity, flow.law.capacity);
+      return flow.contact_film / joint_effusivity(metal, flow.law.die_effusivity);
+    }
+
+    /// Where no die touches, skins heal.
+    std::optional<SkinsBeneathFilm> skins_beneath(const double rate)
+    {
+      return rate > 0. ? std::make_optional<SkinsBeneathFilm>(rate) : std::nullopt;
+    }
+
+    /// The time in which a node touches no die. It comes first: to a node that arrives.
+    template <typename Number>
+    Number open_time(const NodeContacts<Number> &touching, const NodeIndex k, const Number &dt)
+    {
+      const Number open = 1. - touching.weight[k];
+      return value_of(open) > 0. ? Number(open * dt) : Number(0.);
+    }
+
     /// The parts 1/(1 + R) of films to dies; skins go on.
     template <typename Number>
     std::vector<Number>
-    follow_skins(const HeatFlow<Number> &flow, const Number &dt, std::vector<Number> &skin)
+    follow_skins(const HeatFlow<Number> &flow, const Number &dt, std::vector<Skin<Number>> &skin)
     {
       const NodeContacts<Number> touching(flow);
+      const Number               rate = film_rate(flow);
+      const auto                 film = skins_beneath(value_of(rate));
       std::vector<Number>        parts(skin.size(), Number(1.));
       for (NodeIndex k = 0; k < skin.size(); ++k)
+      {
+        if (value_of(drop_of(skin[k])) > 0.)
+          skin[k] = healed(skin[k], open_time(touching, k, dt));
         if (touching.has_film(flow, k))
         {
-          const auto step = beneath_contacts(skin_arguments(flow, k, touching, skin[k], dt));
-          skin[k]         = step.e;
-          parts[k]        = step.mean;
+          const auto step = skin_step(*film, rate, skin[k], Number(touching.weight[k] * dt));
+          skin[k]         = step.after;
+          parts[k]        = 1. / drops_at(skin_arguments(flow, k, touching, step.mean)).all;
         }
+      }
       return parts;
+    }
+
+    /// Reverse of follow_skins().
+    /// @param skin      before
+    /// @param skin_bar  derivatives in those after on entry, in those before on exit
+    void reverse_follow_skins(const HeatFlow<double>          &flow,
+                              const double                     dt,
+                              const std::vector<Skin<double>> &skin,
+                              const std::vector<double>       &parts_bar,
+                              std::vector<Skin<double>>       &skin_bar,
+                              HeatFlowBar                     &bar)
+    {
+      const NodeContacts<double> touching(flow);
+      NodeContactsBar            nodes(flow);
+      const double               rate     = film_rate(flow);
+      const auto                 film     = skins_beneath(rate);
+      double                     rate_bar = 0.;
+      for (NodeIndex k = 0; k < skin.size(); ++k)
+      {
+        const bool   is_there = drop_of(skin[k]) > 0.;
+        const double open     = open_time(touching, k, dt);
+        if (touching.has_film(flow, k))
+        {
+          using Partial                 = Sacado::Fad::SFad<double, n_skin_arguments>;
+          const double           time   = touching.weight[k] * dt;
+          const Skin<double>     before = is_there ? healed(skin[k], open) : skin[k];
+          SkinArguments<double>  x_bar  = skin_arguments(flow, k, touching, film->step(before, time).mean);
+          SkinArguments<Partial> x;
+          int                    i = 0;
+          for_each_number(
+            [&](const double value, Partial &to) { to = Partial(n_skin_arguments, i++, value); }, x_bar, x);
+          const Partial part = 1. / drops_at(x).all;
+          i                  = 0;
+          for_each_number([&](double &to) { to = parts_bar[k] * part.dx(i++); }, x_bar);
+          nodes.reverse_arguments(flow, k, touching, x_bar, bar);
+          const SkinStep<double> step_bar{skin_bar[k], x_bar.drops};
+          const auto             slopes = film->slopes(before, time);
+          const auto             along  = [&](const SkinStep<double> &slope) {
+            return slope.after * step_bar.after + slope.mean * step_bar.mean;
+          };
+          rate_bar += along(slopes[0]);
+          const double time_bar = along(slopes[1]);
+          nodes.weight[k] += time_bar * dt;
+          bar.dt += time_bar * touching.weight[k];
+          skin_bar[k] = film->reverse_carried(step_bar, time);
+        }
+        const Skin<double> healed_bar = skin_bar[k];
+        if (is_there)
+          skin_bar[k] = healed(healed_bar, open);
+        if (is_there && open > 0.)
+        {
+          double open_bar = 0.;
+          for (unsigned int j = 0; j < n_skin_modes; ++j)
+            open_bar -= skin_rates[j] * skin_bar[k][j] * skin[k][j];
+          nodes.weight[k] -= open_bar * dt;
+          bar.dt += open_bar * (1. - touching.weight[k]);
+        }
+      }
+      nodes.reverse_touching(flow, bar);
+
+      // rate = h (1/b_m + 1/b_d)
+      const double metal = metals_effusivity(flow.law.conductivity, flow.law.capacity),
+                   die   = flow.law.die_effusivity;
+      bar.contact_film += rate_bar * rate / flow.contact_film;
+      const double metal_bar = -rate_bar * flow.contact_film / (metal * metal);
+      bar.law.conductivity += metal_bar * 0.5 * metal / flow.law.conductivity;
+      bar.law.capacity += metal_bar * 0.5 * metal / flow.law.capacity;
+      bar.law.die_effusivity -= rate_bar * flow.contact_film / (die * die);
     }
   } // namespace
 
   template <typename Number>
-  Number
-  conduct(const HeatFlow<Number> &flow, const Number &dt, std::vector<Number> &T, std::vector<Number> &skin)
+  Number conduct(const HeatFlow<Number>    &flow,
+                 const Number              &dt,
+                 std::vector<Number>       &T,
+                 std::vector<Skin<Number>> &skin)
   {
     AssertDimension(T.size(), flow.network.volumes.size());
     AssertDimension(skin.size(), T.size());
@@ -104,19 +194,19 @@ namespace retroforge
   }
 
   template double
-  conduct(const HeatFlow<double> &, const double &, std::vector<double> &, std::vector<double> &);
-  template Dual conduct(const HeatFlow<Dual> &, const Dual &, std::vector<Dual> &, std::vector<Dual> &);
+  conduct(const HeatFlow<double> &, const double &, std::vector<double> &, std::vector<Skin<double>> &);
+  template Dual conduct(const HeatFlow<Dual> &, const Dual &, std::vector<Dual> &, std::vector<Skin<Dual>> &);
 
-  void reverse_conduct(const HeatFlow<double>    &flow,
-                       const double               dt,
-                       const std::vector<double> &T,
-                       const std::vector<double> &skin,
-                       std::vector<double>       &T_bar,
-                       std::vector<double>       &skin_bar,
-                       HeatFlowBar               &bar)
+  void reverse_conduct(const HeatFlow<double>          &flow,
+                       const double                     dt,
+                       const std::vector<double>       &T,
+                       const std::vector<Skin<double>> &skin,
+                       std::vector<double>             &T_bar,
+                       std::vector<Skin<double>>       &skin_bar,
+                       HeatFlowBar                     &bar)
   {
     const std::size_t         n       = T.size();
-    std::vector<double>       after   = skin;
+    std::vector<Skin<double>> after   = skin;
     const std::vector<double> parts   = follow_skins(flow, dt, after);
     const NodeFilms<double>   contact = contact_films(flow, parts);
     const std::vector<double> C       = scaled(flow.law.capacity, flow.network.volumes),
@@ -177,29 +267,7 @@ namespace retroforge
       parts_bar[at.node] += phi_bar * at.area * film;
     }
 
-    // Skins.
-    const NodeContacts<double> touching(flow);
-    NodeContactsBar            nodes(flow);
-    for (NodeIndex k = 0; k < n; ++k)
-      if (touching.has_film(flow, k))
-      {
-        using Partial                = Sacado::Fad::SFad<double, 7>;
-        SkinArguments<double>  x_bar = skin_arguments<double>(flow, k, touching, skin[k], dt);
-        SkinArguments<Partial> x;
-        int                    i = 0;
-        for_each_number([&](const double value, Partial &to) { to = Partial(7, i++, value); }, x_bar, x);
-        const auto step = beneath_contacts(x);
-        i               = 0;
-        for_each_number(
-          [&](double &to) {
-            to = skin_bar[k] * step.e.dx(i) + parts_bar[k] * step.mean.dx(i);
-            ++i;
-          },
-          x_bar);
-        skin_bar[k] = x_bar.e;
-        nodes.reverse_arguments(flow, k, touching, dt, x_bar, bar);
-      }
-    nodes.reverse_touching(flow, bar);
+    reverse_follow_skins(flow, dt, skin, parts_bar, skin_bar, bar);
   }
 
   namespace

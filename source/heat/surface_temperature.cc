@@ -26,11 +26,9 @@ namespace retroforge
     template <typename Number>
     std::array<Number, 2> at_surface(const SurfaceArguments<Number> &of)
     {
-      const auto [effusivity, metals_part] = joint_skins(of.skin);
-      const Number y                       = skin_biot(of.skin.e, of.skin.h, Number(effusivity * effusivity));
-      const Number resistance              = skin_resistance(of.skin, metals_part, y);
-      const Number flux                    = (of.T - of.partner) / (1. + resistance); // over the film
-      const Number die                     = of.partner + flux * y * (1. - metals_part);
+      const auto   drops = drops_at(of.skin);
+      const Number flux  = (of.T - of.partner) / drops.all; // over the film
+      const Number die   = of.partner + flux * drops.die;
       return {{Number(die + flux), die}};
     }
 
@@ -45,16 +43,15 @@ namespace retroforge
       return mean;
     }
 
-    /// Steps in time do not matter here.
     template <typename Number>
-    SurfaceArguments<Number> surface_arguments(const HeatFlow<Number>     &flow,
-                                               const NodeIndex             k,
-                                               const NodeContacts<Number> &touching,
-                                               const std::vector<Number>  &partner,
-                                               const std::vector<Number>  &T,
-                                               const std::vector<Number>  &skin)
+    SurfaceArguments<Number> surface_arguments(const HeatFlow<Number>          &flow,
+                                               const NodeIndex                  k,
+                                               const NodeContacts<Number>      &touching,
+                                               const std::vector<Number>       &partner,
+                                               const std::vector<Number>       &T,
+                                               const std::vector<Skin<Number>> &skin)
     {
-      return {skin_arguments(flow, k, touching, skin[k], Number(1.)), T[k], partner[k]};
+      return {skin_arguments(flow, k, touching, skin[k]), T[k], partner[k]};
     }
 
     /// The nodes of a face that touches.
@@ -121,11 +118,11 @@ namespace retroforge
 
     /// At the nodes themselves.
     template <typename Number>
-    std::array<std::vector<Number>, 2> nodal_surfaces(const HeatFlow<Number>     &flow,
-                                                      const NodeContacts<Number> &touching,
-                                                      const std::vector<Number>  &partner,
-                                                      const std::vector<Number>  &T,
-                                                      const std::vector<Number>  &skin)
+    std::array<std::vector<Number>, 2> nodal_surfaces(const HeatFlow<Number>          &flow,
+                                                      const NodeContacts<Number>      &touching,
+                                                      const std::vector<Number>       &partner,
+                                                      const std::vector<Number>       &T,
+                                                      const std::vector<Skin<Number>> &skin)
     {
       std::vector<Number> metal = T, die(T.size(), Number(0.));
       for (NodeIndex k = 0; k < T.size(); ++k)
@@ -140,9 +137,9 @@ namespace retroforge
   } // namespace
 
   template <typename Number>
-  std::array<std::vector<Number>, 2> surface_temperatures(const HeatFlow<Number>    &flow,
-                                                          const std::vector<Number> &T,
-                                                          const std::vector<Number> &skin)
+  std::array<std::vector<Number>, 2> surface_temperatures(const HeatFlow<Number>          &flow,
+                                                          const std::vector<Number>       &T,
+                                                          const std::vector<Skin<Number>> &skin)
   {
     AssertDimension(T.size(), flow.network.volumes.size());
     AssertDimension(skin.size(), T.size());
@@ -152,17 +149,18 @@ namespace retroforge
       {mean_over_faces(flow, touching, std::move(metal)), mean_over_faces(flow, touching, std::move(die))}};
   }
 
-  template std::array<std::vector<double>, 2>
-  surface_temperatures(const HeatFlow<double> &, const std::vector<double> &, const std::vector<double> &);
+  template std::array<std::vector<double>, 2> surface_temperatures(const HeatFlow<double> &,
+                                                                   const std::vector<double> &,
+                                                                   const std::vector<Skin<double>> &);
   template std::array<std::vector<Dual>, 2>
-  surface_temperatures(const HeatFlow<Dual> &, const std::vector<Dual> &, const std::vector<Dual> &);
+  surface_temperatures(const HeatFlow<Dual> &, const std::vector<Dual> &, const std::vector<Skin<Dual>> &);
 
   void reverse_surface_temperatures(const HeatFlow<double>                   &flow,
                                     const std::vector<double>                &T,
-                                    const std::vector<double>                &skin,
+                                    const std::vector<Skin<double>>          &skin,
                                     const std::array<std::vector<double>, 2> &surfaces_bar,
                                     std::vector<double>                      &T_bar,
-                                    std::vector<double>                      &skin_bar,
+                                    std::vector<Skin<double>>                &skin_bar,
                                     HeatFlowBar                              &bar)
   {
     const NodeContacts<double>         touching(flow);
@@ -181,11 +179,12 @@ namespace retroforge
         T_bar[k] += metal_bar;
       else if (metal_bar != 0. || die_bar != 0.)
       {
-        using Partial = Sacado::Fad::SFad<double, 9>;
+        constexpr int n = n_skin_arguments + 2;
+        using Partial   = Sacado::Fad::SFad<double, n>;
         SurfaceArguments<Partial> x;
         SurfaceArguments<double>  x_bar = surface_arguments(flow, k, touching, partner, T, skin);
         int                       i     = 0;
-        for_each_number([&](const double value, Partial &to) { to = Partial(9, i++, value); }, x_bar, x);
+        for_each_number([&](const double value, Partial &to) { to = Partial(n, i++, value); }, x_bar, x);
         const auto both = at_surface(x);
         i               = 0;
         for_each_number(
@@ -196,8 +195,8 @@ namespace retroforge
           x_bar);
         T_bar[k] += x_bar.T;
         partner_bar[k] = x_bar.partner;
-        skin_bar[k] += x_bar.skin.e;
-        nodes.reverse_arguments(flow, k, touching, 1., x_bar.skin, bar);
+        skin_bar[k] += x_bar.skin.drops;
+        nodes.reverse_arguments(flow, k, touching, x_bar.skin, bar);
       }
     }
     for (std::size_t i = 0; i < flow.surface.touching.size(); ++i)

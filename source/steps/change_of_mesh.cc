@@ -6,6 +6,26 @@
 
 namespace retroforge
 {
+  namespace
+  {
+    template <typename Number>
+    NodeField<Number> mode_of(const NodeSkins<Number> &skins, const unsigned int j)
+    {
+      NodeField<Number> mode;
+      for (const auto &skin : skins)
+        mode.push_back(skin[j]);
+      return mode;
+    }
+
+    template <typename Number>
+    void set_mode(const unsigned int j, const NodeField<Number> &mode, NodeSkins<Number> &skins)
+    {
+      skins.resize(mode.size());
+      for (std::size_t k = 0; k < mode.size(); ++k)
+        skins[k][j] = mode[k];
+    }
+  } // namespace
+
   template <typename Number>
   BasicTransfer<Number> moved_transfer(const TetMesh              &old_mesh,
                                        const RemeshRecord         &remesh,
@@ -39,6 +59,18 @@ namespace retroforge
     to = q;
     if (!q.empty())
       to = J.apply_bounded(q);
+  }
+
+  template <typename Number>
+  void MemberTransfer<Number>::operator()(const NodeSkins<Number> &skins, NodeSkins<Number> &to) const
+  {
+    to.clear();
+    for (unsigned int j = 0; j < n_skin_modes; ++j)
+    {
+      NodeField<Number> mode;
+      (*this)(mode_of(skins, j), mode);
+      set_mode(j, mode, to);
+    }
   }
 
   template <typename Number>
@@ -103,6 +135,19 @@ namespace retroforge
     std::vector<double> free_bar = q_bar;
     to                           = remesh_.transfer.reverse_apply_bounded(q, free_bar);
     remesh_.transfer.add_weight_bar<double>(q, free_bar, weight_bar_);
+  }
+
+  void ReverseMemberTransfer::operator()(const NodeSkins<double> &skins,
+                                         const NodeSkins<double> &skins_bar,
+                                         NodeSkins<double>       &to)
+  {
+    to.clear();
+    for (unsigned int j = 0; j < n_skin_modes; ++j)
+    {
+      NodeField<double> mode;
+      (*this)(mode_of(skins, j), mode_of(skins_bar, j), mode);
+      set_mode(j, mode, to);
+    }
   }
 
   void ReverseMemberTransfer::operator()(const NodeVectorField<3, double> &v,

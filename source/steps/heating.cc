@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/heat/healing.h>
 #include <retroforge/heat/surface_temperature.h>
 #include <retroforge/steps/heating.h>
 
@@ -29,9 +28,6 @@ namespace retroforge
     std::vector<bool>   touch; ///< the dies that are there
     Number              time;  ///< [s]
     std::vector<double> parts; ///< of the time
-
-    /// Whether skins heal where nothing touches. Under the press, a contact that opens is one that closes again.
-    bool heals() const { return of != Of::press; }
   };
 
   namespace
@@ -107,8 +103,6 @@ namespace retroforge
                      const Physics<Number>           &physics,
                      WorkpieceState<3, Number>       &state)
     {
-      if (spell.heals())
-        heal_skins(surface, heat, spell.time, state.skin);
       for (const double part : spell.parts)
         conduct({edges, network, surface, heat, film_of(heat, spell.of), physics.dies},
                 Number(part * spell.time),
@@ -199,16 +193,15 @@ namespace retroforge
     const HalfOfIncrement               half;
     const StrokeStep                    at, place;
     const NodalVectors<double>         &X;
-    const ThermalSurface<double>       &under_press;          ///< what touches dies
-    const NodalVectors<double>         *velocity   = nullptr; ///< of the increment before
-    const Steps                        *earlier    = nullptr; ///< the first half, of a second one
-    std::vector<DieState<double>>       dies       = process.over(place).dies;
-    ConductionNetwork<double>           network    = conduction_network(scene.mesh, edges, X);
-    std::vector<Spell<double>>          spells     = spells_of(half, process, at);
-    std::vector<ThermalSurface<double>> waiting    = {}; ///< what touches dies in each spell before the press
-    std::vector<NodeField<double>>      not_healed = {}; ///< skins before each
+    const ThermalSurface<double>       &under_press;        ///< what touches dies
+    const NodalVectors<double>         *velocity = nullptr; ///< of the increment before
+    const Steps                        *earlier  = nullptr; ///< the first half, of a second one
+    std::vector<DieState<double>>       dies     = process.over(place).dies;
+    ConductionNetwork<double>           network  = conduction_network(scene.mesh, edges, X);
+    std::vector<Spell<double>>          spells   = spells_of(half, process, at);
+    std::vector<ThermalSurface<double>> waiting  = {}; ///< what touches dies in each spell before the press
     /// Temperatures and skins before each step of each spell.
-    std::vector<std::vector<std::pair<NodeField<double>, NodeField<double>>>> before = {};
+    std::vector<std::vector<std::pair<NodeField<double>, NodeSkins<double>>>> before = {};
 
     ContactView<double> view() const { return scene.view(dies, X, velocity); }
 
@@ -222,16 +215,13 @@ namespace retroforge
     }
 
     /// Goes through all steps but the last.
-    void go(NodeField<double> T, NodeField<double> skin)
+    void go(NodeField<double> T, NodeSkins<double> skin)
     {
       for (std::size_t i = 0; i < spells.size(); ++i)
       {
         const Spell<double> &spell = spells[i];
         if (spell.of != Spell<double>::Of::press)
           waiting.push_back(thermal_surface(view(), spell.touch, reach_of(spell, process.heat, at)));
-        not_healed.push_back(skin);
-        if (spell.heals())
-          heal_skins(surface(i), process.heat, spell.time, skin);
         auto &states = before.emplace_back();
         for (const double part : spell.parts)
         {
@@ -277,13 +267,6 @@ namespace retroforge
                           bar);
           time_bar += spells[i].parts[s] * dt_bar;
         }
-        if (spells[i].heals())
-          reverse_heal_skins(surface(i),
-                             process.heat,
-                             spells[i].time,
-                             not_healed[i],
-                             workpiece.skin,
-                             {surface_bar, physics.heat, time_bar});
         if (earlier)
           reverse_thermal_surface_after(earlier->under_press,
                                         view(),

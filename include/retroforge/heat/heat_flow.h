@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/heat/conduction_network.h>
+#include <retroforge/heat/skin.h>
 #include <retroforge/heat/thermal_surface.h>
 #include <retroforge/material/heat_law.h>
 
@@ -12,9 +13,9 @@
 /// Heat that flows for a time in a workpiece at rest, to dies that it touches and to its surroundings.
 ///
 /// The film between a node and a die has the conductance  A h_c/(1 + R),  A the area there that touches, and R the
-/// drops of temperature in the skins of metal and die over that across the film (skin.h); of the metal's, as thick as
-/// delta, only the part  (1 - delta/(8 d))²  that elements do not resolve, d = V/A the depth that the node stands for behind
-/// what touches.
+/// drops of temperature in the skins of metal and die over that across the film (skin.h); of the metal's only what the node
+/// does not show itself, which stands for the depth V/A (node_skins.h). A node touches a die for a part of the time; before,
+/// its skin heals.
 /// A free surface has  h_a + eps sigma (T² + T_a²)(T + T_a),  temperatures absolute.
 namespace retroforge
 {
@@ -30,11 +31,13 @@ namespace retroforge
     const std::vector<DieState<Number>> &dies;
   };
 
-  /// Takes temperatures [C] and skins [mJ/(mm^2 K)] of all nodes over a time.
+  /// Takes temperatures [C] and skins of all nodes over a time.
   /// @return heat that came in through the surface [mJ]
   template <typename Number>
-  Number
-  conduct(const HeatFlow<Number> &flow, const Number &dt, std::vector<Number> &T, std::vector<Number> &skin);
+  Number conduct(const HeatFlow<Number>    &flow,
+                 const Number              &dt,
+                 std::vector<Number>       &T,
+                 std::vector<Skin<Number>> &skin);
 
   /// Derivatives of a scalar in what heat flows in.
   struct HeatFlowBar
@@ -50,13 +53,13 @@ namespace retroforge
   /// Reverse of conduct().
   /// @param T, skin          before
   /// @param T_bar, skin_bar  derivatives in those after on entry, in those before on exit
-  void reverse_conduct(const HeatFlow<double>    &flow,
-                       double                     dt,
-                       const std::vector<double> &T,
-                       const std::vector<double> &skin,
-                       std::vector<double>       &T_bar,
-                       std::vector<double>       &skin_bar,
-                       HeatFlowBar               &bar);
+  void reverse_conduct(const HeatFlow<double>          &flow,
+                       double                           dt,
+                       const std::vector<double>       &T,
+                       const std::vector<Skin<double>> &skin,
+                       std::vector<double>             &T_bar,
+                       std::vector<Skin<double>>       &skin_bar,
+                       HeatFlowBar                     &bar);
 
   /// What heat flows in under the press, made of the workpiece and the dies where they are; dies that are not in the
   /// press touch nothing. What is passed must live as long.

@@ -44,6 +44,7 @@ namespace retroforge
 
     void operator()(const NodalVectors<Number> &positions, NodalVectors<Number> &to) const;
     void operator()(const NodeField<Number> &q, NodeField<Number> &to) const;
+    void operator()(const NodeSkins<Number> &skins, NodeSkins<Number> &to) const;
     void operator()(const NodeVectorField<3, Number> &v, NodeVectorField<3, Number> &to) const;
     void operator()(const CellField<Number> &q, CellField<Number> &to) const;
     void operator()(const BoundedCellField<Number> &q, BoundedCellField<Number> &to) const;
@@ -70,6 +71,8 @@ namespace retroforge
     void
     operator()(const NodalVectors<double> &q, const NodalVectors<double> &q_bar, NodalVectors<double> &to);
     void operator()(const NodeField<double> &q, const NodeField<double> &q_bar, NodeField<double> &to);
+    void
+    operator()(const NodeSkins<double> &skins, const NodeSkins<double> &skins_bar, NodeSkins<double> &to);
     void operator()(const NodeVectorField<3, double> &v,
                     const NodeVectorField<3, double> &v_bar,
                     NodeVectorField<3, double>       &to);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/core/numbers.h>
+#include <retroforge/heat/skin.h>
 
 #include <algorithm>
 #include <vector>
@@ -33,6 +34,15 @@ namespace retroforge
     }
   };
 
+  /// The skin beneath each node, or none at all where heat does not flow. At a change of mesh its modes follow J as a
+  /// NodeField does.
+  template <typename Number>
+  struct NodeSkins : std::vector<Skin<Number>>
+  {
+    using std::vector<Skin<Number>>::vector;
+    NodeSkins(std::vector<Skin<Number>> values) : std::vector<Skin<Number>>(std::move(values)) {}
+  };
+
   /// One number per cell, or none at all where it is not followed. At a change of mesh it follows transfer_cells().
   template <typename Number>
   struct CellField : std::vector<Number>
@@ -61,9 +71,8 @@ namespace retroforge
     /// before the first increment of an operation.
     NodeVectorField<dim, Number> velocity;
     NodeField<Number>            temperature; ///< [C]; none where the metal keeps that before the stroke
-    /// Of the layers that contacts have chilled (heat/skin.h) [mJ/(mm^2 K)]; none where heat does not flow.
-    NodeField<Number>        skin;
-    BoundedCellField<Number> damage; ///< dimensionless; none where it is not followed
+    NodeSkins<Number>            skin;        ///< of the layers that contacts have chilled (heat/skin.h)
+    BoundedCellField<Number>     damage;      ///< dimensionless; none where it is not followed
 
     template <typename Self>
     static auto members(Self &self)
@@ -95,7 +104,7 @@ namespace retroforge
             CellField<double>(n_cells, 0.),
             NodeVectorField<dim, double>(n_nodes),
             NodeField<double>(warms ? n_nodes : 0, 0.),
-            NodeField<double>(conducts ? n_nodes : 0, 0.),
+            NodeSkins<double>(conducts ? n_nodes : 0),
             BoundedCellField<double>(damages ? n_cells : 0, 0.)};
   }
 
@@ -110,8 +119,9 @@ namespace retroforge
   }
 
   /// Returns whether an objective, and what came after, take nothing from a field.
-  inline bool is_zero(const std::vector<double> &field)
+  template <typename Value>
+  bool is_zero(const std::vector<Value> &field)
   {
-    return std::all_of(field.begin(), field.end(), [](const double x) { return x == 0.; });
+    return std::all_of(field.begin(), field.end(), [](const Value &x) { return x == Value(); });
   }
 } // namespace retroforge

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 
-// Every term of the backward sweep by which metal hardens, warms by its work and by friction, by which heat flows and skins heal,
+// Every term of the backward sweep by which metal hardens, warms by its work and by friction, by which heat flows,
 // is needed, and tests of this kind see it: on the block under a tilted die of dropped_terms.cc, and then under another one,
 // of metal that hardens and softens as it warms, with friction after Tresca and conduction, the adjoint of the spread of
 // temperatures at the end agrees with replayed central differences along the nodes at random, the speed of the die, the numbers
@@ -12,7 +12,6 @@
 #include <deal.II/base/mpi.h>
 
 #include <retroforge/discretization/strain_history.h>
-#include <retroforge/heat/healing.h>
 #include <retroforge/objective/temperatures.h>
 #include <retroforge/steps/friction_heat.h>
 #include <retroforge/steps/warming.h>
@@ -33,8 +32,7 @@ namespace
     law,         // law of the metal by strain and temperature
     first_half,  // conduction before mechanics
     second_half, // and after it
-    waiting,     // conduction before a stroke
-    healing      // of skins meanwhile
+    waiting      // conduction before a stroke
   };
 
   enum class Part
@@ -80,10 +78,9 @@ namespace
     {"second half of conduction by temperature and skin", Piece::second_half, Part::state, 0},
     {"second half of conduction by process", Piece::second_half, Part::number, 2},
     {"conduction before strokes by its time", Piece::waiting, Part::time, 3},
-    {"healing by position", Piece::healing, Part::position, 0},
-    {"healing by the skin", Piece::healing, Part::state, 0},
-    {"healing by numbers", Piece::healing, Part::number, 2},
-    {"healing by its time", Piece::healing, Part::time, 3}};
+    {"conduction before strokes by position", Piece::waiting, Part::position, 0},
+    {"conduction before strokes by the skin", Piece::waiting, Part::state, 0},
+    {"conduction before strokes by numbers", Piece::waiting, Part::number, 2}};
 
   /// What a stage's history takes back, without the omitted part of one piece.
   class ReverseHistory
@@ -189,9 +186,8 @@ namespace
     std::vector<bool> touch;
     double            time;
 
-    ThermalSurface<double>                                       surface    = {};
-    NodeField<double>                                            not_healed = {};
-    std::vector<std::pair<NodeField<double>, NodeField<double>>> before     = {}; // temperatures and skins
+    ThermalSurface<double>                                       surface = {};
+    std::vector<std::pair<NodeField<double>, NodeSkins<double>>> before  = {}; // temperatures and skins
   };
 
   /// What comes before the stroke of an operation, as conduct_before() has it, to be gone back over without a term.
@@ -217,9 +213,7 @@ namespace
       spells_.push_back({touch, waiting.dwell});
       for (Spell &spell : spells_)
       {
-        spell.surface    = thermal_surface(view_, spell.touch, process_.heat.gap);
-        spell.not_healed = start.skin;
-        heal_skins(spell.surface, process_.heat, spell.time, start.skin);
+        spell.surface = thermal_surface(view_, spell.touch, process_.heat.gap);
         for (unsigned int s = 0; s < process_.heat.waiting_steps; ++s)
         {
           spell.before.emplace_back(start.temperature, start.skin);
@@ -234,22 +228,25 @@ namespace
       ConductionNetwork<double>  network_bar = no_derivatives(network_);
       PhysicsBar                 physics(view_.dies);
       Waiting<double>            times;
+      const auto                 keeps = [&](const Part of) {
+        return omission.piece != Piece::waiting || omission.part != of;
+      };
+      NodalVectors<double> X_bar(workpiece.X.size());
       for (const bool dwells : {true, false})
       {
         const Spell      &spell = spells_[dwells];
-        ThermalSurfaceBar surface_bar(spell.surface), healing_bar(spell.surface);
-        PhysicsBar        healing(view_.dies);
-        double           &time         = dwells ? times.dwell : times.transfer;
-        double            healing_time = 0.;
+        ThermalSurfaceBar surface_bar(spell.surface);
+        double           &time = dwells ? times.dwell : times.transfer;
         for (unsigned int s = process_.heat.waiting_steps; s-- > 0;)
         {
-          double      dt_bar = 0.;
-          HeatFlowBar bar{network_bar,
+          double                  dt_bar = 0.;
+          HeatFlowBar             bar{network_bar,
                           surface_bar,
                           physics.heat,
                           dwells ? physics.heat.dwell_film : physics.heat.contact_film,
                           physics.dies,
                           dt_bar};
+          const NodeSkins<double> skin_bar = workpiece.skin;
           reverse_conduct(flow(spell),
                           part(s) * spell.time,
                           spell.before[s].first,
@@ -257,31 +254,18 @@ namespace
                           workpiece.temperature,
                           workpiece.skin,
                           bar);
-          if (omission.piece != Piece::waiting || omission.part != Part::time)
+          if (!keeps(Part::state))
+            workpiece.skin = skin_bar;
+          if (keeps(Part::time))
             time += part(s) * dt_bar;
         }
-        const auto keeps = [&](const Part of) {
-          return omission.piece != Piece::healing || omission.part != of;
-        };
-        const NodeField<double> skin_bar = workpiece.skin;
-        reverse_heal_skins(spell.surface,
-                           process_.heat,
-                           spell.time,
-                           spell.not_healed,
-                           workpiece.skin,
-                           {healing_bar, healing.heat, healing_time});
-        if (!keeps(Part::state))
-          workpiece.skin = skin_bar;
-        if (keeps(Part::position))
-          add_numbers(healing_bar.weight, surface_bar.weight);
-        if (keeps(Part::number))
-          add_numbers(healing.heat, physics.heat);
-        if (keeps(Part::time))
-          time += healing_time;
-        reverse_thermal_surface(
-          view_, spell.surface, process_.heat.gap, surface_bar, workpiece.X, physics.dies);
+        reverse_thermal_surface(view_, spell.surface, process_.heat.gap, surface_bar, X_bar, physics.dies);
       }
-      reverse_conduction_network(view_.mesh, edges_, view_.X, network_bar, workpiece.X);
+      reverse_conduction_network(view_.mesh, edges_, view_.X, network_bar, X_bar);
+      if (keeps(Part::position))
+        add_numbers(X_bar, workpiece.X);
+      if (!keeps(Part::number))
+        physics.heat = HeatLaw<double>();
       costate.process.add_once([&](Process<double> &of) {
         reverse_over(process_, {0., 0., operation_}, 0., physics, of);
         add_numbers(times, of.operations[operation_].waiting);
@@ -397,7 +381,7 @@ int main(int argc, char **argv)
                      nullptr,
                      std::make_unique<TemperatureObjective>(TemperatureExtreme::spread, 5.)});
   ForgingProblem problem = two_strokes(p, Meshes::one, std::move(hottest));
-  // On a tilted die, which nodes touch in part, and before skins are healed.
+  // On a tilted die, which nodes touch in part.
   problem.process.operations[1].waiting = {0.02, 0.4, 2};
   RecordedRun                run(std::move(problem));
   const NodalVectors<double> still(run.scene.mesh.n_nodes());

@@ -68,7 +68,7 @@ namespace retroforge
                    const double                time,
                    const unsigned int          n,
                    std::vector<double>        &T,
-                   std::vector<double>        &skin) const
+                   std::vector<Skin<double>>  &skin) const
     {
       const auto network = conduction_network(mesh, edges, X);
       const auto touched = surface(states, X, law.gap);
