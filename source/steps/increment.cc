@@ -66,7 +66,10 @@ namespace retroforge
     if (reads_history(process))
       memory.start = without_motion(state);
     if (solved.before)
+    {
       state = memory.half = *solved.before;
+      memory.half.skin.clear(); // mechanics reads none, and leaves it to the second half
+    }
     for (const auto &stage : solved.stages)
       add_history(stage->view(), solved.start->dt, state);
     if (process.heat.conducts())

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""The include graph: what points backwards passes, what points forwards is named."""
+"""The include graph: what points backwards passes, what points forwards is named, and types that a file does not see."""
 import unittest
 
 from scripts import ScratchTest, call
@@ -40,6 +40,20 @@ class CheckIncludes(ScratchTest):
 
     def test_unknown_module(self):
         self.assertIn("utilities/ is not a module", self.violations("source/utilities/a.cc", "")[1])
+
+    def test_types_are_seen(self):
+        self.write("include/retroforge/heat/skin.h", "namespace retroforge\n{\n  template <typename Number>\n  struct Skin\n  {\n"
+                   "  };\n} // namespace retroforge\n")
+        self.write("include/retroforge/steps/state.h", "#include <retroforge/heat/skin.h>\n")
+        member = "  struct State\n  {\n    Skin<double> skin; // of it\n  };\n"
+        status, said = self.violations("include/retroforge/steps/mechanics.h", member)
+        self.assertEqual(status, 1)
+        self.assertIn("include/retroforge/steps/mechanics.h:4: Skin: include <retroforge/heat/skin.h>", said)
+        for first in ("#include <retroforge/steps/state.h>", "template <typename Number> struct Skin;"):
+            status, said = self.violations("include/retroforge/steps/mechanics.h", first + "\n" + member)
+            self.assertEqual(status, 0, said)
+        status, said = self.violations("include/retroforge/steps/mechanics.h", '// Skin\nconst char *a = "Skin", *b = R"(\nSkin)";')
+        self.assertEqual(status, 0, said)
 
     def test_quotes(self):
         self.assertIn("write <retroforge/module/file.h>", self.violations("source/core/a.cc", '#include "../a.h"')[1])

@@ -13,7 +13,7 @@ namespace retroforge
   {
     WorkpieceState<3, double> start; ///< the state at its start
     // Where heat flows.
-    WorkpieceState<3, double> half;   ///< as the stages of mechanics find it
+    WorkpieceState<3, double> half;   ///< as the stages of mechanics find it, without skins
     WorkpieceState<3, double> worked; ///< after mechanics and history, before the second half
     TouchedDies               touching;
   };
