@@ -67,12 +67,6 @@ namespace retroforge
       return flow.contact_film / joint_effusivity(metal, flow.law.die_effusivity);
     }
 
-    /// Where no die touches, skins heal.
-    std::optional<SkinsBeneathFilm> skins_beneath(const double rate)
-    {
-      return rate > 0. ? std::make_optional<SkinsBeneathFilm>(rate) : std::nullopt;
-    }
-
     /// The time in which a node touches no die. It comes first: to a node that arrives.
     template <typename Number>
     Number open_time(const NodeContacts<Number> &touching, const NodeIndex k, const Number &dt)
@@ -81,24 +75,59 @@ namespace retroforge
       return value_of(open) > 0. ? Number(open * dt) : Number(0.);
     }
 
+    /// What times make of skins. Most nodes touch all of the time, or none of it.
+    template <typename Number>
+    class SkinsOverStep
+    {
+    public:
+      SkinsOverStep(const Number &rate, const Number &dt)
+          : rate_(rate), dt_(value_of(dt)), healing_(healing(dt))
+      {
+        if (value_of(rate) > 0.)
+          whole_.emplace(film_.emplace(value_of(rate)), dt_);
+      }
+
+      Skin<Number> left(const Number &open) const { return value_of(open) == dt_ ? healing_ : healing(open); }
+
+      /// f(SkinPropagator) of a time that a node touches.
+      template <typename F>
+      auto touching(const double time, const F &f) const
+      {
+        return time == dt_ ? f(*whole_) : f(SkinPropagator(*film_, time));
+      }
+
+      const Number &rate() const { return rate_; }
+
+      SkinsOverStep(const SkinsOverStep &) = delete; // the propagator refers to the film
+
+    private:
+      Number                          rate_;
+      double                          dt_;
+      Skin<Number>                    healing_;
+      std::optional<SkinsBeneathFilm> film_;
+      std::optional<SkinPropagator>   whole_;
+    };
+
     /// The parts 1/(1 + R) of films to dies; skins go on.
     template <typename Number>
     std::vector<Number>
     follow_skins(const HeatFlow<Number> &flow, const Number &dt, std::vector<Skin<Number>> &skin)
     {
-      const NodeContacts<Number> touching(flow);
-      const Number               rate = film_rate(flow);
-      const auto                 film = skins_beneath(value_of(rate));
-      std::vector<Number>        parts(skin.size(), Number(1.));
+      const NodeContacts<Number>  touching(flow);
+      const SkinsOverStep<Number> skins(film_rate(flow), dt);
+      std::vector<Number>         parts(skin.size(), Number(1.));
       for (NodeIndex k = 0; k < skin.size(); ++k)
       {
         if (value_of(drop_of(skin[k])) > 0.)
-          skin[k] = healed(skin[k], open_time(touching, k, dt));
+          skin[k] = healed(skin[k], skins.left(open_time(touching, k, dt)));
         if (touching.has_film(flow, k))
         {
-          const auto step = skin_step(*film, rate, skin[k], Number(touching.weight[k] * dt));
-          skin[k]         = step.after;
-          parts[k]        = 1. / drops_at(skin_arguments(flow, k, touching, step.mean)).all;
+          const Number time = touching.weight[k] * dt;
+          const auto   step = skins.touching(value_of(time), [&](const SkinPropagator &over) {
+            return skin_step(over, skins.rate(), skin[k], time);
+          });
+          skin[k]           = step.after;
+          parts[k]          = 1. / drops_at(skin_arguments(flow, k, touching, step.mean)).all;
         }
       }
       return parts;
@@ -114,43 +143,42 @@ namespace retroforge
                               std::vector<Skin<double>>       &skin_bar,
                               HeatFlowBar                     &bar)
     {
-      const NodeContacts<double> touching(flow);
-      NodeContactsBar            nodes(flow);
-      const double               rate     = film_rate(flow);
-      const auto                 film     = skins_beneath(rate);
-      double                     rate_bar = 0.;
+      const NodeContacts<double>  touching(flow);
+      NodeContactsBar             nodes(flow);
+      const SkinsOverStep<double> skins(film_rate(flow), dt);
+      double                      rate_bar = 0.;
       for (NodeIndex k = 0; k < skin.size(); ++k)
       {
         const bool   is_there = drop_of(skin[k]) > 0.;
         const double open     = open_time(touching, k, dt);
         if (touching.has_film(flow, k))
         {
-          using Partial                 = Sacado::Fad::SFad<double, n_skin_arguments>;
-          const double           time   = touching.weight[k] * dt;
-          const Skin<double>     before = is_there ? healed(skin[k], open) : skin[k];
-          SkinArguments<double>  x_bar  = skin_arguments(flow, k, touching, film->step(before, time).mean);
-          SkinArguments<Partial> x;
-          int                    i = 0;
-          for_each_number(
-            [&](const double value, Partial &to) { to = Partial(n_skin_arguments, i++, value); }, x_bar, x);
-          const Partial part = 1. / drops_at(x).all;
-          i                  = 0;
-          for_each_number([&](double &to) { to = parts_bar[k] * part.dx(i++); }, x_bar);
-          nodes.reverse_arguments(flow, k, touching, x_bar, bar);
-          const SkinStep<double> step_bar{skin_bar[k], x_bar.drops};
-          const auto             slopes = film->slopes(before, time);
-          const auto             along  = [&](const SkinStep<double> &slope) {
-            return slope.after * step_bar.after + slope.mean * step_bar.mean;
-          };
-          rate_bar += along(slopes[0]);
-          const double time_bar = along(slopes[1]);
-          nodes.weight[k] += time_bar * dt;
-          bar.dt += time_bar * touching.weight[k];
-          skin_bar[k] = film->reverse_carried(step_bar, time);
+          using Partial             = Sacado::Fad::SFad<double, n_skin_arguments>;
+          const Skin<double> before = is_there ? healed(skin[k], skins.left(open)) : skin[k];
+          skins.touching(touching.weight[k] * dt, [&](const SkinPropagator &over) {
+            SkinArguments<double>  x_bar = skin_arguments(flow, k, touching, over.step(before).mean);
+            SkinArguments<Partial> x;
+            int                    i = 0;
+            for_each_number(
+              [&](const double value, Partial &to) { to = Partial(n_skin_arguments, i++, value); }, x_bar, x);
+            const Partial part = 1. / drops_at(x).all;
+            i                  = 0;
+            for_each_number([&](double &to) { to = parts_bar[k] * part.dx(i++); }, x_bar);
+            nodes.reverse_arguments(flow, k, touching, x_bar, bar);
+            const SkinStep<double> step_bar{skin_bar[k], x_bar.drops};
+            const auto             slopes = over.slopes(before);
+            const auto             along  = [&](const SkinStep<double> &slope) {
+              return slope.after * step_bar.after + slope.mean * step_bar.mean;
+            };
+            rate_bar += along(slopes[0]);
+            const double time_bar = along(slopes[1]);
+            nodes.weight[k] += time_bar * dt;
+            bar.dt += time_bar * touching.weight[k];
+            skin_bar[k] = over.reverse_carried(step_bar);
+          });
         }
-        const Skin<double> healed_bar = skin_bar[k];
         if (is_there)
-          skin_bar[k] = healed(healed_bar, open);
+          skin_bar[k] = healed(skin_bar[k], skins.left(open));
         if (is_there && open > 0.)
         {
           double open_bar = 0.;
@@ -164,9 +192,8 @@ namespace retroforge
 
       // rate = h (1/b_m + 1/b_d)
       const double metal = metals_effusivity(flow.law.conductivity, flow.law.capacity),
-                   die   = flow.law.die_effusivity;
-      bar.contact_film += rate_bar * rate / flow.contact_film;
-      const double metal_bar = -rate_bar * flow.contact_film / (metal * metal);
+                   die = flow.law.die_effusivity, metal_bar = -rate_bar * flow.contact_film / (metal * metal);
+      bar.contact_film += rate_bar / joint_effusivity(metal, die);
       bar.law.conductivity += metal_bar * 0.5 * metal / flow.law.conductivity;
       bar.law.capacity += metal_bar * 0.5 * metal / flow.law.capacity;
       bar.law.die_effusivity -= rate_bar * flow.contact_film / (die * die);

@@ -64,7 +64,7 @@ namespace retroforge
   // With n_j = m_j/sqrt(beta_j) the equation is  n' = -S n + rate v,  S = diag(lambda) + rate v v^T,  v = sqrt(beta):
   // a symmetric matrix.
 
-  SkinsBeneathFilm::SkinsBeneathFilm(const double rate) : rate_(rate)
+  SkinsBeneathFilm::SkinsBeneathFilm(const double rate) : rate(rate)
   {
     Assert(rate > 0., dealii::ExcMessage("skins are beneath a film"));
     dealii::LAPACKFullMatrix<double> S(n_skin_modes);
@@ -79,12 +79,12 @@ namespace retroforge
     AssertDimension(values.size(), n_skin_modes);
     for (unsigned int i = 0; i < n_skin_modes; ++i)
     {
-      eigenvalues_[i] = values[i];
-      source_[i]      = 0.;
+      eigenvalues[i] = values[i];
+      source[i]      = 0.;
       for (unsigned int j = 0; j < n_skin_modes; ++j)
       {
-        eigenvectors_[i][j] = vectors(j, i);
-        source_[i] += vectors(j, i) * std::sqrt(skin_weights[j]);
+        eigenvectors[i][j] = vectors(j, i);
+        source[i] += vectors(j, i) * std::sqrt(skin_weights[j]);
       }
     }
   }
@@ -92,74 +92,65 @@ namespace retroforge
   SkinsBeneathFilm::Modes SkinsBeneathFilm::to_eigenvectors(const Skin<double> &m) const
   {
     Modes x{};
-    for (unsigned int i = 0; i < n_skin_modes; ++i)
-      for (unsigned int j = 0; j < n_skin_modes; ++j)
-        x[i] += eigenvectors_[i][j] * m[j] / std::sqrt(skin_weights[j]);
+    for (unsigned int j = 0; j < n_skin_modes; ++j)
+    {
+      const double n = m[j] / std::sqrt(skin_weights[j]);
+      for (unsigned int i = 0; i < n_skin_modes; ++i)
+        x[i] += eigenvectors[i][j] * n;
+    }
     return x;
   }
 
   Skin<double> SkinsBeneathFilm::from_eigenvectors(const Modes &x) const
   {
     Skin<double> m;
-    for (unsigned int i = 0; i < n_skin_modes; ++i)
-      for (unsigned int j = 0; j < n_skin_modes; ++j)
-        m[j] += eigenvectors_[i][j] * x[i] * std::sqrt(skin_weights[j]);
+    for (unsigned int j = 0; j < n_skin_modes; ++j)
+    {
+      for (unsigned int i = 0; i < n_skin_modes; ++i)
+        m[j] += eigenvectors[i][j] * x[i];
+      m[j] *= std::sqrt(skin_weights[j]);
+    }
     return m;
   }
 
-  SkinStep<double> SkinsBeneathFilm::carried(const Skin<double> &before, const double time) const
+  SkinPropagator::SkinPropagator(const SkinsBeneathFilm &film, const double time) : film_(film), time_(time)
   {
-    const Modes x = to_eigenvectors(before);
+    Assert(time >= 0., dealii::ExcMessage("time goes on"));
+    for (unsigned int i = 0; i < n_skin_modes; ++i)
+    {
+      const double z = film.eigenvalues[i] * time, out = film.rate * time * film.source[i];
+      after_[i]        = std::exp(-z);
+      mean_[i]         = g<1>(z);
+      after_source_[i] = mean_[i] * out;
+      mean_source_[i]  = g<2>(z) * out;
+    }
+  }
+
+  SkinStep<double> SkinPropagator::step(const Skin<double> &before) const
+  {
+    const Modes x = film_.to_eigenvectors(before);
     Modes       after, mean;
     for (unsigned int i = 0; i < n_skin_modes; ++i)
     {
-      const double z = eigenvalues_[i] * time;
-      after[i]       = std::exp(-z) * x[i];
-      mean[i]        = g<1>(z) * x[i];
+      after[i] = after_[i] * x[i] + after_source_[i];
+      mean[i]  = mean_[i] * x[i] + mean_source_[i];
     }
-    return {from_eigenvectors(after), from_eigenvectors(mean)};
+    return {film_.from_eigenvectors(after), film_.from_eigenvectors(mean)};
   }
 
-  SkinStep<double> SkinsBeneathFilm::step(const Skin<double> &before, const double time) const
+  SkinStep<double> SkinPropagator::carried(const Skin<double> &before) const
   {
-    Assert(time >= 0., dealii::ExcMessage("time goes on"));
-    Modes after, mean;
+    const Modes x = film_.to_eigenvectors(before);
+    Modes       after, mean;
     for (unsigned int i = 0; i < n_skin_modes; ++i)
     {
-      const double z = eigenvalues_[i] * time, out = rate_ * time * source_[i];
-      after[i] = g<1>(z) * out;
-      mean[i]  = g<2>(z) * out;
+      after[i] = after_[i] * x[i];
+      mean[i]  = mean_[i] * x[i];
     }
-    const SkinStep<double> kept = carried(before, time);
-    return {kept.after + from_eigenvectors(after), kept.mean + from_eigenvectors(mean)};
+    return {film_.from_eigenvectors(after), film_.from_eigenvectors(mean)};
   }
 
-  std::array<SkinStep<double>, 2> SkinsBeneathFilm::slopes(const Skin<double> &before,
-                                                           const double        time) const
-  {
-    const Modes x = to_eigenvectors(before);
-    Modes       after_rate, mean_rate, after_time, mean_time;
-    for (unsigned int i = 0; i < n_skin_modes; ++i)
-    {
-      const double z = eigenvalues_[i] * time, u = source_[i];
-      after_rate[i] = time * g<1>(z) * u;
-      mean_rate[i]  = time * g<2>(z) * u;
-      // S changes by v v^T: a function of it by its mean slopes between eigenvalues.
-      for (unsigned int j = 0; j < n_skin_modes; ++j)
-      {
-        const double z_j = eigenvalues_[j] * time, by = time * u * source_[j],
-                     out = rate_ * time * source_[j];
-        after_rate[i] += by * (mean_slope_of_exp(z, z_j) * x[j] + mean_slope_of_g<1>(z, z_j) * out);
-        mean_rate[i] += by * (mean_slope_of_g<1>(z, z_j) * x[j] + mean_slope_of_g<2>(z, z_j) * out);
-      }
-      after_time[i] = -eigenvalues_[i] * (std::exp(-z) * x[i] + g<1>(z) * rate_ * time * u) + rate_ * u;
-      mean_time[i] = eigenvalues_[i] * slope_of_g<1>(z) * x[i] + rate_ * u * (g<2>(z) + z * slope_of_g<2>(z));
-    }
-    return {{{from_eigenvectors(after_rate), from_eigenvectors(mean_rate)},
-             {from_eigenvectors(after_time), from_eigenvectors(mean_time)}}};
-  }
-
-  Skin<double> SkinsBeneathFilm::reverse_carried(const SkinStep<double> &bar, const double time) const
+  Skin<double> SkinPropagator::reverse_carried(const SkinStep<double> &bar) const
   {
     // Both are functions of S, symmetric in n: of m with the weights on either side the other way round.
     const auto scaled = [](Skin<double> m, const bool up) {
@@ -167,12 +158,62 @@ namespace retroforge
         m[j] *= up ? skin_weights[j] : 1. / skin_weights[j];
       return m;
     };
-    const auto after = carried(scaled(bar.after, true), time), mean = carried(scaled(bar.mean, true), time);
-    return scaled(after.after + mean.mean, false);
+    const Modes after = film_.to_eigenvectors(scaled(bar.after, true)),
+                mean  = film_.to_eigenvectors(scaled(bar.mean, true));
+    Modes x;
+    for (unsigned int i = 0; i < n_skin_modes; ++i)
+      x[i] = after_[i] * after[i] + mean_[i] * mean[i];
+    return scaled(film_.from_eigenvectors(x), false);
+  }
+
+  const SkinPropagator::Slopes &SkinPropagator::slopes() const
+  {
+    if (slopes_)
+      return *slopes_;
+    Slopes &d = slopes_.emplace();
+    for (unsigned int i = 0; i < n_skin_modes; ++i)
+    {
+      const double w = film_.eigenvalues[i], z = w * time_, u = film_.source[i];
+      d.after_source[i]     = time_ * mean_[i] * u;
+      d.mean_source[i]      = time_ * g<2>(z) * u;
+      d.mean_time[i]        = w * slope_of_g<1>(z);
+      d.mean_source_time[i] = film_.rate * u * (g<2>(z) + z * slope_of_g<2>(z));
+      // S changes by v v^T: a function of it by its mean slopes between eigenvalues.
+      for (unsigned int j = 0; j < n_skin_modes; ++j)
+      {
+        const double z_j = film_.eigenvalues[j] * time_, by = time_ * u * film_.source[j],
+                     out = film_.rate * time_ * film_.source[j], slope = mean_slope_of_g<1>(z, z_j);
+        d.after[i][j] = by * mean_slope_of_exp(z, z_j);
+        d.mean[i][j]  = by * slope;
+        d.after_source[i] += by * slope * out;
+        d.mean_source[i] += by * mean_slope_of_g<2>(z, z_j) * out;
+      }
+    }
+    return d;
+  }
+
+  std::array<SkinStep<double>, 2> SkinPropagator::slopes(const Skin<double> &before) const
+  {
+    const Slopes &d          = slopes();
+    const Modes   x          = film_.to_eigenvectors(before);
+    Modes         after_rate = d.after_source, mean_rate = d.mean_source, after_time, mean_time;
+    for (unsigned int i = 0; i < n_skin_modes; ++i)
+    {
+      for (unsigned int j = 0; j < n_skin_modes; ++j)
+      {
+        after_rate[i] += d.after[i][j] * x[j];
+        mean_rate[i] += d.mean[i][j] * x[j];
+      }
+      after_time[i] =
+        film_.rate * film_.source[i] - film_.eigenvalues[i] * (after_[i] * x[i] + after_source_[i]);
+      mean_time[i] = d.mean_time[i] * x[i] + d.mean_source_time[i];
+    }
+    return {{{film_.from_eigenvectors(after_rate), film_.from_eigenvectors(mean_rate)},
+             {film_.from_eigenvectors(after_time), film_.from_eigenvectors(mean_time)}}};
   }
 
   SkinStep<Dual>
-  skin_step(const SkinsBeneathFilm &film, const Dual &rate, const Skin<Dual> &before, const Dual &time)
+  skin_step(const SkinPropagator &over, const Dual &rate, const Skin<Dual> &before, const Dual &time)
   {
     Skin<double> value, dot;
     for (unsigned int j = 0; j < n_skin_modes; ++j)
@@ -180,23 +221,17 @@ namespace retroforge
       value[j] = before[j].val();
       dot[j]   = before[j].dx(0);
     }
-    const auto     step = film.step(value, time.val());
-    const auto     kept = film.carried(dot, time.val());
-    const auto     by   = film.slopes(value, time.val());
+    const auto     step = over.step(value), kept = over.carried(dot);
+    const auto     by = over.slopes(value);
     SkinStep<Dual> made;
-    const auto     set = [&](const Skin<double> &of,
-                         const Skin<double> &d,
-                         const Skin<double> &by_rate,
-                         const Skin<double> &by_time,
-                         Skin<Dual>         &to) {
-      for (unsigned int j = 0; j < n_skin_modes; ++j)
-      {
-        to[j]                 = Dual(of[j]);
-        to[j].fastAccessDx(0) = d[j] + by_rate[j] * rate.dx(0) + by_time[j] * time.dx(0);
-      }
-    };
-    set(step.after, kept.after, by[0].after, by[1].after, made.after);
-    set(step.mean, kept.mean, by[0].mean, by[1].mean, made.mean);
+    for (unsigned int j = 0; j < n_skin_modes; ++j)
+    {
+      made.after[j] = Dual(step.after[j]);
+      made.mean[j]  = Dual(step.mean[j]);
+      made.after[j].fastAccessDx(0) =
+        kept.after[j] + by[0].after[j] * rate.dx(0) + by[1].after[j] * time.dx(0);
+      made.mean[j].fastAccessDx(0) = kept.mean[j] + by[0].mean[j] * rate.dx(0) + by[1].mean[j] * time.dx(0);
+    }
     return made;
   }
 } // namespace retroforge

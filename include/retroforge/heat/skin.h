@@ -7,6 +7,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <array>
+#include <optional>
 
 /// @file
 /// The layer that a contact has chilled, thinner than elements: in 0.05 s a die cools 0.5 mm of steel.
@@ -43,54 +44,90 @@ namespace retroforge
     Skin<Number> after, mean;
   };
 
-  /// What skins become beneath a film that stays as it is, for any time.
-  class SkinsBeneathFilm
+  /// The equation of skins beneath a film that stays as it is.
+  struct SkinsBeneathFilm
   {
-  public:
+    using Modes = std::array<double, n_skin_modes>;
+
     /// @param rate  film over the effusivity of metal and die together, h/b [1/sqrt(s)], > 0
     explicit SkinsBeneathFilm(double rate);
-
-    /// @param time  [s], >= 0
-    SkinStep<double> step(const Skin<double> &before, double time) const;
-
-    /// What of a step's derivatives is linear in those of the skin before.
-    SkinStep<double> carried(const Skin<double> &before_dot, double time) const;
-
-    /// Returns the derivatives in rate and time.
-    std::array<SkinStep<double>, 2> slopes(const Skin<double> &before, double time) const;
-
-    /// Reverse of carried(): the derivatives in the skin before.
-    Skin<double> reverse_carried(const SkinStep<double> &bar, double time) const;
-
-  private:
-    using Modes = std::array<double, n_skin_modes>;
 
     Modes        to_eigenvectors(const Skin<double> &m) const;
     Skin<double> from_eigenvectors(const Modes &x) const;
 
-    double                          rate_;
-    Modes                           eigenvalues_; ///< [1/s]
-    std::array<Modes, n_skin_modes> eigenvectors_;
-    Modes                           source_; ///< square roots of the weights, by eigenvectors
+    double                          rate;
+    Modes                           eigenvalues; ///< [1/s]
+    std::array<Modes, n_skin_modes> eigenvectors;
+    Modes                           source; ///< square roots of the weights, by eigenvectors
   };
 
-  /// The same on dual numbers.
-  SkinStep<Dual>
-  skin_step(const SkinsBeneathFilm &film, const Dual &rate, const Skin<Dual> &before, const Dual &time);
-  inline SkinStep<double>
-  skin_step(const SkinsBeneathFilm &film, const double, const Skin<double> &before, const double time)
+  /// What a time beneath a film makes of skins: what is the same for all of them is made once.
+  class SkinPropagator
   {
-    return film.step(before, time);
+  public:
+    /// @param film  refers to it
+    /// @param time  [s], >= 0
+    SkinPropagator(const SkinsBeneathFilm &film, double time);
+
+    double time() const { return time_; }
+
+    SkinStep<double> step(const Skin<double> &before) const;
+
+    /// What of a step's derivatives is linear in those of the skin before.
+    SkinStep<double> carried(const Skin<double> &before_dot) const;
+
+    /// Reverse of carried(): the derivatives in the skin before.
+    Skin<double> reverse_carried(const SkinStep<double> &bar) const;
+
+    /// Returns the derivatives in rate and time.
+    std::array<SkinStep<double>, 2> slopes(const Skin<double> &before) const;
+
+  private:
+    using Modes = SkinsBeneathFilm::Modes;
+
+    /// Derivatives by eigenvectors.
+    struct Slopes
+    {
+      std::array<Modes, n_skin_modes> after, mean;                 ///< in the rate, of what was there before
+      Modes                           after_source, mean_source;   ///< in the rate, of what comes
+      Modes                           mean_time, mean_source_time; ///< in the time
+    };
+    const Slopes &slopes() const;
+
+    const SkinsBeneathFilm       &film_;
+    double                        time_;
+    Modes                         after_, mean_;               ///< parts of what was there before
+    Modes                         after_source_, mean_source_; ///< what comes
+    mutable std::optional<Slopes> slopes_;                     ///< made when they are asked for
+  };
+
+  /// A step on dual numbers; rate and time are those of the propagator, with their derivatives.
+  SkinStep<Dual>
+  skin_step(const SkinPropagator &over, const Dual &rate, const Skin<Dual> &before, const Dual &time);
+  inline SkinStep<double>
+  skin_step(const SkinPropagator &over, const double, const Skin<double> &before, const double)
+  {
+    return over.step(before);
   }
 
-  /// Returns a skin after a time without contact.
+  /// Returns the parts that are left of the modes of a skin after a time without contact.
   /// @param time  [s], >= 0
   template <typename Number>
-  Skin<Number> healed(Skin<Number> skin, const Number &time)
+  Skin<Number> healing(const Number &time)
   {
     using std::exp;
+    Skin<Number> left;
     for (unsigned int j = 0; j < n_skin_modes; ++j)
-      skin[j] *= exp(Number(-skin_rates[j] * time));
+      left[j] = exp(Number(-skin_rates[j] * time));
+    return left;
+  }
+
+  /// Returns the skin of which these parts are left.
+  template <typename Number>
+  Skin<Number> healed(Skin<Number> skin, const Skin<Number> &left)
+  {
+    for (unsigned int j = 0; j < n_skin_modes; ++j)
+      skin[j] *= left[j];
     return skin;
   }
 

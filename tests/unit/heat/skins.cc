@@ -32,7 +32,7 @@ namespace
         for (int n = 60; n > 0; --n)
           exact = x + 0.5 * n / exact;
         exact = x < 2. ? std::exp(x * x) * std::erfc(x) : 1. / (std::sqrt(M_PI) * exact);
-        worst = std::max(worst, std::abs(1. - drop_of(film.step({}, t).after) - exact));
+        worst = std::max(worst, std::abs(1. - drop_of(SkinPropagator(film, t).step({}).after) - exact));
       }
     }
     std::cout << "beside erfc within 0.6 %: " << yes(worst < 0.006)
@@ -55,19 +55,23 @@ namespace
       for (const double time : {1e-3, 0.07, 5.})
       {
         const SkinsBeneathFilm film(rate);
-        const Skin<double>     m    = some_skin(numbers);
-        const auto             step = film.step(m, time), first = film.step(m, 0.5 * time),
-                   second     = film.step(first.after, 0.5 * time);
+        const Skin<double>     m = some_skin(numbers);
+        const SkinPropagator   over(film, time), half(film, 0.5 * time);
+        const auto             step = over.step(m), first = half.step(m), second = half.step(first.after);
         halves                = std::max({halves,
                                           (step.after - second.after).norm(),
                                           (step.mean - 0.5 * (first.mean + second.mean)).norm()});
         const auto difference = [&](const double by_rate, const double by_time) {
-          constexpr double t = 1e-4;
-          const auto up      = SkinsBeneathFilm(rate * (1. + t * by_rate)).step(m, time * (1. + t * by_time)),
-                     down    = SkinsBeneathFilm(rate * (1. - t * by_rate)).step(m, time * (1. - t * by_time));
+          constexpr double t  = 1e-4;
+          const auto       at = [&](const double rate, const double time) {
+            const SkinsBeneathFilm film(rate);
+            return SkinPropagator(film, time).step(m);
+          };
+          const auto up   = at(rate * (1. + t * by_rate), time * (1. + t * by_time)),
+                     down = at(rate * (1. - t * by_rate), time * (1. - t * by_time));
           return SkinStep<double>{(up.after - down.after) / (2. * t), (up.mean - down.mean) / (2. * t)};
         };
-        const auto exact = film.slopes(m, time);
+        const auto exact = over.slopes(m);
         for (const int way : {0, 1})
         {
           const auto   found = difference(way == 0, way == 1);
@@ -77,9 +81,9 @@ namespace
                                          (found.mean - scale * exact[way].mean).norm()});
         }
         const Skin<double>     x = some_skin(numbers);
-        const SkinStep<double> y{some_skin(numbers), some_skin(numbers)}, Ax = film.carried(x, time);
+        const SkinStep<double> y{some_skin(numbers), some_skin(numbers)}, Ax = over.carried(x);
         const double           forward = Ax.after * y.after + Ax.mean * y.mean;
-        transpose = std::max(transpose, std::abs(film.reverse_carried(y, time) * x / forward - 1.));
+        transpose = std::max(transpose, std::abs(over.reverse_carried(y) * x / forward - 1.));
         // All on dual numbers.
         Skin<Dual> dual;
         for (unsigned int j = 0; j < n_skin_modes; ++j)
@@ -90,7 +94,7 @@ namespace
         Dual dual_rate(rate), dual_time(time);
         dual_rate.fastAccessDx(0) = 0.3;
         dual_time.fastAccessDx(0) = -0.2;
-        const auto whole          = skin_step(film, dual_rate, dual, dual_time);
+        const auto whole          = skin_step(over, dual_rate, dual, dual_time);
         for (unsigned int j = 0; j < n_skin_modes; ++j)
         {
           const double after = Ax.after[j] + 0.3 * exact[0].after[j] - 0.2 * exact[1].after[j],
@@ -102,7 +106,7 @@ namespace
         }
         // m + t m' + t²/2 m'':  the derivatives in time at once, and in rate over the time.
         constexpr double tiny = 1e-9;
-        const auto       at   = film.slopes(m, tiny);
+        const auto       at   = SkinPropagator(film, tiny).slopes(m);
         for (unsigned int j = 0; j < n_skin_modes; ++j)
         {
           const double source = skin_weights[j] * (1. - drop_of(m)),
@@ -121,8 +125,9 @@ namespace
               << ", dual numbers: " << yes(duals < 1e-14) << "\n";
     if (halves >= 1e-13 || slopes >= 1e-7 || short_time >= 1e-5 || transpose >= 1e-13 || duals >= 1e-14)
       std::cout << halves << ' ' << slopes << ' ' << short_time << ' ' << transpose << ' ' << duals << "\n";
-    const Skin<double> m = some_skin(numbers), later = healed(m, 0.3);
-    double             off = (SkinsBeneathFilm(2.).step(m, 0.).after - m).norm() + (healed(m, 0.) - m).norm();
+    const Skin<double>     m = some_skin(numbers), later = healed(m, healing(0.3));
+    const SkinsBeneathFilm film(2.);
+    double off = (SkinPropagator(film, 0.).step(m).after - m).norm() + (healed(m, healing(0.)) - m).norm();
     for (unsigned int j = 0; j < n_skin_modes; ++j)
       off += std::abs(later[j] - m[j] * std::exp(-0.3 * skin_rates[j]));
     std::cout << "itself after no time, and out of contact each by its rate: " << yes(off < 1e-14) << "\n";
