@@ -202,6 +202,21 @@ namespace retroforge
       }
     }
 
+    /// Metal that gives heat to dies from so far off that one would see it: a gap is for what meshes leave between surfaces
+    /// that touch.
+    void tell_wide_gap(const Parameters &parameters, const Scene &scene, std::vector<std::string> &warnings)
+    {
+      constexpr double      most = 0.2; // of the edges' length
+      const HeatLaw<double> heat = parameters.heat.law();
+      const double          edge = parameters.edge_length(scene.mesh);
+      if (heat.conducts() && heat.gap > most * edge)
+        warnings.push_back("Heat/contact gap = " + as_text(heat.gap) + " mm is " +
+                           as_text(rounded_down(heat.gap / edge)) +
+                           " of the element size: metal that far from a die gives it heat as if it touched; "
+                           "it is for what is left "
+                           "between surfaces that touch, 0.1 mm");
+    }
+
     /// A billet that dies touch along lines or at points only, in the first increment.
     void tell_loose(const Parameters           &parameters,
                     const Scene                &scene,
@@ -237,5 +252,6 @@ namespace retroforge
     tell_rims(parameters, scene, process, warnings);
     tell_unseen(parameters, scene, process, X, approaches, warnings);
     tell_loose(parameters, scene, process, X, warnings);
+    tell_wide_gap(parameters, scene, warnings);
   }
 } // namespace retroforge

@@ -292,6 +292,12 @@ namespace retroforge
                   "'" + name + "' changes nothing, as " + found->second,
                   "a derivative is taken by what acts",
                   "leave it out, or give that number another value: a friction of 1e-6 is next to none");
+    for (const std::string time : {"transfer time", "dwell time"})
+      if (name == "heat/" + time && process_.heat.conducts())
+        throw Error(where,
+                    "names '" + name + "', and Heat/" + time + " is 0",
+                    "a time that is a parameter is there to begin with",
+                    "set Heat/" + time + " > 0: 0.01 s is next to none");
     const std::string near = nearest_name(name, known, 6);
     throw Error(where,
                 "'" + name + "' is not a parameter of this scene",

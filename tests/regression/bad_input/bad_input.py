@@ -171,6 +171,8 @@ MISTAKES = {
                                                          "Die upper/free form region to=0, 0, 0"), r"Die upper/free form region from.*lower"),
     "mode that a die does not have": (settings("Die upper/shape=punch", "Die upper/free form modes=3",
                                                "Design/parameters=die upper/free form 4"), r"Design/parameters.*free form 4.*did you mean"),
+    "a time that is none": (settings("Heat/heating=conduction", "Material/temperature=900", "Design/parameters=heat/transfer time"),
+                            r"Design/parameters.*heat/transfer time.*is 0.*set Heat/transfer time > 0"),
     "free form of a die without modes": (settings("Die upper/shape=punch", "Design/parameters=die upper/free form"),
                                          r"Design/parameters.*die upper/free form' is not a parameter"),
     "unknown shape of a die": (settings("Die lower/shape=cone"), r"Die lower/shape.*cone.*bell"),
@@ -429,6 +431,8 @@ def told():
             ("a slender mesh", file_mesh("slender") + settings("Press/stroke=0.1", "Press/increments=1"),
              r"note: faces of the billet's mesh meet at [1-9][.0-9]* degrees, .*Remeshing/first mesh = true"),
             ("metal in a die", settings("Contact/largest depth=0"), r"the surface was up to .* inside die"),
+            ("heat from afar", settings("Heat/heating=conduction", "Material/temperature=900", "Heat/contact gap=5"),
+             r"warning: Heat/contact gap = 5 mm is [.0-9]+ of the element size"),
             ("die that nothing touches", settings("Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0"),
              r"warning: no node touched die side")):
         done = run(["case.prm", "--output", "told", "--overwrite"] + short + more, command="simulate")
