@@ -15,9 +15,12 @@ namespace
     for (const char *of_launchers : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
       if (std::getenv(of_launchers))
         return;
-    for (const auto &[name, value] : {std::make_pair("OMPI_MCA_ess_singleton_isolated", "1"),
-                                      std::make_pair("OMPI_MCA_pml", "ob1"),
-                                      std::make_pair("OMPI_MCA_btl", "self")})
+    for (const auto &[name, value] :
+         {std::make_pair("OMPI_MCA_ess_singleton_isolated", "1"),
+          // A folder in /tmp that all such programs would share, which one may remove where another makes it.
+          std::make_pair("OMPI_MCA_orte_create_session_dirs", "0"),
+          std::make_pair("OMPI_MCA_pml", "ob1"),
+          std::make_pair("OMPI_MCA_btl", "self")})
       setenv(name, value, 0);
   }
 } // namespace
