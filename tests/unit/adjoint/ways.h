@@ -140,7 +140,7 @@ namespace retroforge
     {
       const double adjoint = slope(run, bars[o], way);
       const double scale   = std::max(std::abs(adjoint), floor * std::abs(value(o, 0.)));
-      double       best = 1e300, order = 0.;
+      double       best = 1e300, least = 2.;
       for (const double h : {1e-4, 1e-5, 1e-6})
         best = std::min(best, std::abs((value(o, h) - value(o, -h)) / (2. * h) - adjoint) / scale);
       const auto remainder = [&](const double t) {
@@ -148,13 +148,11 @@ namespace retroforge
       };
       // Between steps over which the remainder is not of second order yet and those that leave rounding of it.
       for (const double h : {1e-2, 3e-3, 1e-3, 1e-4})
-        if (const double found = std::log2(remainder(h) / remainder(0.5 * h));
-            std::abs(found - 2.) < std::abs(order - 2.))
-          order = found;
-      errors.push_back(
-        {std::abs(tangents[o].dx(0) - adjoint) / scale,
-         best,
-         std::abs(adjoint) >= tested * std::abs(value(o, 0.)) ? std::max(0., 2. - order) : 0.});
+        if (const double missing = 2. - std::log2(remainder(h) / remainder(0.5 * h)); missing < least)
+          least = std::max(0., missing);
+      errors.push_back({std::abs(tangents[o].dx(0) - adjoint) / scale,
+                        best,
+                        std::abs(adjoint) >= tested * std::abs(value(o, 0.)) ? least : 0.});
     }
     return errors;
   }
