@@ -224,8 +224,7 @@ namespace retroforge
       std::vector<Expected<Number>> of_nodes, of_middles;
     };
 
-    /// Of what touches at the end: what was out of reach at the start has no part, and of edges whose ends touched all
-    /// the while, which were not looked at, those of both ends.
+    /// Of what touches at the end: what was out of reach at the start has no part.
     template <typename Number>
     Expectations<Number> expectations(const Earlier                &earlier,
                                       const ThermalSurface<Number> &start,
@@ -240,11 +239,15 @@ namespace retroforge
       for (const auto &edge : surface.edges)
       {
         const unsigned int e = earlier.edge(edge);
-        later.of_middles.push_back(e == invalid_index ? Expected<Number>{later.of_nodes[edge.ends[0]].part *
-                                                                         later.of_nodes[edge.ends[1]].part}
-                                                      : start.edges[e].later);
+        later.of_middles.push_back(e == invalid_index ? Expected<Number>() : start.edges[e].later);
       }
       return later;
+    }
+
+    /// What touches in the second half is nearer than the gap and the gap that was expected, itself below the first.
+    ThermalReach reach_at_end(const double gap)
+    {
+      return {2. * gap};
     }
 
     /// As far as a point at a gap touches in the second half.
@@ -336,10 +339,9 @@ namespace retroforge
                                                const std::vector<bool>      &touch,
                                                const double                  gap)
   {
-    const ThermalReach     reach(gap);
-    ThermalSurface<Number> surface = find_touching(view, touch, reach);
+    ThermalSurface<Number> surface = find_touching(view, touch, reach_at_end(gap));
     const Sights<Number>   at(view, surface);
-    const FrictionRamp     w = reach.fading();
+    const FrictionRamp     w = ThermalReach(gap).fading();
     complete(view, at, at_end(at, expectations(Earlier(start), start, surface), w), w, surface);
     return surface;
   }
@@ -426,15 +428,14 @@ namespace retroforge
       to.part += from.part;
       to.gap += from.gap;
     };
-    const auto add_to_node = [&](const unsigned int i, const Expected<double> &later_bar) {
+    for (unsigned int i = 0; i < surface.touching.size(); ++i)
+    {
       const auto &node = surface.touching[i];
+      const auto  later_bar =
+        reverse_touches(at.of_nodes[i].delta, later.of_nodes[i], w, own_bar.of_nodes[i], nodes_bar[i].delta);
       if (const unsigned int entry = earlier.node(node.die, node.node); entry != invalid_index)
         add(later_bar, start_bar.later[entry]);
-    };
-    for (unsigned int i = 0; i < surface.touching.size(); ++i)
-      add_to_node(
-        i,
-        reverse_touches(at.of_nodes[i].delta, later.of_nodes[i], w, own_bar.of_nodes[i], nodes_bar[i].delta));
+    }
     for (unsigned int e = 0; e < surface.edges.size(); ++e)
     {
       const auto &edge      = surface.edges[e];
@@ -442,9 +443,6 @@ namespace retroforge
         at.of_middles[e].delta, later.of_middles[e], w, own_bar.of_middles[e], middles_bar[e].delta);
       if (const unsigned int entry = earlier.edge(edge); entry != invalid_index)
         add(later_bar, start_bar.later_of_edge[entry]);
-      else
-        for (unsigned int i = 0; i < 2; ++i)
-          add_to_node(edge.ends[i], {later_bar.part * later.of_nodes[edge.ends[1 - i]].part});
     }
     reverse_sights(view, surface, nodes_bar, middles_bar, X_bar, dies_bar);
   }

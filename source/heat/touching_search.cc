@@ -23,16 +23,15 @@ namespace retroforge
     };
 
     template <typename Number>
-    Seen<Number>
-    seen_by(const ContactView<Number> &view, const unsigned int d, const Arrivals<Number> &arrivals)
+    Seen<Number> seen_by(const ContactView<Number> &view, const unsigned int d, const ThermalReach &wanted)
     {
       const Die &die          = view.dies[d];
       const Vec3 displacement = values(view.states[d].displacement);
       const auto delta        = [&](const Vec3 &x, const DieFeature &feature) {
         return value_of(die.project(Vector3<Number>(x), view.states[d], feature).delta);
       };
-      Seen<Number>      seen;
-      std::vector<bool> touches(view.mesh.n_nodes(), false); // by itself, as far as can be
+      const Arrivals<Number> arrivals(wanted, view.states);
+      Seen<Number>           seen;
       for (NodeIndex k = 0; k < view.mesh.n_nodes(); ++k)
         if (view.topology.is_on_surface(k))
         {
@@ -41,16 +40,12 @@ namespace retroforge
           const DieFeature feature = die.closest(x, displacement, reach);
           if (!feature.found())
             continue;
-          const double off = delta(x, feature);
-          if (off < reach)
+          if (delta(x, feature) < reach)
             seen.nodes.emplace(k, feature);
-          touches[k] = off <= 0.;
         }
       for (std::size_t e = 0; e < view.topology.surface_edges.size() && die.surface(); ++e)
       {
-        const auto &nodes = view.topology.surface_edges[e];
-        if (touches[nodes[0]] && touches[nodes[1]])
-          continue;
+        const auto      &nodes   = view.topology.surface_edges[e];
         const Vec3       x       = values(middle_of(view.X, nodes));
         const double     reach   = arrivals.reach(d, MetalVelocity<Number>(view, nodes).get());
         const DieFeature feature = die.closest(x, displacement, reach);
@@ -67,7 +62,8 @@ namespace retroforge
           if (ends[i].found())
             bulge += 0.5 * delta(end, ends[i]);
         }
-        if (!ends[0].found() || !ends[1].found() || !(bulge > 0.))
+        // What comes nearer may be found with a bulge at the end of the increment.
+        if (!ends[0].found() || !ends[1].found() || !(bulge > 0. || wanted.path > 0.))
           continue;
         for (unsigned int i = 0; i < 2; ++i)
           seen.nodes.emplace(nodes[i], ends[i]);
@@ -83,12 +79,11 @@ namespace retroforge
   find_touching(const ContactView<Number> &view, const std::vector<bool> &touch, const ThermalReach &reach)
   {
     AssertDimension(touch.size(), view.dies.size());
-    const Arrivals<Number> arrivals(reach, view.states);
     ThermalSurface<Number> surface{{}, {}, {}, std::vector<Number>(view.mesh.n_nodes(), Number(0.))};
     for (unsigned int d = 0; d < view.dies.size(); ++d)
       if (touch[d])
       {
-        const Seen<Number>                seen = seen_by(view, d, arrivals);
+        const Seen<Number>                seen = seen_by(view, d, reach);
         std::map<NodeIndex, unsigned int> entries;
         for (const auto &[k, feature] : seen.nodes)
         {

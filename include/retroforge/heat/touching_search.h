@@ -14,7 +14,8 @@ namespace retroforge
     return 0.5 * (X[nodes[0]] + X[nodes[1]]);
   }
 
-  /// Returns a surface of all nodes and edges that may touch, without weights.
+  /// Returns a surface of all nodes and edges that may touch, without weights: edges where a die bulges into them, or which
+  /// come nearer.
   /// @param touch  whether each die is there to be touched
   template <typename Number>
   ThermalSurface<Number>
