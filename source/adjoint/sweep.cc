@@ -36,13 +36,16 @@ namespace retroforge
                                         const ForgingState             &end,
                                         const std::vector<Combination> &combinations)
     {
-      std::vector<Costate> costates(combinations.size(),
-                                    {zero_costate<3>(end.workpiece.X.size(),
-                                                     end.workpiece.strain.size(),
-                                                     run.process.heat.warms(),
-                                                     run.process.heat.conducts(),
-                                                     run.process.material.is_damaged()),
-                                     {no_process_derivatives(run.process, run.model.dies), run.model.comm}});
+      std::vector<Costate> costates(
+        combinations.size(),
+        {zero_costate<3>(end.workpiece.X.size(),
+                         end.workpiece.strain.size(),
+                         run.process.heat.warms(),
+                         run.process.heat.conducts()
+                           ? NodeSkins<double>::none(end.workpiece.X.size(), run.model.dies.size())
+                           : NodeSkins<double>(),
+                         run.process.material.is_damaged()),
+         {no_process_derivatives(run.process, run.model.dies), run.model.comm}});
       for (std::size_t o = 0; o < run.objectives.size(); ++o)
       {
         if (!run.objectives[o].at_end)
@@ -57,7 +60,7 @@ namespace retroforge
           add<NodalVectors<double>>(weight, bar.X, workpiece.X);
           add<std::vector<double>>(weight, bar.q, workpiece.strain);
           add<std::vector<double>>(weight, bar.T, workpiece.temperature);
-          add<std::vector<Skin<double>>>(weight, bar.skin, workpiece.skin);
+          add(weight, bar.skin, workpiece.skin);
           add<std::vector<double>>(weight, bar.damage, workpiece.damage);
           PhysicsBar physics_bar(run.model.dies);
           add(weight, bar.heat, physics_bar.heat);
@@ -212,7 +215,7 @@ namespace retroforge
       const NodalVectors<double> X = std::move(starts.back());
       starts.pop_back();
       if (!end.remembered.empty())
-        state = end.remembered[i].start;
+        state = end.remembered[i].start.get();
       state.X        = X;
       state.velocity = velocity;
       if (record.remesh && !velocity.empty())

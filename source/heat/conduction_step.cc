@@ -270,7 +270,7 @@ namespace retroforge
     template <typename Number>
     ConductionResult<Number> result_of(const ConductionStep<Number> &step, const Trace<Number> &trace)
     {
-      ConductionResult<Number> result{trace.T_low, std::vector<Number>(trace.T_low.size())};
+      ConductionResult<Number> result{trace.T_low, std::vector<Number>(trace.T_low.size()), trace.T_low};
       for_each_edge(step.edges, [&](const unsigned int e, const NodeIndex a, const NodeIndex b) {
         const Number heat = part_of(trace, trace.over[e], a, b) * trace.over[e];
         result.T[a] += heat / step.capacities[a];
@@ -278,7 +278,9 @@ namespace retroforge
       });
       for (NodeIndex i = 0; i < result.T.size(); ++i)
       {
-        const Number heat = part_of(trace, trace.through[i], i, invalid_index) * trace.through[i];
+        const Number part = part_of(trace, trace.through[i], i, invalid_index),
+                     heat = part * trace.through[i];
+        result.at_films[i] += part * (trace.theta[i] - trace.T_low[i]);
         result.film_heat[i] =
           heat + step.dt * (trace.films_low.source[i] - trace.films_low.conductance[i] * trace.T_low[i]);
         result.T[i] += heat / step.capacities[i];
@@ -340,12 +342,13 @@ namespace retroforge
     }
   } // namespace
 
-  std::vector<double> reverse_conduction_step(const ConductionStep<double> &step,
-                                              const std::vector<double>    &T,
-                                              const FilmsAt<double>        &films,
-                                              const std::vector<double>    &T_bar,
-                                              const ReverseFilmsAt         &reverse_films,
-                                              ConductionStepBar            &bar)
+  ReversedConductionStep reverse_conduction_step(const ConductionStep<double> &step,
+                                                 const std::vector<double>    &T,
+                                                 const FilmsAt<double>        &films,
+                                                 const std::vector<double>    &T_bar,
+                                                 const std::vector<double>    &at_films_bar,
+                                                 const ReverseFilmsAt         &reverse_films,
+                                                 ConductionStepBar            &bar)
   {
     const Trace<double>                trace = trace_of(step, T, films);
     const std::vector<double>         &g = step.conductances, &C = step.capacities;
@@ -355,7 +358,8 @@ namespace retroforge
     std::array<std::vector<double>, 2> part_bar, wanted_bar;
     part_bar.fill(std::vector<double>(n, 0.));
     wanted_bar = part_bar;
-    NodeFilms<double> films_low_bar(n), films_high_bar(n);
+    NodeFilms<double>   films_low_bar(n), films_high_bar(n);
+    std::vector<double> at_films(n);
 
     // What is added, limited.
     const auto reverse_part =
@@ -377,8 +381,13 @@ namespace retroforge
     {
       const double part = part_of(trace, trace.through[i], i, invalid_index);
       bar.capacities[i] -= T_bar[i] * part * trace.through[i] / (C[i] * C[i]);
-      through_bar[i] = part * T_bar[i] / C[i];
-      reverse_part(trace.through[i], i, invalid_index, trace.through[i] * T_bar[i] / C[i]);
+      through_bar[i]   = part * T_bar[i] / C[i];
+      const double off = trace.theta[i] - trace.T_low[i];
+      reverse_part(
+        trace.through[i], i, invalid_index, trace.through[i] * T_bar[i] / C[i] + off * at_films_bar[i]);
+      low_bar[i] += (1. - part) * at_films_bar[i];
+      theta_bar[i] += part * at_films_bar[i];
+      at_films[i] = trace.T_low[i] + part * off;
     }
 
     // The parts.
@@ -479,6 +488,6 @@ namespace retroforge
           step, step.bounded, trace.films_low, 1., T, trace.T_low, low_bar, bar.bounded, films_low_bar, bar),
         from_bar);
     reverse_films(T, films_low_bar, from_bar);
-    return from_bar;
+    return {from_bar, at_films};
   }
 } // namespace retroforge

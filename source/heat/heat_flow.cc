@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/heat/conduction_step.h>
+#include <retroforge/heat/contact_skins.h>
 #include <retroforge/heat/heat_flow.h>
-#include <retroforge/heat/node_skins.h>
-
-#include <optional>
 
 namespace retroforge
 {
@@ -29,20 +27,6 @@ namespace retroforge
       return x;
     }
 
-    /// Films to the dies.
-    template <typename Number>
-    NodeFilms<Number> contact_films(const HeatFlow<Number> &flow, const std::vector<Number> &parts)
-    {
-      NodeFilms<Number> films(flow.network.volumes.size());
-      for (const auto &at : flow.surface.touching)
-      {
-        const Number phi = at.area * flow.contact_film * parts[at.node];
-        films.conductance[at.node] += phi;
-        films.source[at.node] += phi * flow.dies[at.die].temperature;
-      }
-      return films;
-    }
-
     template <typename Number>
     FilmsAt<Number> films_at(const HeatFlow<Number> &flow, const NodeFilms<Number> &contact)
     {
@@ -58,184 +42,44 @@ namespace retroforge
         return films;
       };
     }
-
-    /// h/b, of metal and die together.
-    template <typename Number>
-    Number film_rate(const HeatFlow<Number> &flow)
-    {
-      const Number metal = metals_effusivity(flow.law.conductivity, flow.law.capacity);
-      return flow.contact_film / joint_effusivity(metal, flow.law.die_effusivity);
-    }
-
-    /// The time in which a node touches no die. It comes first: to a node that arrives.
-    template <typename Number>
-    Number open_time(const NodeContacts<Number> &touching, const NodeIndex k, const Number &dt)
-    {
-      const Number open = 1. - touching.weight[k];
-      return value_of(open) > 0. ? Number(open * dt) : Number(0.);
-    }
-
-    /// What times make of skins. Most nodes touch all of the time, or none of it.
-    template <typename Number>
-    class SkinsOverStep
-    {
-    public:
-      SkinsOverStep(const Number &rate, const Number &dt)
-          : rate_(rate), dt_(value_of(dt)), healing_(healing(dt))
-      {
-        if (value_of(rate) > 0.)
-          whole_.emplace(film_.emplace(value_of(rate)), dt_);
-      }
-
-      Skin<Number> left(const Number &open) const { return value_of(open) == dt_ ? healing_ : healing(open); }
-
-      /// f(SkinPropagator) of a time that a node touches.
-      template <typename F>
-      auto touching(const double time, const F &f) const
-      {
-        return time == dt_ ? f(*whole_) : f(SkinPropagator(*film_, time));
-      }
-
-      const Number &rate() const { return rate_; }
-
-      SkinsOverStep(const SkinsOverStep &) = delete; // the propagator refers to the film
-
-    private:
-      Number                          rate_;
-      double                          dt_;
-      Skin<Number>                    healing_;
-      std::optional<SkinsBeneathFilm> film_;
-      std::optional<SkinPropagator>   whole_;
-    };
-
-    /// The parts 1/(1 + R) of films to dies; skins go on.
-    template <typename Number>
-    std::vector<Number>
-    follow_skins(const HeatFlow<Number> &flow, const Number &dt, std::vector<Skin<Number>> &skin)
-    {
-      const NodeContacts<Number>  touching(flow);
-      const SkinsOverStep<Number> skins(film_rate(flow), dt);
-      std::vector<Number>         parts(skin.size(), Number(1.));
-      for (NodeIndex k = 0; k < skin.size(); ++k)
-      {
-        if (value_of(drop_of(skin[k])) > 0.)
-          skin[k] = healed(skin[k], skins.left(open_time(touching, k, dt)));
-        if (touching.has_film(flow, k))
-        {
-          const Number time = touching.weight[k] * dt;
-          const auto   step = skins.touching(value_of(time), [&](const SkinPropagator &over) {
-            return skin_step(over, skins.rate(), skin[k], time);
-          });
-          skin[k]           = step.after;
-          parts[k]          = 1. / drops_at(skin_arguments(flow, k, touching, step.mean)).all;
-        }
-      }
-      return parts;
-    }
-
-    /// Reverse of follow_skins().
-    /// @param skin      before
-    /// @param skin_bar  derivatives in those after on entry, in those before on exit
-    void reverse_follow_skins(const HeatFlow<double>          &flow,
-                              const double                     dt,
-                              const std::vector<Skin<double>> &skin,
-                              const std::vector<double>       &parts_bar,
-                              std::vector<Skin<double>>       &skin_bar,
-                              HeatFlowBar                     &bar)
-    {
-      const NodeContacts<double>  touching(flow);
-      NodeContactsBar             nodes(flow);
-      const SkinsOverStep<double> skins(film_rate(flow), dt);
-      double                      rate_bar = 0.;
-      for (NodeIndex k = 0; k < skin.size(); ++k)
-      {
-        const bool   is_there = drop_of(skin[k]) > 0.;
-        const double open     = open_time(touching, k, dt);
-        if (touching.has_film(flow, k))
-        {
-          using Partial             = Sacado::Fad::SFad<double, n_skin_arguments>;
-          const Skin<double> before = is_there ? healed(skin[k], skins.left(open)) : skin[k];
-          skins.touching(touching.weight[k] * dt, [&](const SkinPropagator &over) {
-            SkinArguments<double>  x_bar = skin_arguments(flow, k, touching, over.step(before).mean);
-            SkinArguments<Partial> x;
-            int                    i = 0;
-            for_each_number(
-              [&](const double value, Partial &to) { to = Partial(n_skin_arguments, i++, value); }, x_bar, x);
-            const Partial part = 1. / drops_at(x).all;
-            i                  = 0;
-            for_each_number([&](double &to) { to = parts_bar[k] * part.dx(i++); }, x_bar);
-            nodes.reverse_arguments(flow, k, touching, x_bar, bar);
-            const SkinStep<double> step_bar{skin_bar[k], x_bar.drops};
-            const auto             slopes = over.slopes(before);
-            const auto             along  = [&](const SkinStep<double> &slope) {
-              return slope.after * step_bar.after + slope.mean * step_bar.mean;
-            };
-            rate_bar += along(slopes[0]);
-            const double time_bar = along(slopes[1]);
-            nodes.weight[k] += time_bar * dt;
-            bar.dt += time_bar * touching.weight[k];
-            skin_bar[k] = over.reverse_carried(step_bar);
-          });
-        }
-        if (is_there)
-          skin_bar[k] = healed(skin_bar[k], skins.left(open));
-        if (is_there && open > 0.)
-        {
-          double open_bar = 0.;
-          for (unsigned int j = 0; j < n_skin_modes; ++j)
-            open_bar -= skin_rates[j] * skin_bar[k][j] * skin[k][j];
-          nodes.weight[k] -= open_bar * dt;
-          bar.dt += open_bar * (1. - touching.weight[k]);
-        }
-      }
-      nodes.reverse_touching(flow, bar);
-
-      // rate = h (1/b_m + 1/b_d)
-      const double metal = metals_effusivity(flow.law.conductivity, flow.law.capacity),
-                   die = flow.law.die_effusivity, metal_bar = -rate_bar * flow.contact_film / (metal * metal);
-      bar.contact_film += rate_bar / joint_effusivity(metal, die);
-      bar.law.conductivity += metal_bar * 0.5 * metal / flow.law.conductivity;
-      bar.law.capacity += metal_bar * 0.5 * metal / flow.law.capacity;
-      bar.law.die_effusivity -= rate_bar * flow.contact_film / (die * die);
-    }
   } // namespace
 
   template <typename Number>
-  Number conduct(const HeatFlow<Number>    &flow,
-                 const Number              &dt,
-                 std::vector<Number>       &T,
-                 std::vector<Skin<Number>> &skin)
+  Number
+  conduct(const HeatFlow<Number> &flow, const Number &dt, std::vector<Number> &T, NodeSkins<Number> &skin)
   {
     AssertDimension(T.size(), flow.network.volumes.size());
-    AssertDimension(skin.size(), T.size());
-    const NodeFilms<Number>   contact = contact_films(flow, follow_skins(flow, dt, skin));
-    const std::vector<Number> C       = scaled(flow.law.capacity, flow.network.volumes),
-                              g       = scaled(flow.law.conductivity, flow.network.conductances),
-                              bounded = scaled(flow.law.conductivity, flow.network.bounded);
+    AssertDimension(skin.metal.size(), T.size());
+    AssertDimension(skin.dies.size(), flow.dies.size());
+    const ContactSkins<Number> skins(flow, dt, T, skin);
+    const NodeFilms<Number>    contact = skins.films();
+    const std::vector<Number>  C       = scaled(flow.law.capacity, flow.network.volumes),
+                              g        = scaled(flow.law.conductivity, flow.network.conductances),
+                              bounded  = scaled(flow.law.conductivity, flow.network.bounded);
     auto   result = conduction_step<Number>({flow.edges, C, g, bounded, dt}, T, films_at(flow, contact));
     Number heat(0.);
     for (const Number &of_node : result.film_heat)
       heat += of_node;
+    skins.advance(result.at_films, skin);
     T = std::move(result.T);
     return heat;
   }
 
   template double
-  conduct(const HeatFlow<double> &, const double &, std::vector<double> &, std::vector<Skin<double>> &);
-  template Dual conduct(const HeatFlow<Dual> &, const Dual &, std::vector<Dual> &, std::vector<Skin<Dual>> &);
+                conduct(const HeatFlow<double> &, const double &, std::vector<double> &, NodeSkins<double> &);
+  template Dual conduct(const HeatFlow<Dual> &, const Dual &, std::vector<Dual> &, NodeSkins<Dual> &);
 
-  void reverse_conduct(const HeatFlow<double>          &flow,
-                       const double                     dt,
-                       const std::vector<double>       &T,
-                       const std::vector<Skin<double>> &skin,
-                       std::vector<double>             &T_bar,
-                       std::vector<Skin<double>>       &skin_bar,
-                       HeatFlowBar                     &bar)
+  void reverse_conduct(const HeatFlow<double>    &flow,
+                       const double               dt,
+                       const std::vector<double> &T,
+                       const NodeSkins<double>   &skin,
+                       std::vector<double>       &T_bar,
+                       NodeSkins<double>         &skin_bar,
+                       HeatFlowBar               &bar)
   {
-    const std::size_t         n       = T.size();
-    std::vector<Skin<double>> after   = skin;
-    const std::vector<double> parts   = follow_skins(flow, dt, after);
-    const NodeFilms<double>   contact = contact_films(flow, parts);
+    const std::size_t         n = T.size();
+    const ReverseContactSkins skins(flow, dt, T, skin);
+    const NodeFilms<double>   contact = skins.films();
     const std::vector<double> C       = scaled(flow.law.capacity, flow.network.volumes),
                               g       = scaled(flow.law.conductivity, flow.network.conductances),
                               bounded = scaled(flow.law.conductivity, flow.network.bounded);
@@ -265,8 +109,14 @@ namespace retroforge
           bar.law.surroundings += scale * (3. * a * a + 2. * t * a + t * t);
         }
       };
-    T_bar = reverse_conduction_step(
-      {flow.edges, C, g, bounded, dt}, T, films_at(flow, contact), T_bar, reverse_films, step_bar);
+    auto reversed = reverse_conduction_step({flow.edges, C, g, bounded, dt},
+                                            T,
+                                            films_at(flow, contact),
+                                            T_bar,
+                                            skins.reverse_temperatures(skin_bar),
+                                            reverse_films,
+                                            step_bar);
+    T_bar         = std::move(reversed.T_bar);
     bar.dt += step_bar.dt;
     for (NodeIndex k = 0; k < n; ++k)
     {
@@ -281,20 +131,7 @@ namespace retroforge
       bar.network.conductances[e] += g_bar[e] * flow.law.conductivity;
     }
 
-    // Films to the dies.
-    std::vector<double> parts_bar(n, 0.);
-    for (std::size_t i = 0; i < flow.surface.touching.size(); ++i)
-    {
-      const auto  &at = flow.surface.touching[i];
-      const double t = flow.dies[at.die].temperature, film = flow.contact_film;
-      const double phi_bar = contact_bar.conductance[at.node] + contact_bar.source[at.node] * t;
-      bar.dies[at.die].temperature += contact_bar.source[at.node] * at.area * film * parts[at.node];
-      bar.surface.touching_area[i] += phi_bar * film * parts[at.node];
-      bar.contact_film += phi_bar * at.area * parts[at.node];
-      parts_bar[at.node] += phi_bar * at.area * film;
-    }
-
-    reverse_follow_skins(flow, dt, skin, parts_bar, skin_bar, bar);
+    skins.reverse(reversed.at_films, contact_bar, T_bar, skin_bar, bar);
   }
 
   namespace

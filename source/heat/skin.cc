@@ -61,6 +61,39 @@ namespace retroforge
     }
   } // namespace
 
+  KeptSkins::KeptSkins(const NodeSkins<double> &skins)
+      : n_nodes_(skins.metal.size()), n_dies_(skins.dies.size())
+  {
+    const Skin<double> none;
+    for (NodeIndex k = 0; k < n_nodes_; ++k)
+    {
+      bool is_there = skins.metal[k] != none;
+      for (const auto &die : skins.dies)
+        is_there = is_there || die[k] != none;
+      if (!is_there)
+        continue;
+      nodes_.push_back(k);
+      skins_.push_back(skins.metal[k]);
+      for (const auto &die : skins.dies)
+        skins_.push_back(die[k]);
+    }
+  }
+
+  NodeSkins<double> KeptSkins::all() const
+  {
+    if (n_nodes_ == 0)
+      return {};
+    auto skins = NodeSkins<double>::none(n_nodes_, n_dies_);
+    auto next  = skins_.begin();
+    for (const NodeIndex k : nodes_)
+    {
+      skins.metal[k] = *next++;
+      for (auto &die : skins.dies)
+        die[k] = *next++;
+    }
+    return skins;
+  }
+
   // With n_j = m_j/sqrt(beta_j) the equation is  n' = -S n + rate v,  S = diag(lambda) + rate v v^T,  v = sqrt(beta):
   // a symmetric matrix.
 
@@ -116,26 +149,16 @@ namespace retroforge
   SkinPropagator::SkinPropagator(const SkinsBeneathFilm &film, const double time) : film_(film), time_(time)
   {
     Assert(time >= 0., dealii::ExcMessage("time goes on"));
+    Modes after_source, mean_source;
     for (unsigned int i = 0; i < n_skin_modes; ++i)
     {
       const double z = film.eigenvalues[i] * time, out = film.rate * time * film.source[i];
-      after_[i]        = std::exp(-z);
-      mean_[i]         = g<1>(z);
-      after_source_[i] = mean_[i] * out;
-      mean_source_[i]  = g<2>(z) * out;
+      after_[i]       = std::exp(-z);
+      mean_[i]        = g<1>(z);
+      after_source[i] = mean_[i] * out;
+      mean_source[i]  = g<2>(z) * out;
     }
-  }
-
-  SkinStep<double> SkinPropagator::step(const Skin<double> &before) const
-  {
-    const Modes x = film_.to_eigenvectors(before);
-    Modes       after, mean;
-    for (unsigned int i = 0; i < n_skin_modes; ++i)
-    {
-      after[i] = after_[i] * x[i] + after_source_[i];
-      mean[i]  = mean_[i] * x[i] + mean_source_[i];
-    }
-    return {film_.from_eigenvectors(after), film_.from_eigenvectors(mean)};
+    source_ = {film.from_eigenvectors(after_source), film.from_eigenvectors(mean_source)};
   }
 
   SkinStep<double> SkinPropagator::carried(const Skin<double> &before) const
@@ -171,13 +194,15 @@ namespace retroforge
     if (slopes_)
       return *slopes_;
     Slopes &d = slopes_.emplace();
+    Modes   after_rate, mean_rate, after_time, mean_time;
     for (unsigned int i = 0; i < n_skin_modes; ++i)
     {
       const double w = film_.eigenvalues[i], z = w * time_, u = film_.source[i];
-      d.after_source[i]     = time_ * mean_[i] * u;
-      d.mean_source[i]      = time_ * g<2>(z) * u;
-      d.mean_time[i]        = w * slope_of_g<1>(z);
-      d.mean_source_time[i] = film_.rate * u * (g<2>(z) + z * slope_of_g<2>(z));
+      after_rate[i]  = time_ * mean_[i] * u;
+      mean_rate[i]   = time_ * g<2>(z) * u;
+      after_time[i]  = film_.rate * u * after_[i];
+      mean_time[i]   = film_.rate * u * (g<2>(z) + z * slope_of_g<2>(z));
+      d.mean_time[i] = w * slope_of_g<1>(z);
       // S changes by v v^T: a function of it by its mean slopes between eigenvalues.
       for (unsigned int j = 0; j < n_skin_modes; ++j)
       {
@@ -185,18 +210,20 @@ namespace retroforge
                      out = film_.rate * time_ * film_.source[j], slope = mean_slope_of_g<1>(z, z_j);
         d.after[i][j] = by * mean_slope_of_exp(z, z_j);
         d.mean[i][j]  = by * slope;
-        d.after_source[i] += by * slope * out;
-        d.mean_source[i] += by * mean_slope_of_g<2>(z, z_j) * out;
+        after_rate[i] += by * slope * out;
+        mean_rate[i] += by * mean_slope_of_g<2>(z, z_j) * out;
       }
     }
+    d.of_source = {{{film_.from_eigenvectors(after_rate), film_.from_eigenvectors(mean_rate)},
+                    {film_.from_eigenvectors(after_time), film_.from_eigenvectors(mean_time)}}};
     return d;
   }
 
-  std::array<SkinStep<double>, 2> SkinPropagator::slopes(const Skin<double> &before) const
+  std::array<SkinStep<double>, 2> SkinPropagator::carried_slopes(const Skin<double> &before) const
   {
-    const Slopes &d          = slopes();
-    const Modes   x          = film_.to_eigenvectors(before);
-    Modes         after_rate = d.after_source, mean_rate = d.mean_source, after_time, mean_time;
+    const Slopes &d = slopes();
+    const Modes   x = film_.to_eigenvectors(before);
+    Modes         after_rate{}, mean_rate{}, after_time, mean_time;
     for (unsigned int i = 0; i < n_skin_modes; ++i)
     {
       for (unsigned int j = 0; j < n_skin_modes; ++j)
@@ -204,16 +231,38 @@ namespace retroforge
         after_rate[i] += d.after[i][j] * x[j];
         mean_rate[i] += d.mean[i][j] * x[j];
       }
-      after_time[i] =
-        film_.rate * film_.source[i] - film_.eigenvalues[i] * (after_[i] * x[i] + after_source_[i]);
-      mean_time[i] = d.mean_time[i] * x[i] + d.mean_source_time[i];
+      after_time[i] = -film_.eigenvalues[i] * after_[i] * x[i];
+      mean_time[i]  = d.mean_time[i] * x[i];
     }
     return {{{film_.from_eigenvectors(after_rate), film_.from_eigenvectors(mean_rate)},
              {film_.from_eigenvectors(after_time), film_.from_eigenvectors(mean_time)}}};
   }
 
-  SkinStep<Dual>
-  skin_step(const SkinPropagator &over, const Dual &rate, const Skin<Dual> &before, const Dual &time)
+  namespace
+  {
+    /// value + rate_dot slopes[0] + time_dot slopes[1] + what else changes it
+    SkinStep<Dual> with_slopes(const SkinStep<double>                &value,
+                               const std::array<SkinStep<double>, 2> &slopes,
+                               const double                           rate_dot,
+                               const double                           time_dot,
+                               const SkinStep<double>                &dot = {})
+    {
+      SkinStep<Dual> made;
+      for (unsigned int j = 0; j < n_skin_modes; ++j)
+      {
+        made.after[j] = Dual(value.after[j]);
+        made.mean[j]  = Dual(value.mean[j]);
+        made.after[j].fastAccessDx(0) =
+          dot.after[j] + slopes[0].after[j] * rate_dot + slopes[1].after[j] * time_dot;
+        made.mean[j].fastAccessDx(0) =
+          dot.mean[j] + slopes[0].mean[j] * rate_dot + slopes[1].mean[j] * time_dot;
+      }
+      return made;
+    }
+  } // namespace
+
+  SkinParts<Dual>
+  skin_parts(const SkinPropagator &over, const Dual &rate, const Skin<Dual> &before, const Dual &time)
   {
     Skin<double> value, dot;
     for (unsigned int j = 0; j < n_skin_modes; ++j)
@@ -221,17 +270,35 @@ namespace retroforge
       value[j] = before[j].val();
       dot[j]   = before[j].dx(0);
     }
-    const auto     step = over.step(value), kept = over.carried(dot);
-    const auto     by = over.slopes(value);
-    SkinStep<Dual> made;
+    return {
+      with_slopes(over.carried(value), over.carried_slopes(value), rate.dx(0), time.dx(0), over.carried(dot)),
+      with_slopes(over.source(), over.source_slopes(), rate.dx(0), time.dx(0))};
+  }
+
+  SkinStep<double> healing(const double time)
+  {
+    SkinStep<double> left;
     for (unsigned int j = 0; j < n_skin_modes; ++j)
     {
-      made.after[j] = Dual(step.after[j]);
-      made.mean[j]  = Dual(step.mean[j]);
-      made.after[j].fastAccessDx(0) =
-        kept.after[j] + by[0].after[j] * rate.dx(0) + by[1].after[j] * time.dx(0);
-      made.mean[j].fastAccessDx(0) = kept.mean[j] + by[0].mean[j] * rate.dx(0) + by[1].mean[j] * time.dx(0);
+      left.after[j] = std::exp(-skin_rates[j] * time);
+      left.mean[j]  = g<1>(skin_rates[j] * time);
     }
-    return made;
+    return left;
+  }
+
+  SkinStep<double> slope_of_healing(const double time)
+  {
+    SkinStep<double> slope;
+    for (unsigned int j = 0; j < n_skin_modes; ++j)
+    {
+      slope.after[j] = -skin_rates[j] * std::exp(-skin_rates[j] * time);
+      slope.mean[j]  = skin_rates[j] * slope_of_g<1>(skin_rates[j] * time);
+    }
+    return slope;
+  }
+
+  SkinStep<Dual> healing(const Dual &time)
+  {
+    return with_slopes(healing(time.val()), {{{}, slope_of_healing(time.val())}}, 0., time.dx(0));
   }
 } // namespace retroforge

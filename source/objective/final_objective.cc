@@ -20,7 +20,8 @@ namespace retroforge
       , q(view.scene.mesh.n_cells(), 0.)
       , T(view.T != nullptr ? view.scene.mesh.n_nodes() : 0, 0.)
       , damage(view.damage != nullptr ? view.scene.mesh.n_cells() : 0, 0.)
-      , skin(view.skin != nullptr ? view.scene.mesh.n_nodes() : 0)
+      , skin(view.skin != nullptr ? NodeSkins<double>::none(view.scene.mesh.n_nodes(), view.scene.dies.size())
+                                  : NodeSkins<double>())
       , target(n_target_vertices(view, target_die))
       , dies(no_derivatives(view.scene.dies))
   {

@@ -9,7 +9,7 @@ namespace retroforge
   namespace
   {
     template <typename Number>
-    NodeField<Number> mode_of(const NodeSkins<Number> &skins, const unsigned int j)
+    NodeField<Number> mode_of(const std::vector<Skin<Number>> &skins, const unsigned int j)
     {
       NodeField<Number> mode;
       for (const auto &skin : skins)
@@ -18,11 +18,20 @@ namespace retroforge
     }
 
     template <typename Number>
-    void set_mode(const unsigned int j, const NodeField<Number> &mode, NodeSkins<Number> &skins)
+    void set_mode(const unsigned int j, const NodeField<Number> &mode, std::vector<Skin<Number>> &skins)
     {
       skins.resize(mode.size());
       for (std::size_t k = 0; k < mode.size(); ++k)
         skins[k][j] = mode[k];
+    }
+
+    /// f(skins of the metal or of a die, ...) of each.
+    template <typename F, typename First, typename... Others>
+    void for_each_side(const F &f, First &first, Others &...others)
+    {
+      f(first.metal, others.metal...);
+      for (std::size_t d = 0; d < first.dies.size(); ++d)
+        f(first.dies[d], others.dies[d]...);
     }
   } // namespace
 
@@ -64,13 +73,18 @@ namespace retroforge
   template <typename Number>
   void MemberTransfer<Number>::operator()(const NodeSkins<Number> &skins, NodeSkins<Number> &to) const
   {
-    to.clear();
-    for (unsigned int j = 0; j < n_skin_modes; ++j)
-    {
-      NodeField<Number> mode;
-      (*this)(mode_of(skins, j), mode);
-      set_mode(j, mode, to);
-    }
+    to.dies.resize(skins.dies.size());
+    for_each_side(
+      [&](const auto &before, auto &after) {
+        for (unsigned int j = 0; j < n_skin_modes; ++j)
+        {
+          NodeField<Number> mode;
+          (*this)(mode_of(before, j), mode);
+          set_mode(j, mode, after);
+        }
+      },
+      skins,
+      to);
   }
 
   template <typename Number>
@@ -141,13 +155,19 @@ namespace retroforge
                                          const NodeSkins<double> &skins_bar,
                                          NodeSkins<double>       &to)
   {
-    to.clear();
-    for (unsigned int j = 0; j < n_skin_modes; ++j)
-    {
-      NodeField<double> mode;
-      (*this)(mode_of(skins, j), mode_of(skins_bar, j), mode);
-      set_mode(j, mode, to);
-    }
+    to.dies.resize(skins_bar.dies.size());
+    for_each_side(
+      [&](const auto &after_bar, const auto &before, auto &before_bar) {
+        for (unsigned int j = 0; j < n_skin_modes; ++j)
+        {
+          NodeField<double> mode;
+          (*this)(mode_of(before, j), mode_of(after_bar, j), mode);
+          set_mode(j, mode, before_bar);
+        }
+      },
+      skins_bar,
+      skins,
+      to);
   }
 
   void ReverseMemberTransfer::operator()(const NodeVectorField<3, double> &v,

@@ -64,18 +64,18 @@ namespace retroforge
   {
     IncrementMemory memory;
     if (reads_history(process))
-      memory.start = without_motion(state);
+      memory.start = KeptState(state);
     if (solved.before)
     {
       state = memory.half = *solved.before;
-      memory.half.skin.clear(); // mechanics reads none, and leaves it to the second half
+      memory.half.skin    = {}; // mechanics reads none, and leaves it to the second half
     }
     for (const auto &stage : solved.stages)
       add_history(stage->view(), solved.start->dt, state);
     if (process.heat.conducts())
     {
       const auto timing = timings_.scope("heat");
-      memory.worked     = without_motion(state);
+      memory.worked     = KeptState(state);
       memory.touching   = {
           solved.touching,
           conduct_after(solved.touching, scene_, edges(), process, place(record), solved.X, state)};
@@ -126,7 +126,7 @@ namespace retroforge
       const NodalVectors<double> v = mechanics.mean_velocity(record);
       for (std::size_t k = 0; k < X.size(); ++k)
         X[k] += dt * v[k];
-      conduction->reverse_after(X, memory.worked, costates);
+      conduction->reverse_after(X, memory.worked.get(), costates);
       half          = memory.half;
       half.X        = state.X;
       half.velocity = state.velocity;

@@ -41,11 +41,12 @@ namespace retroforge
   template <typename Number>
   using FilmsAt = std::function<NodeFilms<Number>(const std::vector<Number> &T)>;
 
-  /// The temperatures after a step [C], and the heat that went through the films of each node [mJ], in.
+  /// The temperatures after a step [C], the heat that went through the films of each node [mJ], in, and the temperatures
+  /// with which films that stay as they are took it, means over the step [C].
   template <typename Number>
   struct ConductionResult
   {
-    std::vector<Number> T, film_heat;
+    std::vector<Number> T, film_heat, at_films;
   };
 
   /// @param films  at given temperatures: asked for those at the start and for the mean of start and end
@@ -65,12 +66,19 @@ namespace retroforge
   using ReverseFilmsAt = std::function<
     void(const std::vector<double> &T, const NodeFilms<double> &bar, std::vector<double> &T_bar)>;
 
-  /// Returns the derivatives in the temperatures before.
-  /// @param T_bar  derivatives in those after
-  std::vector<double> reverse_conduction_step(const ConductionStep<double> &step,
-                                              const std::vector<double>    &T,
-                                              const FilmsAt<double>        &films,
-                                              const std::vector<double>    &T_bar,
-                                              const ReverseFilmsAt         &reverse_films,
-                                              ConductionStepBar            &bar);
+  /// What a reverse finds.
+  struct ReversedConductionStep
+  {
+    std::vector<double> T_bar; ///< derivatives in the temperatures before
+    std::vector<double> at_films;
+  };
+
+  /// @param T_bar, at_films_bar  derivatives in what the step makes
+  ReversedConductionStep reverse_conduction_step(const ConductionStep<double> &step,
+                                                 const std::vector<double>    &T,
+                                                 const FilmsAt<double>        &films,
+                                                 const std::vector<double>    &T_bar,
+                                                 const std::vector<double>    &at_films_bar,
+                                                 const ReverseFilmsAt         &reverse_films,
+                                                 ConductionStepBar            &bar);
 } // namespace retroforge

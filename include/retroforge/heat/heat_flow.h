@@ -13,9 +13,8 @@
 /// Heat that flows for a time in a workpiece at rest, to dies that it touches and to its surroundings.
 ///
 /// The film between a node and a die has the conductance  A h_c/(1 + R),  A the area there that touches, and R the
-/// drops of temperature in the skins of metal and die over that across the film (skin.h); of the metal's only what the node
-/// does not show itself, which stands for the depth V/A (node_skins.h). A node touches a die for a part of the time; before,
-/// its skin heals.
+/// drops of temperature in the skins of metal and die that grow meanwhile over that across the film; behind it is the
+/// temperature that the skins of before leave (contact_skins.h).
 /// A free surface has  h_a + eps sigma (T² + T_a²)(T + T_a),  temperatures absolute.
 namespace retroforge
 {
@@ -34,10 +33,8 @@ namespace retroforge
   /// Takes temperatures [C] and skins of all nodes over a time.
   /// @return heat that came in through the surface [mJ]
   template <typename Number>
-  Number conduct(const HeatFlow<Number>    &flow,
-                 const Number              &dt,
-                 std::vector<Number>       &T,
-                 std::vector<Skin<Number>> &skin);
+  Number
+  conduct(const HeatFlow<Number> &flow, const Number &dt, std::vector<Number> &T, NodeSkins<Number> &skin);
 
   /// Derivatives of a scalar in what heat flows in.
   struct HeatFlowBar
@@ -53,13 +50,13 @@ namespace retroforge
   /// Reverse of conduct().
   /// @param T, skin          before
   /// @param T_bar, skin_bar  derivatives in those after on entry, in those before on exit
-  void reverse_conduct(const HeatFlow<double>          &flow,
-                       double                           dt,
-                       const std::vector<double>       &T,
-                       const std::vector<Skin<double>> &skin,
-                       std::vector<double>             &T_bar,
-                       std::vector<Skin<double>>       &skin_bar,
-                       HeatFlowBar                     &bar);
+  void reverse_conduct(const HeatFlow<double>    &flow,
+                       double                     dt,
+                       const std::vector<double> &T,
+                       const NodeSkins<double>   &skin,
+                       std::vector<double>       &T_bar,
+                       NodeSkins<double>         &skin_bar,
+                       HeatFlowBar               &bar);
 
   /// What heat flows in under the press, made of the workpiece and the dies where they are; dies that are not in the
   /// press touch nothing. What is passed must live as long.

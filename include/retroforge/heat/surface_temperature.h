@@ -16,17 +16,17 @@ namespace retroforge
   /// Returns the temperatures of the metal, at its surface those above the skin, and of the dies' surfaces, 0 where
   /// none touches; each at every node [C].
   template <typename Number>
-  std::array<std::vector<Number>, 2> surface_temperatures(const HeatFlow<Number>          &flow,
-                                                          const std::vector<Number>       &T,
-                                                          const std::vector<Skin<Number>> &skin);
+  std::array<std::vector<Number>, 2> surface_temperatures(const HeatFlow<Number>    &flow,
+                                                          const std::vector<Number> &T,
+                                                          const NodeSkins<Number>   &skin);
 
   /// Reverse of surface_temperatures(): adds to T_bar, skin_bar, and bar.
   /// @param surfaces_bar  derivatives in both
   void reverse_surface_temperatures(const HeatFlow<double>                   &flow,
                                     const std::vector<double>                &T,
-                                    const std::vector<Skin<double>>          &skin,
+                                    const NodeSkins<double>                  &skin,
                                     const std::array<std::vector<double>, 2> &surfaces_bar,
                                     std::vector<double>                      &T_bar,
-                                    std::vector<Skin<double>>                &skin_bar,
+                                    NodeSkins<double>                        &skin_bar,
                                     HeatFlowBar                              &bar);
 } // namespace retroforge

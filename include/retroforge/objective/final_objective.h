@@ -32,8 +32,8 @@ namespace retroforge
     const std::vector<Number>  *T      = nullptr; ///< temperatures of the nodes [C]; null: not followed
     const std::vector<Number>  *damage = nullptr; ///< of each cell; null: not followed
     /// Skins beneath the nodes (heat/skin.h), and the numbers of heat; null where it does not flow.
-    const std::vector<Skin<Number>> *skin = nullptr;
-    const HeatLaw<Number>           *heat = nullptr;
+    const NodeSkins<Number> *skin = nullptr;
+    const HeatLaw<Number>   *heat = nullptr;
   };
 
   /// What an objective decided on a workpiece, a value of the type T::Decisions of FinalObjectiveOf. Of lists
@@ -48,12 +48,12 @@ namespace retroforge
   /// Derivatives in what FinalView holds.
   struct FinalBar
   {
-    NodalVectors<double>      X;
-    std::vector<double>       q;
-    std::vector<double>       T;      ///< empty where temperatures are not followed
-    std::vector<double>       damage; ///< empty where it is not followed
-    std::vector<Skin<double>> skin;   ///< empty where heat does not flow
-    HeatLaw<double>           heat;   ///< its numbers
+    NodalVectors<double> X;
+    std::vector<double>  q;
+    std::vector<double>  T;      ///< empty where temperatures are not followed
+    std::vector<double>  damage; ///< empty where it is not followed
+    NodeSkins<double>    skin;   ///< empty where heat does not flow
+    HeatLaw<double>      heat;   ///< its numbers
     NodalVectors<double> target; ///< vertices of the target, where the view or a die has them; else empty
     /// Displacements, temperatures, and vertices of dies that are not meant as the target.
     std::vector<DieState<double>> dies;

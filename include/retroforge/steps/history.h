@@ -27,7 +27,7 @@ namespace retroforge
     if (process.heat.warms())
       state.temperature.assign(state.X.size(), process.material.initial.temperature);
     if (process.heat.conducts())
-      state.skin.assign(state.X.size(), Skin<Number>());
+      state.skin = NodeSkins<Number>::none(state.X.size(), process.dies.size());
     if (process.material.is_damaged())
       state.damage.assign(n_cells, Number(0.));
     return state;

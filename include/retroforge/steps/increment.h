@@ -11,10 +11,10 @@ namespace retroforge
   /// What the way back needs of an increment's history and does not find in its record, without motion.
   struct IncrementMemory
   {
-    WorkpieceState<3, double> start; ///< the state at its start
+    KeptState start; ///< the state at its start
     // Where heat flows.
     WorkpieceState<3, double> half;   ///< as the stages of mechanics find it, without skins
-    WorkpieceState<3, double> worked; ///< after mechanics and history, before the second half
+    KeptState                 worked; ///< after mechanics and history, before the second half
     TouchedDies               touching;
   };
 

@@ -6,6 +6,7 @@
 #include <retroforge/heat/skin.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace retroforge
@@ -32,15 +33,6 @@ namespace retroforge
         : std::vector<dealii::Tensor<1, dim, Number>>(std::move(values))
     {
     }
-  };
-
-  /// The skin beneath each node, or none at all where heat does not flow. At a change of mesh its modes follow J as a
-  /// NodeField does.
-  template <typename Number>
-  struct NodeSkins : std::vector<Skin<Number>>
-  {
-    using std::vector<Skin<Number>>::vector;
-    NodeSkins(std::vector<Skin<Number>> values) : std::vector<Skin<Number>>(std::move(values)) {}
   };
 
   /// One number per cell, or none at all where it is not followed. At a change of mesh it follows transfer_cells().
@@ -71,8 +63,10 @@ namespace retroforge
     /// before the first increment of an operation.
     NodeVectorField<dim, Number> velocity;
     NodeField<Number>            temperature; ///< [C]; none where the metal keeps that before the stroke
-    NodeSkins<Number>            skin;        ///< of the layers that contacts have chilled (heat/skin.h)
-    BoundedCellField<Number>     damage;      ///< dimensionless; none where it is not followed
+    /// Of the layers that contacts have chilled, or none at all where heat does not flow. At a change of mesh its modes
+    /// follow J as a NodeField does.
+    NodeSkins<Number>        skin;
+    BoundedCellField<Number> damage; ///< dimensionless; none where it is not followed
 
     template <typename Self>
     static auto members(Self &self)
@@ -90,21 +84,21 @@ namespace retroforge
   }
 
   /// Returns zero derivatives in the state of a mesh.
-  /// @param warms     whether it has temperatures
-  /// @param conducts  and skins
-  /// @param damages   whether its damage is followed
+  /// @param warms    whether it has temperatures
+  /// @param skins    zero ones, or none
+  /// @param damages  whether its damage is followed
   template <int dim>
   WorkpieceState<dim, double> zero_costate(const std::size_t n_nodes,
                                            const std::size_t n_cells,
-                                           const bool        warms    = false,
-                                           const bool        conducts = false,
-                                           const bool        damages  = false)
+                                           const bool        warms   = false,
+                                           NodeSkins<double> skins   = {},
+                                           const bool        damages = false)
   {
     return {NodalPositions<dim, double>(n_nodes),
             CellField<double>(n_cells, 0.),
             NodeVectorField<dim, double>(n_nodes),
             NodeField<double>(warms ? n_nodes : 0, 0.),
-            NodeSkins<double>(conducts ? n_nodes : 0),
+            std::move(skins),
             BoundedCellField<double>(damages ? n_cells : 0, 0.)};
   }
 
@@ -118,10 +112,37 @@ namespace retroforge
     return state;
   }
 
+  /// A state that is kept for the way back: without its motion, and skins where there are any.
+  class KeptState
+  {
+  public:
+    KeptState() = default;
+    explicit KeptState(WorkpieceState<3, double> state)
+        : state_(without_motion(std::move(state))), skin_(std::exchange(state_.skin, {}))
+    {
+    }
+
+    WorkpieceState<3, double> get() const
+    {
+      WorkpieceState<3, double> state = state_;
+      state.skin                      = skin_.all();
+      return state;
+    }
+
+  private:
+    WorkpieceState<3, double> state_;
+    KeptSkins                 skin_;
+  };
+
   /// Returns whether an objective, and what came after, take nothing from a field.
   template <typename Value>
   bool is_zero(const std::vector<Value> &field)
   {
     return std::all_of(field.begin(), field.end(), [](const Value &x) { return x == Value(); });
+  }
+  inline bool is_zero(const NodeSkins<double> &skins)
+  {
+    return is_zero(skins.metal) &&
+           std::all_of(skins.dies.begin(), skins.dies.end(), [](const auto &die) { return is_zero(die); });
   }
 } // namespace retroforge

@@ -311,7 +311,10 @@ namespace
       objective.derivatives(view, decisions, objective.reverse_value(b, decisions)).complete();
     std::vector<Costate> costates(
       1,
-      {zero_costate<3>(run.scene.mesh.n_nodes(), run.scene.mesh.n_cells(), true, true),
+      {zero_costate<3>(run.scene.mesh.n_nodes(),
+                       run.scene.mesh.n_cells(),
+                       true,
+                       NodeSkins<double>::none(run.scene.mesh.n_nodes(), run.process().dies.size())),
        {no_process_derivatives(run.process(), run.scene.dies), MPI_COMM_SELF}});
     Costate &costate                    = costates[0];
     costate.workpiece.X                 = bar.X;
@@ -324,7 +327,7 @@ namespace
     {
       const IncrementRecord &record = run.records[i];
       const double           dt     = run.process().duration(place(record));
-      state                         = end.remembered[i].start;
+      state                         = end.remembered[i].start.get();
       state.X                       = X[i];
       state.velocity.clear(); // an operation begins at rest
       if (i > 0 && run.records[i - 1].operation == record.operation)
@@ -342,7 +345,7 @@ namespace
       }
       ReversibleConduction conduction(run.scene, edges, process, place(record), waited, memory.touching);
       without(omission.piece == Piece::second_half, omission.part, costate, [&] {
-        conduction.reverse_after(X[i + 1], memory.worked, costates);
+        conduction.reverse_after(X[i + 1], memory.worked.get(), costates);
       });
       without(omission.piece == Piece::law, omission.part, costate, [&] {
         mechanics.reverse(

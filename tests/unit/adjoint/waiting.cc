@@ -184,7 +184,7 @@ namespace
         n += record.operation == first ? 1 : 0;
       ForwardRun again(problem_of(block_of_two_strokes()), ForwardRun::Keep::increments, timings_of_runs());
       again.restore(n, run.recording().access(), [](const IncrementEvent &) {});
-      const auto &before = run.state().remembered[n].start;
+      const auto before = run.state().remembered[n].start.get();
       std::cout << "restored with " << beyond << " increments of the second operation to the bit: "
                 << yes(again.state().workpiece.temperature == before.temperature &&
                        again.state().workpiece.skin == before.skin &&

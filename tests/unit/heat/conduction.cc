@@ -63,8 +63,8 @@ namespace
                         std::exp(-3. * M_PI * M_PI * alpha * t);
       };
     };
-    std::vector<double>       T;
-    std::vector<Skin<double>> skin(body.mesh.n_nodes());
+    std::vector<double> T;
+    NodeSkins<double>   skin = body.no_skins();
     for (const Vec3 &x : body.mesh.X)
       T.push_back(exact(0.)(x));
     body.conduct(law, body.mesh.X, time, steps, T, skin);
@@ -90,8 +90,8 @@ namespace
         x = Vec3({x[0] * std::exp(a * t), x[1] * std::exp(-0.5 * a * t), x[2] * std::exp(-0.5 * a * t)});
       return X;
     };
-    std::vector<double>       T;
-    std::vector<Skin<double>> skin(body.mesh.n_nodes());
+    std::vector<double> T;
+    NodeSkins<double>   skin = body.no_skins();
     for (const Vec3 &x : body.mesh.X)
       T.push_back(100. + 50. * std::cos(M_PI * x[0]));
     for (unsigned int i = 0; i < n; ++i)
@@ -155,8 +155,8 @@ namespace
         network.conductances.begin(), network.conductances.end(), [](const double g) { return g < 0.; });
       for (const double dt : {1e-4, 1e-2, 1.})
       {
-        std::vector<double>       T;
-        std::vector<Skin<double>> skin(body.mesh.n_nodes());
+        std::vector<double> T;
+        NodeSkins<double>   skin = body.no_skins();
         for (const Vec3 &x : body.mesh.X)
           T.push_back(x[0] < 5. ? 900. : 1200.);
         double heat = 0.;

@@ -144,9 +144,9 @@ namespace
     Errors       worst;
     for (const History &history : histories)
     {
-      std::vector<double>       T(body.mesh.n_nodes(), T_0);
-      std::vector<Skin<double>> skin(T.size());
-      double                    in = 0.;
+      std::vector<double> T(body.mesh.n_nodes(), T_0);
+      NodeSkins<double>   skin = body.no_skins();
+      double              in   = 0.;
       for (const auto &[film, time] : history)
       {
         law.contact_film = film;

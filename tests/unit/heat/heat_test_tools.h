@@ -61,6 +61,9 @@ namespace retroforge
         {mesh, topology, dies, at, X}, std::vector<bool>(dies.size(), true), gap);
     }
 
+    /// Skins of what has touched nothing.
+    NodeSkins<double> no_skins() const { return NodeSkins<double>::none(mesh.n_nodes(), dies.size()); }
+
     /// Heat flows for a time, in n steps, at positions X.
     /// @return heat that came in [mJ]
     double conduct(const HeatLaw<double>      &law,
@@ -68,7 +71,7 @@ namespace retroforge
                    const double                time,
                    const unsigned int          n,
                    std::vector<double>        &T,
-                   std::vector<Skin<double>>  &skin) const
+                   NodeSkins<double>          &skin) const
     {
       const auto network = conduction_network(mesh, edges, X);
       const auto touched = surface(states, X, law.gap);

@@ -2,12 +2,9 @@
 // Copyright (C) 2026 The Retroforge authors
 
 // The largest temperature of a die's surface.
-// - By hand: effusivities of 12 and 4 are 3 together, of which the metal has 1/4 and the die 3/4 of the drop in the skins.
-//   Of a skin with a drop of 2/3 in the slowest mode, nodes of a metal that conducts so well show all of the metal's part, 1/6: over
-//   the drop across the film, 1/3, that of the die is 3/2 and that from node to die 5/2, so that the die's surface has
-//   T_d + 0.6 (T - T_d) = 680 C beneath metal of 1000 C, T_d = 200 C, and 679.4 C beneath nodes of 999 C: a face has the mean
-//   of its nodes, a node that of its faces, and the largest is the smooth one of these, by their areas. A die that touches nothing has its own temperature, and so has one
-//   that is not in the press.
+// - By hand: a die of 200 C whose skin has warmed by 300 and 180 K in two modes has 680 C at its surface, beneath whatever metal, and
+//   679 C where it is a degree less: a face has the mean of its nodes, a node that of its faces, and the largest is the smooth
+//   one of these, by their areas. A die that touches nothing has its own temperature, and so has one that is not in the press.
 // - The reverse against dual numbers in positions, displacements, vertices and temperatures of the dies, temperatures and
 //   skins of the metal, and the numbers of heat, each alone, and the Taylor order along all: between a wavy die that a box
 //   touches in part, and a plane across its corner, with thin skins and thick ones.
@@ -31,7 +28,7 @@ namespace
     NodalVectors<Number>          X;
     std::vector<DieState<Number>> dies;
     std::vector<Number>           T;
-    std::vector<Skin<Number>>     skin;
+    NodeSkins<Number>             skin;
     HeatLaw<Number>               law;
 
     std::vector<Group<Number>> groups()
@@ -71,7 +68,7 @@ namespace
         , at{scene.mesh.X,
              std::vector<DieState<double>>(dies.size()),
              std::vector<double>(scene.mesh.n_nodes(), 1000.),
-             std::vector<Skin<double>>(scene.mesh.n_nodes()),
+             NodeSkins<double>::none(scene.mesh.n_nodes(), dies.size()),
              law}
     {
       for (std::size_t d = 0; d < dies.size(); ++d)
@@ -144,29 +141,29 @@ namespace
   {
     Errors               errors;
     const DieTemperature lower(0, 1.), upper(1, 1.);
-    HeatLaw<double>      law = known_law(); // of the same effusivity
-    law.conductivity *= 1e5;
-    law.capacity /= 1e5;
-    Problem problem(
+    Problem              problem(
       box(Vec3(), Vec3({3., 3., 2.}), 1.),
       {Die("lower", Vec3(), Vec3({0., 0., 1.})), Die("upper", Vec3({0., 0., 5.}), Vec3({0., 0., -1.}))},
-      law);
-    for (auto &skin : problem.at.skin)
-      skin[n_skin_modes - 1] = 2. / 3.;
+      known_law());
+    for (auto &skin : problem.at.skin.dies[0])
+    {
+      skin[1] = 300.;
+      skin[4] = 180.;
+    }
     errors.compare("even metal", problem.value(lower), 680.);
     errors.compare("nothing touches", problem.value(upper), 200.);
     const auto          is_cold = [](const NodeIndex k) { return k % 2 == 0; };
     std::vector<double> area(problem.at.T.size(), 0.), t(area); // of thirds of faces, and their temperatures
     const TetMesh      &mesh = problem.scene.mesh;
     for (NodeIndex k = 0; k < area.size(); ++k)
-      problem.at.T[k] = is_cold(k) ? 999. : 1000.;
+      problem.at.skin.dies[0][k][4] -= is_cold(k);
     for (const BoundaryFace &face : mesh.faces)
     {
       const auto &n = face.nodes;
       if (mesh.X[n[0]][2] + mesh.X[n[1]][2] + mesh.X[n[2]][2] > 1e-9)
         continue;
       const double third = triangle_area(n, mesh.X) / 3.,
-                   mean  = 680. - 0.2 * (is_cold(n[0]) + is_cold(n[1]) + is_cold(n[2]));
+                   mean  = 680. - (is_cold(n[0]) + is_cold(n[1]) + is_cold(n[2])) / 3.;
       for (const NodeIndex k : n)
       {
         area[k] += third;
@@ -183,7 +180,7 @@ namespace
       weights += weight;
       weighted += weight * t[k];
     }
-    errors.compare("two temperatures", problem.value(lower), weighted / weights);
+    errors.compare("two skins", problem.value(lower), weighted / weights);
     const auto decisions = problem.decide(lower);
     errors.compare("true maximum", lower.details({}, decisions).at("true maximum"), largest);
     problem.at.dies[0].in_press = 0;
@@ -207,7 +204,7 @@ namespace
       x += 0.03 * random.vector();
     for (double &T : problem.at.T)
       T += 2. * random.scalar();
-    for_each_number([&](double &m) { m = skin / n_skin_modes * (1. + 0.5 * random.scalar()); },
+    for_each_number([&](double &m) { m = 800. * skin / n_skin_modes * (1. + 0.5 * random.scalar()); },
                     problem.at.skin);
     problem.at.dies[0].displacement = Vec3({0.02, -0.01, -0.05});
     problem.at.dies[1].temperature  = 350.;

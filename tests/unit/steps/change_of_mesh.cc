@@ -126,15 +126,21 @@ namespace
     return reverse_change_mesh(meshes.old_mesh, meshes.remesh, at, no_dies, no_states, y, moving, no_bar);
   }
 
+  /// Zero derivatives in all that a state may have.
+  State<double> costate_of(const TetMesh &mesh)
+  {
+    return zero_costate<3>(
+      mesh.n_nodes(), mesh.n_cells(), true, NodeSkins<double>::none(mesh.n_nodes(), 2), true);
+  }
+
   /// |<A x_dot, y> - <x_dot, A^T y>|, relative.
   double defect_of_state(const Meshes &meshes)
   {
     const TetMesh &old_mesh = meshes.old_mesh, &new_mesh = meshes.remesh.mesh;
-    auto           at = randomised(zero_costate<3>(old_mesh.n_nodes(), old_mesh.n_cells(), true, true, true));
+    auto           at = randomised(costate_of(old_mesh));
     at.X              = meshes.X;
-    const auto dir    = randomised(at),
-               y      = randomised(zero_costate<3>(new_mesh.n_nodes(), new_mesh.n_cells(), true, true, true));
-    const auto after  = change_mesh<Dual>(old_mesh, meshes.remesh, along<State>(at, dir), no_dies, {});
+    const auto dir = randomised(at), y = randomised(costate_of(new_mesh));
+    const auto after = change_mesh<Dual>(old_mesh, meshes.remesh, along<State>(at, dir), no_dies, {});
     return defect(dots(after, y), y, dot(dir, reversed(meshes, at, y)));
   }
 

@@ -1,0 +1,406 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/heat/contact_skins.h>
+
+namespace retroforge
+{
+  namespace
+  {
+    /// A node that is warmer than the metal above it, as where a film has fallen, is so by at most half of the drop across the film.
+    template <typename Number>
+    Number bounded_drops(const Number &drops)
+    {
+      using std::exp;
+      return value_of(drops) >= 1. ? drops : Number(0.5 + 0.5 * exp(Number(2. * (drops - 1.))));
+    }
+
+    double slope_of_bounded_drops(const double drops)
+    {
+      return drops >= 1. ? 1. : std::exp(2. * (drops - 1.));
+    }
+
+    /// The positive part, smooth over a degree, and not above it.
+    template <typename Number>
+    Number positive(const Number &x)
+    {
+      if (value_of(x) <= 0.)
+        return Number(0.);
+      return value_of(x) >= 1. ? x : Number(x * x * (2. - x));
+    }
+
+    /// A shift of the die's temperature kept between 0 and the difference to the node's.
+    template <typename Number>
+    Number kept_between(const Number &shift, const Number &difference)
+    {
+      if (value_of(difference) < 0.)
+        return -kept_between(Number(-shift), Number(-difference));
+      return positive(Number(difference - positive(Number(difference - shift))));
+    }
+
+    template <typename Number>
+    Skin<Number> by_modes(Skin<Number> a, const Skin<Number> &b)
+    {
+      return healed(std::move(a), b);
+    }
+
+    /// mu M + p (P - mu D), of the metal's drop what does not follow from the node's temperature.
+    template <typename Number>
+    Skin<Number> metals_own(const NodeFilm<Number> &film, const Skin<Number> &metal, const Number &part)
+    {
+      return by_modes(metal, film.left.mean) +
+             part * (film.parts.carried.mean - by_modes(film.both, film.left.mean));
+    }
+
+    template <typename Number>
+    Number unbounded_drops(const NodeFilm<Number> &film, const Number &part)
+    {
+      return (1. - part * (film.shown * film.parts.source.mean)) / (1. - drop_of(film.parts.source.mean));
+    }
+
+    template <typename Number>
+    Number unbounded_shift(const NodeFilm<Number> &film, const Skin<Number> &metal, const Number &part)
+    {
+      return film.drops * drop_of(film.parts.carried.mean) - film.shown * metals_own(film, metal, part);
+    }
+
+    template <typename Number>
+    NodeFilm<Number> node_film(const HeatFlow<Number>      &flow,
+                               const NodeContact<Number>   &contact,
+                               const SkinsOverStep<Number> &over,
+                               const Number                &dt,
+                               const Number                &T,
+                               const NodeSkins<Number>     &skin)
+    {
+      NodeFilm<Number> film;
+      const Number     time  = contact.weight * dt;
+      const auto      &metal = skin.metal[contact.node];
+      film.both              = metal + contact.dies_skin(flow, skin);
+      film.parts             = over.touching(value_of(time), [&](const SkinPropagator &beneath) {
+        return skin_parts(beneath, over.rate(), film.both, time);
+      });
+      film.left              = over.healing(time);
+      film.shown             = parts_shown(flow.law, contact.depth(flow));
+      film.drops             = bounded_drops(unbounded_drops(film, over.part()));
+      film.behind            = contact.die_temperature(flow);
+      film.shift = kept_between(unbounded_shift(film, metal, over.part()), Number(T - film.behind));
+      return film;
+    }
+
+    /// DeltaT, by the temperature with which a film took its heat.
+    template <typename Number>
+    Number difference_of(const NodeFilm<Number> &film, const Number &T)
+    {
+      const Number across = (T - film.behind - film.shift) / film.drops;
+      return (across + drop_of(film.parts.carried.mean)) / (1. - drop_of(film.parts.source.mean));
+    }
+
+    /// What the flux adds to the skins of metal and die together.
+    template <typename Number>
+    Skin<Number> grown(const NodeFilm<Number> &film, const Number &difference)
+    {
+      return film.parts.carried.after + difference * film.parts.source.after -
+             by_modes(film.both, film.left.after);
+    }
+
+    /// For each entry of a contact the part of the time of the touch in which it does.
+    template <typename Number>
+    Number
+    part_of_time(const HeatFlow<Number> &flow, const NodeContact<Number> &contact, const unsigned int entry)
+    {
+      return flow.surface.touching[entry].weight / contact.weight;
+    }
+  } // namespace
+
+  template <typename Number>
+  SkinsOverStep<Number>::SkinsOverStep(const HeatFlow<Number> &flow, const Number &dt)
+      : rate_(flow.contact_film / joint_effusivity(metals_effusivity(flow.law), flow.law.die_effusivity))
+      , part_(metals_part(flow.law))
+      , dt_(value_of(dt))
+      , healing_(retroforge::healing(dt))
+  {
+    if (value_of(rate_) > 0.)
+      whole_.emplace(film_.emplace(value_of(rate_)), dt_);
+  }
+
+  template <typename Number>
+  ContactSkins<Number>::ContactSkins(const HeatFlow<Number>    &flow,
+                                     const Number              &dt,
+                                     const std::vector<Number> &T,
+                                     NodeSkins<Number>         &skin)
+      : flow_(flow), over_(flow, dt), contacts_(node_contacts(flow))
+  {
+    std::vector<Number> open(T.size(), dt);
+    for (const auto &contact : contacts_)
+      open[contact.node] -= contact.weight * dt;
+    for (NodeIndex k = 0; k < T.size(); ++k)
+      if (value_of(open[k]) > 0.)
+      {
+        const Skin<Number> left = over_.healing(open[k]).after;
+        skin.metal[k]           = by_modes(skin.metal[k], left);
+        for (auto &die : skin.dies)
+          die[k] = by_modes(die[k], left);
+      }
+    for (const auto &contact : contacts_)
+      if (contact.has_film)
+        films_.push_back(node_film(flow, contact, over_, dt, T[contact.node], skin));
+  }
+
+  template <typename Number>
+  NodeFilms<Number> ContactSkins<Number>::films() const
+  {
+    NodeFilms<Number> films(flow_.network.volumes.size());
+    auto              film = films_.begin();
+    for (const auto &contact : contacts_)
+      if (contact.has_film)
+      {
+        films.conductance[contact.node] = contact.area * flow_.contact_film / film->drops;
+        films.source[contact.node]      = films.conductance[contact.node] * (film->behind + film->shift);
+        ++film;
+      }
+    return films;
+  }
+
+  template <typename Number>
+  void ContactSkins<Number>::advance(const std::vector<Number> &T, NodeSkins<Number> &skin) const
+  {
+    auto film = films_.begin();
+    for (const auto &contact : contacts_)
+      if (contact.has_film)
+      {
+        const NodeIndex    k     = contact.node;
+        const Skin<Number> comes = grown(*film, difference_of(*film, T[k]));
+        skin.metal[k]            = by_modes(skin.metal[k], film->left.after) + over_.part() * comes;
+        for (auto &die : skin.dies)
+          die[k] = by_modes(die[k], film->left.after);
+        for (const unsigned int i : contact.entries)
+          skin.dies[flow_.surface.touching[i].die][k] +=
+            Number(part_of_time(flow_, contact, i) * (1. - over_.part())) * comes;
+        ++film;
+      }
+  }
+
+  template class SkinsOverStep<double>;
+  template class SkinsOverStep<Dual>;
+  template class ContactSkins<double>;
+  template class ContactSkins<Dual>;
+
+  ReverseContactSkins::ReverseContactSkins(const HeatFlow<double>    &flow,
+                                           const double               dt,
+                                           const std::vector<double> &T,
+                                           const NodeSkins<double>   &skin)
+      : flow_(flow), dt_(dt), T_(T), before_(skin), skin_(skin), contact_(flow, dt, T, skin_)
+  {
+  }
+
+  namespace
+  {
+    /// Derivatives in what the flux adds to both skins.
+    Skin<double> reverse_grown(const HeatFlow<double>    &flow,
+                               const NodeContact<double> &contact,
+                               const double               part,
+                               const NodeSkins<double>   &skin_bar)
+    {
+      Skin<double> bar = part * skin_bar.metal[contact.node];
+      for (const unsigned int i : contact.entries)
+        bar += part_of_time(flow, contact, i) * (1. - part) *
+               skin_bar.dies[flow.surface.touching[i].die][contact.node];
+      return bar;
+    }
+
+    /// Derivatives in the drop across a film, by which DeltaT follows from the node's temperature.
+    double reverse_across(const NodeFilm<double> &film, const Skin<double> &grown_bar)
+    {
+      return grown_bar * film.parts.source.after / (1. - drop_of(film.parts.source.mean));
+    }
+
+    struct ShiftSlopes
+    {
+      double in_shift, in_difference;
+    };
+
+    ShiftSlopes slopes_of_kept_between(const double shift, const double difference)
+    {
+      using Partial    = Sacado::Fad::SFad<double, 2>;
+      const Partial of = kept_between(Partial(2, 0, shift), Partial(2, 1, difference));
+      return {of.dx(0), of.dx(1)};
+    }
+
+    void add(const double x, Skin<double> &to)
+    {
+      for (unsigned int j = 0; j < n_skin_modes; ++j)
+        to[j] += x;
+    }
+
+    double along(const SkinStep<double> &a, const SkinStep<double> &b)
+    {
+      return a.after * b.after + a.mean * b.mean;
+    }
+  } // namespace
+
+  std::vector<double> ReverseContactSkins::reverse_temperatures(const NodeSkins<double> &skin_bar) const
+  {
+    std::vector<double> T_bar(T_.size(), 0.);
+    auto                film = contact_.films_.begin();
+    for (const auto &contact : contact_.contacts_)
+      if (contact.has_film)
+      {
+        T_bar[contact.node] =
+          reverse_across(*film, reverse_grown(flow_, contact, contact_.over_.part(), skin_bar)) / film->drops;
+        ++film;
+      }
+    return T_bar;
+  }
+
+  void ReverseContactSkins::reverse(const std::vector<double> &T_films,
+                                    const NodeFilms<double>   &films_bar,
+                                    std::vector<double>       &T_bar,
+                                    NodeSkins<double>         &skin_bar,
+                                    HeatFlowBar               &bar) const
+  {
+    const SkinsOverStep<double> &over     = contact_.over_;
+    const double                 p        = over.part();
+    double                       rate_bar = 0., p_bar = 0.;
+    std::vector<double>          open_bar(T_.size(), 0.);
+    std::vector<double>          open(T_.size(), dt_);
+    std::vector<NodeContactBar>  contacts_bar;
+    auto                         next = contact_.films_.begin();
+    for (const auto &contact : contact_.contacts_)
+    {
+      const NodeIndex k           = contact.node;
+      NodeContactBar &contact_bar = contacts_bar.emplace_back(contact);
+      open[k] -= contact.weight * dt_;
+      if (!contact.has_film)
+        continue;
+      const NodeFilm<double> &film  = *next++;
+      const auto             &B     = film.parts.source;
+      const auto             &P     = film.parts.carried;
+      const Skin<double>     &metal = skin_.metal[k], metal_after_bar = skin_bar.metal[k];
+      double                  time_bar = 0.;
+
+      // Skins after the step.
+      const double       difference = difference_of(film, T_films[k]);
+      const Skin<double> comes      = grown(film, difference),
+                         comes_bar  = reverse_grown(flow_, contact, p, skin_bar);
+      SkinStep<double> left_bar, B_bar, P_bar;
+      p_bar += metal_after_bar * comes;
+      left_bar.after         = by_modes(metal_after_bar, metal) - by_modes(comes_bar, film.both);
+      Skin<double> both_bar  = -1. * by_modes(comes_bar, film.left.after);
+      Skin<double> metal_bar = by_modes(metal_after_bar, film.left.after);
+      for (std::size_t e = 0; e < contact.entries.size(); ++e)
+      {
+        const unsigned int i           = contact.entries[e];
+        const double       of_time     = part_of_time(flow_, contact, i);
+        const double       along_comes = skin_bar.dies[flow_.surface.touching[i].die][k] * comes;
+        p_bar -= of_time * along_comes;
+        const double of_time_bar = (1. - p) * along_comes;
+        contact_bar.entry_weight[e] += of_time_bar / contact.weight;
+        contact_bar.weight -= of_time_bar * of_time / contact.weight;
+      }
+      for (std::size_t d = 0; d < skin_bar.dies.size(); ++d)
+      {
+        left_bar.after += by_modes(skin_bar.dies[d][k], skin_.dies[d][k]);
+        skin_bar.dies[d][k] = by_modes(skin_bar.dies[d][k], film.left.after);
+      }
+      P_bar.after = comes_bar;
+      B_bar.after = difference * comes_bar;
+
+      // DeltaT.
+      const double across     = (T_films[k] - film.behind - film.shift) / film.drops;
+      const double across_bar = reverse_across(film, comes_bar);
+      double       drops_bar = -across_bar * across / film.drops, behind_bar = -across_bar / film.drops,
+             shift_bar = behind_bar;
+      add(across_bar, P_bar.mean);
+      add(across_bar * difference, B_bar.mean);
+
+      // The film.
+      const double phi = contact.area * flow_.contact_film / film.drops, seen = film.behind + film.shift;
+      const double phi_bar = films_bar.conductance[k] + films_bar.source[k] * seen;
+      behind_bar += films_bar.source[k] * phi;
+      shift_bar += films_bar.source[k] * phi;
+      contact_bar.area += phi_bar * flow_.contact_film / film.drops;
+      bar.contact_film += phi_bar * contact.area / film.drops;
+      drops_bar -= phi_bar * phi / film.drops;
+
+      // The temperature behind it.
+      const Skin<double> own = metals_own(film, metal, p);
+      const auto slopes      = slopes_of_kept_between(unbounded_shift(film, metal, p), T_[k] - film.behind);
+      T_bar[k] += shift_bar * slopes.in_difference;
+      behind_bar -= shift_bar * slopes.in_difference;
+      const double free_bar = shift_bar * slopes.in_shift, before_film = drop_of(P.mean);
+      drops_bar += free_bar * before_film;
+      add(free_bar * film.drops, P_bar.mean);
+      Skin<double>       shown_bar = -free_bar * own;
+      const Skin<double> own_bar   = -free_bar * film.shown;
+      left_bar.mean                = by_modes(own_bar, metal) - p * by_modes(own_bar, film.both);
+      metal_bar += by_modes(own_bar, film.left.mean);
+      both_bar -= p * by_modes(own_bar, film.left.mean);
+      P_bar.mean += p * own_bar;
+      p_bar += own_bar * (P.mean - by_modes(film.both, film.left.mean));
+
+      // Its resistance.
+      const double raw = unbounded_drops(film, p), without = 1. - drop_of(B.mean);
+      const double raw_bar = drops_bar * slope_of_bounded_drops(raw), shows_bar = -raw_bar / without;
+      add(raw_bar * raw / without, B_bar.mean);
+      B_bar.mean += shows_bar * p * film.shown;
+      shown_bar += shows_bar * p * B.mean;
+      p_bar += shows_bar * (film.shown * B.mean);
+      contact_bar.depth += reverse_parts_shown(flow_.law, contact.depth(flow_), shown_bar, bar.law);
+
+      // What the time made of the skins.
+      const double time = contact.weight * dt_;
+      over.touching(time, [&](const SkinPropagator &beneath) {
+        both_bar += beneath.reverse_carried(P_bar);
+        const auto  of_carried = beneath.carried_slopes(film.both);
+        const auto &of_source  = beneath.source_slopes();
+        rate_bar += along(of_carried[0], P_bar) + along(of_source[0], B_bar);
+        time_bar += along(of_carried[1], P_bar) + along(of_source[1], B_bar);
+      });
+      time_bar += along(slope_of_healing(time), left_bar);
+      contact_bar.weight += time_bar * dt_;
+      bar.dt += time_bar * contact.weight;
+
+      // Metal and dies.
+      contact_bar.die_temperature += behind_bar;
+      skin_bar.metal[k] = metal_bar + both_bar;
+      for (std::size_t e = 0; e < contact.entries.size(); ++e)
+      {
+        const unsigned int i = contact.entries[e], die = flow_.surface.touching[i].die;
+        skin_bar.dies[die][k] += contact.share(flow_, i) * both_bar;
+        contact_bar.share[e] += both_bar * skin_.dies[die][k];
+      }
+    }
+
+    // Skins that healed before.
+    for (NodeIndex k = 0; k < T_.size(); ++k)
+      if (open[k] > 0.)
+      {
+        const Skin<double> left = over.healing(open[k]).after, slope = slope_of_healing(open[k]).after;
+        const auto         reverse_healed = [&](const Skin<double> &before, Skin<double> &of_skin_bar) {
+          open_bar[k] += by_modes(slope, before) * of_skin_bar;
+          of_skin_bar = by_modes(of_skin_bar, left);
+        };
+        reverse_healed(before_.metal[k], skin_bar.metal[k]);
+        for (std::size_t d = 0; d < skin_bar.dies.size(); ++d)
+          reverse_healed(before_.dies[d][k], skin_bar.dies[d][k]);
+        bar.dt += open_bar[k];
+      }
+    for (std::size_t c = 0; c < contacts_bar.size(); ++c)
+    {
+      const auto  &contact = contact_.contacts_[c];
+      const double of_open = open_bar[contact.node];
+      contacts_bar[c].weight -= of_open * dt_;
+      bar.dt -= of_open * contact.weight;
+      contacts_bar[c].reverse(flow_, contact, bar);
+    }
+
+    // rate = h (1/b_m + 1/b_d)
+    const HeatLaw<double> &law   = flow_.law;
+    const double           metal = metals_effusivity(law), die = law.die_effusivity,
+                 metal_bar = -rate_bar * flow_.contact_film / (metal * metal);
+    bar.contact_film += rate_bar / joint_effusivity(metal, die);
+    bar.law.conductivity += metal_bar * 0.5 * metal / law.conductivity;
+    bar.law.capacity += metal_bar * 0.5 * metal / law.capacity;
+    bar.law.die_effusivity -= rate_bar * flow_.contact_film / (die * die);
+    reverse_metals_part(law, p_bar, bar.law);
+  }
+} // namespace retroforge
