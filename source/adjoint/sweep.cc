@@ -63,7 +63,6 @@ namespace retroforge
           add(weight, bar.skin, workpiece.skin);
           add<std::vector<double>>(weight, bar.damage, workpiece.damage);
           PhysicsBar physics_bar(run.model.dies);
-          add(weight, bar.heat, physics_bar.heat);
           add(weight, bar.dies, physics_bar.dies);
           if (const auto d = run.objectives[o].at_end->target_die(); d != invalid_index)
             add(weight, bar.target, physics_bar.dies[d].vertices);

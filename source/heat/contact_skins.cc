@@ -225,12 +225,6 @@ namespace retroforge
       return {of.dx(0), of.dx(1)};
     }
 
-    void add(const double x, Skin<double> &to)
-    {
-      for (unsigned int j = 0; j < n_skin_modes; ++j)
-        to[j] += x;
-    }
-
     double along(const SkinStep<double> &a, const SkinStep<double> &b)
     {
       return a.after * b.after + a.mean * b.mean;
@@ -309,8 +303,8 @@ namespace retroforge
       const double across_bar = reverse_across(film, comes_bar);
       double       drops_bar = -across_bar * across / film.drops, behind_bar = -across_bar / film.drops,
              shift_bar = behind_bar;
-      add(across_bar, P_bar.mean);
-      add(across_bar * difference, B_bar.mean);
+      add_to_modes(across_bar, P_bar.mean);
+      add_to_modes(across_bar * difference, B_bar.mean);
 
       // The film.
       const double phi = contact.area * flow_.contact_film / film.drops, seen = film.behind + film.shift;
@@ -328,7 +322,7 @@ namespace retroforge
       behind_bar -= shift_bar * slopes.in_difference;
       const double free_bar = shift_bar * slopes.in_shift, before_film = drop_of(P.mean);
       drops_bar += free_bar * before_film;
-      add(free_bar * film.drops, P_bar.mean);
+      add_to_modes(free_bar * film.drops, P_bar.mean);
       Skin<double>       shown_bar = -free_bar * own;
       const Skin<double> own_bar   = -free_bar * film.shown;
       left_bar.mean                = by_modes(own_bar, metal) - p * by_modes(own_bar, film.both);
@@ -340,7 +334,7 @@ namespace retroforge
       // Its resistance.
       const double raw = unbounded_drops(film, p), without = 1. - drop_of(B.mean);
       const double raw_bar = drops_bar * slope_of_bounded_drops(raw), shows_bar = -raw_bar / without;
-      add(raw_bar * raw / without, B_bar.mean);
+      add_to_modes(raw_bar * raw / without, B_bar.mean);
       B_bar.mean += shows_bar * p * film.shown;
       shown_bar += shows_bar * p * B.mean;
       p_bar += shows_bar * (film.shown * B.mean);

@@ -134,27 +134,15 @@ namespace retroforge
     skins.reverse(reversed.at_films, contact_bar, T_bar, skin_bar, bar);
   }
 
-  namespace
-  {
-    template <typename Number>
-    std::vector<bool> dies_in_press(const std::vector<DieState<Number>> &dies)
-    {
-      std::vector<bool> touch;
-      for (const auto &die : dies)
-        touch.push_back(die.in_press == 1);
-      return touch;
-    }
-  } // namespace
-
   template <typename Number>
-  HeatUnderPress<Number>::HeatUnderPress(const ContactView<Number> &view, const HeatLaw<Number> &law)
-      : edges(view.mesh, view.topology)
-      , network(conduction_network(view.mesh, edges, view.X))
-      , surface(thermal_surface(view, dies_in_press(view.states), value_of(law.gap)))
-      , flow{edges, network, surface, law, law.contact_film, view.states}
+  ThermalSurface<Number> surface_under_press(const ContactView<Number> &view, const double gap)
   {
+    std::vector<bool> touch;
+    for (const auto &die : view.states)
+      touch.push_back(die.in_press == 1);
+    return thermal_surface(view, touch, gap);
   }
 
-  template struct HeatUnderPress<double>;
-  template struct HeatUnderPress<Dual>;
+  template ThermalSurface<double> surface_under_press(const ContactView<double> &, double);
+  template ThermalSurface<Dual>   surface_under_press(const ContactView<Dual> &, double);
 } // namespace retroforge

@@ -7,147 +7,131 @@ namespace retroforge
 {
   namespace
   {
-    /// The nodes of a face that touches.
+    /// For each entry the mean of its faces, by what of them touches, of the means of their corners.
     template <typename Number>
-    std::array<NodeIndex, 3> nodes_of(const ThermalSurface<Number> &surface, const TouchingFace<Number> &face)
+    std::vector<Number> mean_over_faces(const ThermalSurface<Number> &surface, const std::vector<Number> &x)
     {
-      return {{surface.touching[face.corners[0]].node,
-               surface.touching[face.corners[1]].node,
-               surface.touching[face.corners[2]].node}};
-    }
-
-    /// At each node with a film the mean of its faces, by what of them touches, of the means of their nodes.
-    template <typename Number>
-    std::vector<Number> mean_over_faces(const HeatFlow<Number>                 &flow,
-                                        const std::vector<NodeContact<Number>> &contacts,
-                                        std::vector<Number>                     x)
-    {
-      std::vector<Number> sum(x.size(), Number(0.));
-      for (const auto &face : flow.surface.faces)
+      std::vector<Number> mean(x.size(), Number(0.));
+      for (const auto &face : surface.faces)
       {
-        const auto nodes = nodes_of(flow.surface, face);
-        Number     mean(0.);
-        for (const NodeIndex k : nodes)
-          mean += x[k] / 3.;
-        for (const NodeIndex k : nodes)
-          sum[k] += face.area * mean;
+        Number of_face(0.);
+        for (const unsigned int i : face.corners)
+          of_face += x[i] / 3.;
+        for (const unsigned int i : face.corners)
+          mean[i] += face.area * of_face;
       }
-      for (const auto &contact : contacts)
-        if (contact.has_film)
-          x[contact.node] = sum[contact.node] / contact.area;
-      return x;
+      for (unsigned int i = 0; i < x.size(); ++i)
+        if (const Number &area = surface.touching[i].area; value_of(area) > 0.)
+          mean[i] /= area;
+      return mean;
     }
 
     /// Reverse of mean_over_faces(): returns the derivatives in x.
-    /// @param contacts_bar  one for each of `contacts`
-    std::vector<double> reverse_mean_over_faces(const HeatFlow<double>                 &flow,
-                                                const std::vector<NodeContact<double>> &contacts,
-                                                const std::vector<double>              &x,
-                                                const std::vector<double>              &mean_bar,
-                                                std::vector<NodeContactBar>            &contacts_bar,
-                                                HeatFlowBar                            &bar)
+    std::vector<double> reverse_mean_over_faces(const ThermalSurface<double> &surface,
+                                                const std::vector<double>    &x,
+                                                std::vector<double>           mean_bar,
+                                                ThermalSurfaceBar            &surface_bar)
     {
-      const std::vector<double> means = mean_over_faces(flow, contacts, x);
-      std::vector<double>       x_bar = mean_bar, sum_bar(x.size(), 0.);
-      for (std::size_t c = 0; c < contacts.size(); ++c)
-        if (contacts[c].has_film)
+      const std::vector<double> mean = mean_over_faces(surface, x);
+      std::vector<double>       x_bar(x.size(), 0.);
+      for (unsigned int i = 0; i < x.size(); ++i)
+        if (const double area = surface.touching[i].area; area > 0.)
         {
-          const NodeIndex k = contacts[c].node;
-          sum_bar[k]        = mean_bar[k] / contacts[c].area;
-          x_bar[k]          = 0.;
-          contacts_bar[c].area -= sum_bar[k] * means[k];
+          mean_bar[i] /= area;
+          surface_bar.touching_area[i] -= mean_bar[i] * mean[i];
         }
-      for (std::size_t f = 0; f < flow.surface.faces.size(); ++f)
+      for (std::size_t f = 0; f < surface.faces.size(); ++f)
       {
-        const auto  &face  = flow.surface.faces[f];
-        const auto   nodes = nodes_of(flow.surface, face);
-        const double sums  = sum_bar[nodes[0]] + sum_bar[nodes[1]] + sum_bar[nodes[2]];
-        for (const NodeIndex k : nodes)
+        const auto &face = surface.faces[f];
+        double      sums = 0., of_face = 0.;
+        for (const unsigned int i : face.corners)
         {
-          bar.surface.face_area[f] += sums * x[k] / 3.;
-          x_bar[k] += sums * face.area / 3.;
+          sums += mean_bar[i];
+          of_face += x[i] / 3.;
         }
+        surface_bar.face_area[f] += sums * of_face;
+        for (const unsigned int i : face.corners)
+          x_bar[i] += sums * face.area / 3.;
       }
       return x_bar;
     }
 
-    /// At the nodes themselves: the metal above the skin, as far as the node does not show that, and the dies.
+    /// At the nodes themselves.
     template <typename Number>
-    std::array<std::vector<Number>, 2> nodal_surfaces(const HeatFlow<Number>                 &flow,
-                                                      const std::vector<NodeContact<Number>> &contacts,
-                                                      const std::vector<Number>              &T,
-                                                      const NodeSkins<Number>                &skin)
+    std::vector<Number> nodal_dies_surfaces(const ThermalSurface<Number>        &surface,
+                                            const std::vector<DieState<Number>> &dies,
+                                            const NodeSkins<Number>             &skin)
     {
-      std::vector<Number> metal = T, die(T.size(), Number(0.));
-      for (const auto &contact : contacts)
-        if (contact.has_film)
-        {
-          const NodeIndex    k     = contact.node;
-          const Skin<Number> shown = parts_shown(flow.law, contact.depth(flow));
-          metal[k] += shown * skin.metal[k] - drop_of(skin.metal[k]);
-          die[k] = contact.die_temperature(flow) + drop_of(contact.dies_skin(flow, skin));
-        }
-      return {{std::move(metal), std::move(die)}};
+      std::vector<Number> t;
+      for (const auto &at : surface.touching)
+        t.push_back(dies[at.die].temperature + drop_of(skin.dies[at.die][at.node]));
+      return t;
     }
   } // namespace
 
   template <typename Number>
-  std::array<std::vector<Number>, 2> surface_temperatures(const HeatFlow<Number>    &flow,
-                                                          const std::vector<Number> &T,
-                                                          const NodeSkins<Number>   &skin)
+  std::vector<Number> dies_surfaces(const ThermalSurface<Number>        &surface,
+                                    const std::vector<DieState<Number>> &dies,
+                                    const NodeSkins<Number>             &skin)
+  {
+    AssertDimension(skin.dies.size(), dies.size());
+    return mean_over_faces(surface, nodal_dies_surfaces(surface, dies, skin));
+  }
+
+  template std::vector<double> dies_surfaces(const ThermalSurface<double> &,
+                                             const std::vector<DieState<double>> &,
+                                             const NodeSkins<double> &);
+  template std::vector<Dual>
+  dies_surfaces(const ThermalSurface<Dual> &, const std::vector<DieState<Dual>> &, const NodeSkins<Dual> &);
+
+  void reverse_dies_surfaces(const ThermalSurface<double>        &surface,
+                             const std::vector<DieState<double>> &dies,
+                             const NodeSkins<double>             &skin,
+                             const std::vector<double>           &temperatures_bar,
+                             ThermalSurfaceBar                   &surface_bar,
+                             std::vector<DieState<double>>       &dies_bar,
+                             NodeSkins<double>                   &skin_bar)
+  {
+    const auto t_bar = reverse_mean_over_faces(
+      surface, nodal_dies_surfaces(surface, dies, skin), temperatures_bar, surface_bar);
+    for (unsigned int i = 0; i < t_bar.size(); ++i)
+    {
+      const auto &at = surface.touching[i];
+      dies_bar[at.die].temperature += t_bar[i];
+      add_to_modes(t_bar[i], skin_bar.dies[at.die][at.node]);
+    }
+  }
+
+  std::vector<double>
+  metals_surface(const HeatFlow<double> &flow, const std::vector<double> &T, const NodeSkins<double> &skin)
   {
     AssertDimension(T.size(), flow.network.volumes.size());
     AssertDimension(skin.metal.size(), T.size());
-    const auto contacts = node_contacts(flow);
-    auto [metal, die]   = nodal_surfaces(flow, contacts, T, skin);
-    return {
-      {mean_over_faces(flow, contacts, std::move(metal)), mean_over_faces(flow, contacts, std::move(die))}};
-  }
-
-  template std::array<std::vector<double>, 2>
-  surface_temperatures(const HeatFlow<double> &, const std::vector<double> &, const NodeSkins<double> &);
-  template std::array<std::vector<Dual>, 2>
-  surface_temperatures(const HeatFlow<Dual> &, const std::vector<Dual> &, const NodeSkins<Dual> &);
-
-  void reverse_surface_temperatures(const HeatFlow<double>                   &flow,
-                                    const std::vector<double>                &T,
-                                    const NodeSkins<double>                  &skin,
-                                    const std::array<std::vector<double>, 2> &surfaces_bar,
-                                    std::vector<double>                      &T_bar,
-                                    NodeSkins<double>                        &skin_bar,
-                                    HeatFlowBar                              &bar)
-  {
-    const auto                         contacts = node_contacts(flow);
-    const auto                         at_nodes = nodal_surfaces(flow, contacts, T, skin);
-    std::vector<NodeContactBar>        contacts_bar(contacts.begin(), contacts.end());
-    std::array<std::vector<double>, 2> at_nodes_bar;
-    for (const unsigned int side : {0, 1})
-      at_nodes_bar[side] =
-        reverse_mean_over_faces(flow, contacts, at_nodes[side], surfaces_bar[side], contacts_bar, bar);
-    for (NodeIndex k = 0; k < T.size(); ++k)
-      T_bar[k] += at_nodes_bar[0][k];
-    for (std::size_t c = 0; c < contacts.size(); ++c)
-    {
-      const auto &contact = contacts[c];
-      if (!contact.has_film)
-        continue;
-      const NodeIndex    k         = contact.node;
-      const double       metal_bar = at_nodes_bar[0][k], die_bar = at_nodes_bar[1][k];
-      const double       depth = contact.depth(flow);
-      const Skin<double> shown = parts_shown(flow.law, depth);
-      contacts_bar[c].depth += reverse_parts_shown(flow.law, depth, metal_bar * skin.metal[k], bar.law);
-      contacts_bar[c].die_temperature += die_bar;
-      for (unsigned int j = 0; j < n_skin_modes; ++j)
-        skin_bar.metal[k][j] += metal_bar * (shown[j] - 1.);
-      for (std::size_t e = 0; e < contact.entries.size(); ++e)
+    const auto         &surface = flow.surface;
+    std::vector<double> t = T, area = surface.free;
+    for (const auto &contact : node_contacts(flow))
+      if (contact.has_film)
+        area[contact.node] = contact.area;
+    for (NodeIndex k = 0; k < t.size(); ++k)
+      if (area[k] > 0.)
       {
-        const unsigned int i = contact.entries[e], die = flow.surface.touching[i].die;
-        contacts_bar[c].share[e] += die_bar * drop_of(skin.dies[die][k]);
-        for (unsigned int j = 0; j < n_skin_modes; ++j)
-          skin_bar.dies[die][k][j] += die_bar * contact.share(flow, i);
+        const Skin<double> shown = parts_shown(flow.law, flow.network.volumes[k] / area[k]);
+        t[k] += shown * skin.metal[k] - drop_of(skin.metal[k]);
       }
+    // Means where it touches.
+    std::vector<double> at_entries, sum(t.size(), 0.), areas(t.size(), 0.);
+    for (const auto &at : surface.touching)
+      at_entries.push_back(t[at.node]);
+    const auto mean = mean_over_faces(surface, at_entries);
+    for (unsigned int i = 0; i < mean.size(); ++i)
+    {
+      const auto &at = surface.touching[i];
+      sum[at.node] += at.area * mean[i];
+      areas[at.node] += at.area;
     }
-    for (std::size_t c = 0; c < contacts.size(); ++c)
-      contacts_bar[c].reverse(flow, contacts[c], bar);
+    for (NodeIndex k = 0; k < t.size(); ++k)
+      if (areas[k] > 0.)
+        t[k] = sum[k] / areas[k];
+    return t;
   }
 } // namespace retroforge

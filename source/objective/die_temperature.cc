@@ -22,17 +22,10 @@ namespace retroforge
     }
 
     template <typename Number>
-    std::vector<Number> die_surface(const FinalView<Number> &view, const HeatUnderPress<Number> &heat)
+    ThermalSurface<Number> under_press(const FinalView<Number> &view)
     {
-      Assert(view.T != nullptr && view.skin != nullptr && view.heat != nullptr,
-             dealii::ExcMessage("heat does not flow"));
-      return surface_temperatures(heat.flow, *view.T, *view.skin)[1];
-    }
-
-    template <typename Number>
-    HeatUnderPress<Number> under_press(const FinalView<Number> &view)
-    {
-      return {view.scene.view(view.dies, view.X), *view.heat};
+      Assert(view.skin != nullptr && view.heat != nullptr, dealii::ExcMessage("heat does not flow"));
+      return surface_under_press(view.scene.view(view.dies, view.X), value_of(view.heat->gap));
     }
 
     /// Whether this rank tells what all know.
@@ -45,13 +38,13 @@ namespace retroforge
 
   DieTemperature::Decisions DieTemperature::compute_decisions(const FinalView<double> &view) const
   {
-    const auto   heat    = under_press(view);
-    const auto   t       = die_surface(view, heat);
+    const auto   surface = under_press(view);
+    const auto   t       = dies_surfaces(surface, view.dies, *view.skin);
     const double itself  = view.dies[die_].temperature;
     double       largest = -std::numeric_limits<double>::infinity();
-    for (const auto &at : heat.surface.touching)
-      if (counts(view, at, die_))
-        largest = std::max(largest, t[at.node]);
+    for (unsigned int i = 0; i < t.size(); ++i)
+      if (counts(view, surface.touching[i], die_))
+        largest = std::max(largest, t[i]);
     largest = dealii::Utilities::MPI::max(largest, view.scene.discretization.comm());
     return {std::isfinite(largest) ? largest : itself};
   }
@@ -66,13 +59,13 @@ namespace retroforge
   std::vector<Number> DieTemperature::compute_integrals(const FinalView<Number> &view,
                                                         const Decisions         &decisions) const
   {
-    const auto          heat = under_press(view);
-    const auto          t    = die_surface(view, heat);
+    const auto          surface = under_press(view);
+    const auto          t       = dies_surfaces(surface, view.dies, *view.skin);
     std::vector<Number> sums(3, Number(0.));
-    for (const auto &at : heat.surface.touching)
-      if (counts(view, at, die_))
+    for (unsigned int i = 0; i < t.size(); ++i)
+      if (const auto &at = surface.touching[i]; counts(view, at, die_))
       {
-        const auto f = mean_.terms(t[at.node], decisions.largest);
+        const auto f = mean_.terms(t[i], decisions.largest);
         sums[0] += at.area * f[0];
         sums[1] += at.area * f[1];
       }
@@ -92,27 +85,20 @@ namespace retroforge
                                          const std::vector<double> &weights,
                                          FinalBar                  &bar) const
   {
-    const auto                         heat = under_press(view);
-    const auto                         t    = die_surface(view, heat);
-    std::array<std::vector<double>, 2> surfaces_bar;
-    for (auto &of_surface : surfaces_bar)
-      of_surface.assign(t.size(), 0.);
-    ConductionNetwork<double> network_bar = no_derivatives(heat.network);
-    ThermalSurfaceBar         surface_bar(heat.surface);
-    for (unsigned int i = 0; i < heat.surface.touching.size(); ++i)
-      if (const auto &at = heat.surface.touching[i]; counts(view, at, die_))
+    const auto          surface = under_press(view);
+    const auto          t       = dies_surfaces(surface, view.dies, *view.skin);
+    std::vector<double> t_bar(t.size(), 0.);
+    ThermalSurfaceBar   surface_bar(surface);
+    for (unsigned int i = 0; i < t.size(); ++i)
+      if (const auto &at = surface.touching[i]; counts(view, at, die_))
       {
-        const auto f                 = mean_.terms(t[at.node], decisions.largest),
-                   s                 = mean_.slopes(t[at.node], decisions.largest);
+        const auto f = mean_.terms(t[i], decisions.largest), s = mean_.slopes(t[i], decisions.largest);
         surface_bar.touching_area[i] = weights[0] * f[0] + weights[1] * f[1];
-        surfaces_bar[1][at.node]     = at.area * (weights[0] * s[0] + weights[1] * s[1]);
+        t_bar[i]                     = at.area * (weights[0] * s[0] + weights[1] * s[1]);
       }
-    double      no_time = 0.;
-    HeatFlowBar flow_bar{network_bar, surface_bar, bar.heat, bar.heat.contact_film, bar.dies, no_time};
-    reverse_surface_temperatures(heat.flow, *view.T, *view.skin, surfaces_bar, bar.T, bar.skin, flow_bar);
+    reverse_dies_surfaces(surface, view.dies, *view.skin, t_bar, surface_bar, bar.dies, bar.skin);
     const auto contact = view.scene.view(view.dies, view.X);
-    reverse_thermal_surface(contact, heat.surface, view.heat->gap, surface_bar, bar.X, bar.dies);
-    reverse_conduction_network(view.scene.mesh, heat.edges, view.X, network_bar, bar.X);
+    reverse_thermal_surface(contact, surface, view.heat->gap, surface_bar, bar.X, bar.dies);
     if (is_first(view))
       bar.dies[die_].temperature += weights[2];
   }

@@ -58,17 +58,7 @@ namespace retroforge
                        NodeSkins<double>         &skin_bar,
                        HeatFlowBar               &bar);
 
-  /// What heat flows in under the press, made of the workpiece and the dies where they are; dies that are not in the
-  /// press touch nothing. What is passed must live as long.
+  /// Returns what touches under the press, where workpiece and dies are; dies that are not in the press touch nothing.
   template <typename Number>
-  struct HeatUnderPress
-  {
-    NetworkEdges              edges;
-    ConductionNetwork<Number> network;
-    ThermalSurface<Number>    surface;
-    HeatFlow<Number>          flow;
-
-    HeatUnderPress(const ContactView<Number> &view, const HeatLaw<Number> &law);
-    HeatUnderPress(const HeatUnderPress &) = delete; // flow refers to it
-  };
+  ThermalSurface<Number> surface_under_press(const ContactView<Number> &view, double gap);
 } // namespace retroforge

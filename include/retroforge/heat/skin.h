@@ -191,6 +191,13 @@ namespace retroforge
     return sum;
   }
 
+  /// Reverse of drop_of().
+  inline void add_to_modes(const double x, Skin<double> &skin)
+  {
+    for (unsigned int j = 0; j < n_skin_modes; ++j)
+      skin[j] += x;
+  }
+
   /// Effusivity of metal and die together.
   template <typename Number>
   Number joint_effusivity(const Number &of_metal, const Number &of_die)

@@ -4,7 +4,6 @@
 
 #include <retroforge/heat/heat_flow.h>
 
-#include <array>
 #include <vector>
 
 /// @file
@@ -13,20 +12,23 @@
 /// node the mean of its faces, by what of them touches.
 namespace retroforge
 {
-  /// Returns the temperatures of the metal, at its surface those above the skin, and of the dies' surfaces, 0 where
-  /// none touches; each at every node [C].
+  /// Returns for each entry of `touching` the temperature of its die's surface, 0 where no area touches [C].
   template <typename Number>
-  std::array<std::vector<Number>, 2> surface_temperatures(const HeatFlow<Number>    &flow,
-                                                          const std::vector<Number> &T,
-                                                          const NodeSkins<Number>   &skin);
+  std::vector<Number> dies_surfaces(const ThermalSurface<Number>        &surface,
+                                    const std::vector<DieState<Number>> &dies,
+                                    const NodeSkins<Number>             &skin);
 
-  /// Reverse of surface_temperatures(): adds to T_bar, skin_bar, and bar.
-  /// @param surfaces_bar  derivatives in both
-  void reverse_surface_temperatures(const HeatFlow<double>                   &flow,
-                                    const std::vector<double>                &T,
-                                    const NodeSkins<double>                  &skin,
-                                    const std::array<std::vector<double>, 2> &surfaces_bar,
-                                    std::vector<double>                      &T_bar,
-                                    NodeSkins<double>                        &skin_bar,
-                                    HeatFlowBar                              &bar);
+  /// Reverse of dies_surfaces(): adds to surface_bar, to the temperatures in dies_bar, and to skin_bar.
+  void reverse_dies_surfaces(const ThermalSurface<double>        &surface,
+                             const std::vector<DieState<double>> &dies,
+                             const NodeSkins<double>             &skin,
+                             const std::vector<double>           &temperatures_bar,
+                             ThermalSurfaceBar                   &surface_bar,
+                             std::vector<DieState<double>>       &dies_bar,
+                             NodeSkins<double>                   &skin_bar);
+
+  /// Returns the temperatures of the metal, at its surface those above the skin, also where a contact has opened; each at
+  /// every node [C].
+  std::vector<double>
+  metals_surface(const HeatFlow<double> &flow, const std::vector<double> &T, const NodeSkins<double> &skin);
 } // namespace retroforge

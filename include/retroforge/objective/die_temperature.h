@@ -10,7 +10,7 @@ namespace retroforge
 {
   /// The largest temperature of a die's surface, beneath the metal that touches it at the end [C]: the mean
   ///   ( sum_k A_k t_k exp(t_k/s) ) / ( sum_k A_k exp(t_k/s) ),
-  /// t_k the temperature of the surface at node k (heat/heat_flow.h), A_k the area there that touches the die. That of
+  /// t_k the temperature of the surface at node k (heat/surface_temperature.h), A_k the area there that touches the die. That of
   /// the die itself where nothing does.
   class DieTemperature : public FinalObjectiveOf<DieTemperature>
   {

@@ -53,7 +53,6 @@ namespace retroforge
     std::vector<double>  T;      ///< empty where temperatures are not followed
     std::vector<double>  damage; ///< empty where it is not followed
     NodeSkins<double>    skin;   ///< empty where heat does not flow
-    HeatLaw<double>      heat;   ///< its numbers
     NodalVectors<double> target; ///< vertices of the target, where the view or a die has them; else empty
     /// Displacements, temperatures, and vertices of dies that are not meant as the target.
     std::vector<DieState<double>> dies;
@@ -65,8 +64,8 @@ namespace retroforge
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[X, q, T, damage, skin, heat, target, dies] = self;
-      return std::tie(X, q, T, damage, skin, heat, target, dies);
+      auto &[X, q, T, damage, skin, target, dies] = self;
+      return std::tie(X, q, T, damage, skin, target, dies);
     }
   };
 

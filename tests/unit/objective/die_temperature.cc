@@ -5,8 +5,8 @@
 // - By hand: a die of 200 C whose skin has warmed by 300 and 180 K in two modes has 680 C at its surface, beneath whatever metal, and
 //   679 C where it is a degree less: a face has the mean of its nodes, a node that of its faces, and the largest is the smooth
 //   one of these, by their areas. A die that touches nothing has its own temperature, and so has one that is not in the press.
-// - The reverse against dual numbers in positions, displacements, vertices and temperatures of the dies, temperatures and
-//   skins of the metal, and the numbers of heat, each alone, and the Taylor order along all: between a wavy die that a box
+// - The reverse against dual numbers in positions, displacements, vertices and temperatures of the dies, and skins, each alone,
+//   and the Taylor order along all: between a wavy die that a box
 //   touches in part, and a plane across its corner, with thin skins and thick ones.
 
 #include <retroforge/billet/billet.h>
@@ -27,19 +27,13 @@ namespace
   {
     NodalVectors<Number>          X;
     std::vector<DieState<Number>> dies;
-    std::vector<Number>           T;
     NodeSkins<Number>             skin;
     HeatLaw<Number>               law;
 
     std::vector<Group<Number>> groups()
     {
-      std::vector<Group<Number>> groups = {{"X", {}},
-                                           {"displacement", {}},
-                                           {"dies", {}},
-                                           {"temperatures of dies", {}},
-                                           {"T", {}},
-                                           {"skin", {}},
-                                           {"heat", {}}};
+      std::vector<Group<Number>> groups = {
+        {"X", {}}, {"displacement", {}}, {"dies", {}}, {"temperatures of dies", {}}, {"skin", {}}};
       append(X, groups[0].second);
       for (auto &die : dies)
       {
@@ -48,12 +42,7 @@ namespace
         append(die.vertices, groups[2].second);
         groups[3].second.push_back(&die.temperature);
       }
-      for (Number &value : T)
-        groups[4].second.push_back(&value);
-      for_each_number([&](Number &value) { groups[5].second.push_back(&value); }, skin);
-      // Those that are positive and not frozen.
-      for (Number *number : {&law.capacity, &law.conductivity, &law.contact_film, &law.die_effusivity})
-        groups[6].second.push_back(number);
+      for_each_number([&](Number &value) { groups[4].second.push_back(&value); }, skin);
       return groups;
     }
   };
@@ -67,7 +56,6 @@ namespace
         : scene(std::move(mesh), DiscretizationChoice(), dies, MPI_COMM_WORLD)
         , at{scene.mesh.X,
              std::vector<DieState<double>>(dies.size()),
-             std::vector<double>(scene.mesh.n_nodes(), 1000.),
              NodeSkins<double>::none(scene.mesh.n_nodes(), dies.size()),
              law}
     {
@@ -85,7 +73,7 @@ namespace
     {
       const std::vector<Number> q(scene.mesh.n_cells(), Number(0.));
       return f(FinalView<Number>{
-        scene, inputs.X, q, inputs.dies, nullptr, &inputs.T, nullptr, &inputs.skin, &inputs.law});
+        scene, inputs.X, q, inputs.dies, nullptr, nullptr, nullptr, &inputs.skin, &inputs.law});
     }
 
     FinalDecisions decide(const DieTemperature &objective) const
@@ -112,7 +100,7 @@ namespace
       return with_view(inputs, [&](const auto &view) {
         const auto b = objective.integrals(view, decisions).complete();
         auto bar = objective.derivatives(view, decisions, objective.reverse_value(b, decisions)).complete();
-        return Inputs<double>{bar.X, bar.dies, bar.T, bar.skin, bar.heat};
+        return Inputs<double>{bar.X, bar.dies, bar.skin, {}};
       });
     }
   };
@@ -153,8 +141,9 @@ namespace
     errors.compare("even metal", problem.value(lower), 680.);
     errors.compare("nothing touches", problem.value(upper), 200.);
     const auto          is_cold = [](const NodeIndex k) { return k % 2 == 0; };
-    std::vector<double> area(problem.at.T.size(), 0.), t(area); // of thirds of faces, and their temperatures
-    const TetMesh      &mesh = problem.scene.mesh;
+    std::vector<double> area(problem.scene.mesh.n_nodes(), 0.),
+      t(area); // of thirds of faces, and their temperatures
+    const TetMesh &mesh = problem.scene.mesh;
     for (NodeIndex k = 0; k < area.size(); ++k)
       problem.at.skin.dies[0][k][4] -= is_cold(k);
     for (const BoundaryFace &face : mesh.faces)
@@ -202,8 +191,6 @@ namespace
                     law);
     for (Vec3 &x : problem.at.X)
       x += 0.03 * random.vector();
-    for (double &T : problem.at.T)
-      T += 2. * random.scalar();
     for_each_number([&](double &m) { m = 800. * skin / n_skin_modes * (1. + 0.5 * random.scalar()); },
                     problem.at.skin);
     problem.at.dies[0].displacement = Vec3({0.02, -0.01, -0.05});
@@ -213,7 +200,6 @@ namespace
     Inputs<Dual>         dual;
     convert(problem.at.X, dual.X);
     convert(problem.at.dies, dual.dies);
-    convert(problem.at.T, dual.T);
     convert(problem.at.skin, dual.skin);
     convert(problem.at.law, dual.law);
     return check_derivatives<Inputs>(
