@@ -7,6 +7,21 @@ import subprocess
 import sys
 
 
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+
+
+def leave_root():
+    """Cases that are run by hand from the project's root write below results/by_hand."""
+    if os.path.samefile(os.getcwd(), ROOT):
+        sys.argv[1:] = [os.path.abspath(word) if os.path.exists(word) else word for word in sys.argv[1:]]
+        folder = os.path.join(ROOT, "results", "by_hand")
+        os.makedirs(folder, exist_ok=True)
+        os.chdir(folder)
+
+
+leave_root()
+
+
 def run(build, command, case, settings=None, output="run", ranks=1, may_fail=False):
     """Run `retroforge COMMAND CASE` with overrides {"Section/name": value} and return (summary, what it printed)."""
     arguments = [os.path.join(build, "retroforge"), command, case, "--output", output, "--overwrite"]

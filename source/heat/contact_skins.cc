@@ -19,22 +19,37 @@ namespace retroforge
       return drops >= 1. ? 1. : std::exp(2. * (drops - 1.));
     }
 
-    /// The positive part, smooth over a degree, and not above it.
+    /// The positive part, smooth over the width, and not above it.
     template <typename Number>
-    Number positive(const Number &x)
+    Number positive(const Number &x, const Number &width)
     {
       if (value_of(x) <= 0.)
         return Number(0.);
-      return value_of(x) >= 1. ? x : Number(x * x * (2. - x));
+      return value_of(x) >= value_of(width) ? x : Number(x * x * (2. - x / width) / width);
     }
 
-    /// A shift of the die's temperature kept between 0 and the difference to the node's.
+    /// A width for a bound: a degree, or less than the bound where that is near.
     template <typename Number>
-    Number kept_between(const Number &shift, const Number &difference)
+    Number width_of(const Number &bound)
     {
-      if (value_of(difference) < 0.)
-        return -kept_between(Number(-shift), Number(-difference));
-      return positive(Number(difference - positive(Number(difference - shift))));
+      return bound / (1. + bound);
+    }
+
+    /// A shift of the die's temperature kept in the range of 0 and two others: the difference to the node's, and by how much the
+    /// die's surface is warmer. Within it, it stays what it is.
+    template <typename Number>
+    Number kept_between(const Number &shift, const Number &difference, const Number &warmth)
+    {
+      Number upper(0.), lower(0.);
+      for (const Number *x : {&difference, &warmth})
+      {
+        if (value_of(*x) > value_of(upper))
+          upper = *x;
+        if (value_of(*x) < value_of(lower))
+          lower = *x;
+      }
+      const Number below = upper - positive(Number(upper - shift), width_of(upper));
+      return lower + positive(Number(below - lower), width_of(Number(-lower)));
     }
 
     template <typename Number>
@@ -71,18 +86,20 @@ namespace retroforge
                                const Number                &T,
                                const NodeSkins<Number>     &skin)
     {
-      NodeFilm<Number> film;
-      const Number     time  = contact.weight * dt;
-      const auto      &metal = skin.metal[contact.node];
-      film.both              = metal + contact.dies_skin(flow, skin);
-      film.parts             = over.touching(value_of(time), [&](const SkinPropagator &beneath) {
+      NodeFilm<Number>   film;
+      const Number       time  = contact.weight * dt;
+      const auto        &metal = skin.metal[contact.node];
+      const Skin<Number> dies  = contact.dies_skin(flow, skin);
+      film.both                = metal + dies;
+      film.parts               = over.touching(value_of(time), [&](const SkinPropagator &beneath) {
         return skin_parts(beneath, over.rate(), film.both, time);
       });
-      film.left              = over.healing(time);
-      film.shown             = parts_shown(flow.law, contact.depth(flow));
-      film.drops             = bounded_drops(unbounded_drops(film, over.part()));
-      film.behind            = contact.die_temperature(flow);
-      film.shift = kept_between(unbounded_shift(film, metal, over.part()), Number(T - film.behind));
+      film.left                = over.healing(time);
+      film.shown               = parts_shown(flow.law, contact.depth(flow));
+      film.drops               = bounded_drops(unbounded_drops(film, over.part()));
+      film.behind              = contact.die_temperature(flow);
+      film.shift =
+        kept_between(unbounded_shift(film, metal, over.part()), Number(T - film.behind), drop_of(dies));
       return film;
     }
 
@@ -215,14 +232,14 @@ namespace retroforge
 
     struct ShiftSlopes
     {
-      double in_shift, in_difference;
+      double in_shift, in_difference, in_warmth;
     };
 
-    ShiftSlopes slopes_of_kept_between(const double shift, const double difference)
+    ShiftSlopes slopes_of_kept_between(const double shift, const double difference, const double warmth)
     {
-      using Partial    = Sacado::Fad::SFad<double, 2>;
-      const Partial of = kept_between(Partial(2, 0, shift), Partial(2, 1, difference));
-      return {of.dx(0), of.dx(1)};
+      using Partial    = Sacado::Fad::SFad<double, 3>;
+      const Partial of = kept_between(Partial(3, 0, shift), Partial(3, 1, difference), Partial(3, 2, warmth));
+      return {of.dx(0), of.dx(1), of.dx(2)};
     }
 
     double along(const SkinStep<double> &a, const SkinStep<double> &b)
@@ -316,8 +333,9 @@ namespace retroforge
       drops_bar -= phi_bar * phi / film.drops;
 
       // The temperature behind it.
-      const Skin<double> own = metals_own(film, metal, p);
-      const auto slopes      = slopes_of_kept_between(unbounded_shift(film, metal, p), T_[k] - film.behind);
+      const Skin<double> own    = metals_own(film, metal, p);
+      const auto         slopes = slopes_of_kept_between(
+        unbounded_shift(film, metal, p), T_[k] - film.behind, drop_of(contact.dies_skin(flow_, skin_)));
       T_bar[k] += shift_bar * slopes.in_difference;
       behind_bar -= shift_bar * slopes.in_difference;
       const double free_bar = shift_bar * slopes.in_shift, before_film = drop_of(P.mean);
@@ -354,13 +372,16 @@ namespace retroforge
       bar.dt += time_bar * contact.weight;
 
       // Metal and dies.
+      const double warmth_bar = shift_bar * slopes.in_warmth;
+      Skin<double> dies_bar   = both_bar;
+      add_to_modes(warmth_bar, dies_bar);
       contact_bar.die_temperature += behind_bar;
       skin_bar.metal[k] = metal_bar + both_bar;
       for (std::size_t e = 0; e < contact.entries.size(); ++e)
       {
         const unsigned int i = contact.entries[e], die = flow_.surface.touching[i].die;
-        skin_bar.dies[die][k] += contact.share(flow_, i) * both_bar;
-        contact_bar.share[e] += both_bar * skin_.dies[die][k];
+        skin_bar.dies[die][k] += contact.share(flow_, i) * dies_bar;
+        contact_bar.share[e] += dies_bar * skin_.dies[die][k];
       }
     }
 

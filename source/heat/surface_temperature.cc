@@ -102,6 +102,23 @@ namespace retroforge
     }
   }
 
+  std::vector<double> means_at_nodes(const ThermalSurface<double> &surface,
+                                     const std::vector<double>    &of_entries,
+                                     std::vector<double>           elsewhere)
+  {
+    std::vector<double> sum(elsewhere.size(), 0.), area(sum);
+    for (unsigned int i = 0; i < of_entries.size(); ++i)
+    {
+      const auto &at = surface.touching[i];
+      sum[at.node] += at.area * of_entries[i];
+      area[at.node] += at.area;
+    }
+    for (NodeIndex k = 0; k < area.size(); ++k)
+      if (area[k] > 0.)
+        elsewhere[k] = sum[k] / area[k];
+    return elsewhere;
+  }
+
   std::vector<double>
   metals_surface(const HeatFlow<double> &flow, const std::vector<double> &T, const NodeSkins<double> &skin)
   {
@@ -109,29 +126,19 @@ namespace retroforge
     AssertDimension(skin.metal.size(), T.size());
     const auto         &surface = flow.surface;
     std::vector<double> t = T, area = surface.free;
+    // A node's part that touches; as contact fades, all of its surface.
     for (const auto &contact : node_contacts(flow))
       if (contact.has_film)
-        area[contact.node] = contact.area;
+        area[contact.node] = contact.area + (1. - contact.weight) * surface.free[contact.node];
     for (NodeIndex k = 0; k < t.size(); ++k)
       if (area[k] > 0.)
       {
         const Skin<double> shown = parts_shown(flow.law, flow.network.volumes[k] / area[k]);
         t[k] += shown * skin.metal[k] - drop_of(skin.metal[k]);
       }
-    // Means where it touches.
-    std::vector<double> at_entries, sum(t.size(), 0.), areas(t.size(), 0.);
+    std::vector<double> at_entries;
     for (const auto &at : surface.touching)
       at_entries.push_back(t[at.node]);
-    const auto mean = mean_over_faces(surface, at_entries);
-    for (unsigned int i = 0; i < mean.size(); ++i)
-    {
-      const auto &at = surface.touching[i];
-      sum[at.node] += at.area * mean[i];
-      areas[at.node] += at.area;
-    }
-    for (NodeIndex k = 0; k < t.size(); ++k)
-      if (areas[k] > 0.)
-        t[k] = sum[k] / areas[k];
-    return t;
+    return means_at_nodes(surface, mean_over_faces(surface, at_entries), std::move(t));
   }
 } // namespace retroforge

@@ -179,25 +179,15 @@ namespace retroforge
   {
     if (!process.heat.conducts())
       return {};
-    const auto          dies    = process.over(place_of(HalfOfIncrement::second, at)).dies;
-    const auto          surface = surface_under_press(scene.view(dies, state.X), process.heat.gap);
-    const NetworkEdges  edges(scene.mesh, scene.topology);
-    const auto          network = conduction_network(scene.mesh, edges, state.X);
-    const auto          at_dies = dies_surfaces(surface, dies, state.skin);
-    std::vector<double> of_dies(state.X.size(), 0.), area(of_dies);
-    for (unsigned int i = 0; i < at_dies.size(); ++i)
-    {
-      const auto &touching = surface.touching[i];
-      of_dies[touching.node] += touching.area * at_dies[i];
-      area[touching.node] += touching.area;
-    }
-    for (NodeIndex k = 0; k < area.size(); ++k)
-      if (area[k] > 0.)
-        of_dies[k] /= area[k];
+    const auto         dies    = process.over(place_of(HalfOfIncrement::second, at)).dies;
+    const auto         surface = surface_under_press(scene.view(dies, state.X), process.heat.gap);
+    const NetworkEdges edges(scene.mesh, scene.topology);
+    const auto         network = conduction_network(scene.mesh, edges, state.X);
     return {{metals_surface({edges, network, surface, process.heat, process.heat.contact_film, dies},
                             state.temperature,
                             state.skin),
-             of_dies}};
+             means_at_nodes(
+               surface, dies_surfaces(surface, dies, state.skin), std::vector<double>(state.X.size(), 0.))}};
   }
 
   /// Steps of a half, remembered.

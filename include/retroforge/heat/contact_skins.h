@@ -19,7 +19,7 @@
 ///   q = h/(1 + R) (T - t - u),   1 + R = (1 - p sum_j rho_j B_j)/(1 - sum_j B_j),
 ///   u = (1 + R) sum_j P_j - sum_j rho_j (mu_j M_j + p (P_j - mu_j D_j)):
 /// a conductance, as of skins that begin with the step, and a temperature t + u behind it, which is what there was before:
-/// a die that is warm already, and metal that has cooled. It is kept between those of node and die.
+/// a die that is warm already, and metal that has cooled. It is kept between those of the node, of the die and of its surface.
 ///
 /// The temperature of the node on the mean over the step gives q, q gives DeltaT, and DeltaT the skins after the step.
 ///

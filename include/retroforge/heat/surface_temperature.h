@@ -27,6 +27,11 @@ namespace retroforge
                              std::vector<DieState<double>>       &dies_bar,
                              NodeSkins<double>                   &skin_bar);
 
+  /// Returns at each node the mean of what its entries of `touching` have, by area; where none touches, what there was.
+  std::vector<double> means_at_nodes(const ThermalSurface<double> &surface,
+                                     const std::vector<double>    &of_entries,
+                                     std::vector<double>           elsewhere);
+
   /// Returns the temperatures of the metal, at its surface those above the skin, also where a contact has opened; each at
   /// every node [C].
   std::vector<double>

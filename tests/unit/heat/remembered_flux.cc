@@ -7,9 +7,11 @@
 // - a fresh die where another has been, of steel and of aluminium;
 // - parts that cool through while they lie: aluminium of 10 mm and of 60 mm, steel of 6 mm and of 12 mm;
 // - the first two ms beneath a film of 100 kW/(m² K);
+// - metal that work takes past its dies, and that is cooled below the die's surface: flux that turns round;
 // - metal colder than the die; metal as warm as its die, where nothing happens;
 // - a contact that has opened, and a die that keeps its warmth for the next one.
-// Proved: all surfaces within 3 % of the difference, heat within 3 %.
+// Proved: all surfaces within 3 % of the largest difference, but 5 % where titanium is warmed past dies that began 50 K hotter; heat
+// within 3 %.
 
 #include "fine_layers.h"
 #include "heat_test_tools.h"
@@ -33,6 +35,7 @@ namespace
     HeatLaw<double>    law;
     double             T_metal, T_die, depth;
     std::vector<Spell> spells;
+    double             bar = 0.03; ///< of the metal's surface
   };
 
   HeatLaw<double> metal(const double conductivity, const double capacity, const double effusivity_of_die)
@@ -103,8 +106,13 @@ namespace
         return x[2] > 1e-9 || x[0] < 0.5 * element || x[0] > 3.5 * element || x[1] < 0.5 * element ||
                x[1] > 3.5 * element;
       };
-      const double scale = difference != 0. ? std::abs(difference) : 1.;
-      Errors       worst{0., 0., difference != 0. ? std::abs(-in / (exact * area) - 1.) : std::abs(in)};
+      // Of the largest difference there was.
+      double warmed = 0.;
+      for (const Spell &of : history.spells)
+        warmed += of.warms_by;
+      const double scale =
+        difference != 0. ? std::max(std::abs(difference), std::abs(difference + warmed)) : 1.;
+      Errors worst{0., 0., difference != 0. ? std::abs(-in / (exact * area) - 1.) : std::abs(in)};
       for (NodeIndex k = 0; k < T.size(); ++k)
         if (!is_far_off(k))
           worst.metal = std::max(worst.metal, std::abs(metals[k] - fine.metals_surface()) / scale);
@@ -119,9 +127,10 @@ namespace
 
 int main()
 {
-  const HeatLaw<double> hot_steel = metal(26., 5.2, 12.), aluminium = metal(180., 2.6, 12.);
-  const Spell           wait{2., 5., 20, 0., false, true};
-  std::vector<History>  histories{
+  const HeatLaw<double> hot_steel = metal(26., 5.2, 12.), aluminium = metal(180., 2.6, 12.),
+                        titanium = metal(20., 3., 12.);
+  const Spell          wait{2., 5., 20, 0., false, true};
+  std::vector<History> histories{
     {"steel that work warms after a wait", hot_steel, 1200., 200., 48., {wait, {20., 0.1, 10, 100.}}},
     {"aluminium that work warms after a wait", aluminium, 450., 200., 60., {wait, {20., 0.1, 10, 50.}}},
     {"a fresh die beneath steel", hot_steel, 1200., 200., 48., {wait, {20., 0.1, 10, 0., true}}},
@@ -133,20 +142,45 @@ int main()
     {"2 ms beneath a film of 100", hot_steel, 1200., 200., 24., {{100., 0.002}}},
     {"steel colder than its die", hot_steel, 20., 300., 24., {{5., 1.}, {20., 0.1}}},
     {"steel as warm as its die", hot_steel, 300., 300., 24., {{5., 1.}, {20., 0.1}}},
+    {"aluminium that work takes past its dies",
+     aluminium,
+     450.,
+     500.,
+     20.,
+     {{5., 3., 20}, {20., 0.1, 10, 120.}}},
+    {"aluminium that work takes far past them",
+     aluminium,
+     450.,
+     600.,
+     20.,
+     {{5., 5., 20}, {20., 0.1, 10, 250.}}},
+    {"titanium that work takes past its dies",
+     titanium,
+     900.,
+     950.,
+     20.,
+     {{5., 3., 20}, {20., 0.2, 10, 120.}},
+     0.05},
+    {"aluminium cooled below what it has warmed",
+     aluminium,
+     450.,
+     200.,
+     8.,
+     {{5., 2., 20}, {5., 3., 20, -80.}}},
     {"a contact that has opened", hot_steel, 1200., 200., 24., {{10., 0.2}, {0., 0.02}}},
     {"the same, later", hot_steel, 1200., 200., 24., {{10., 0.2}, {0., 0.3}}},
     {"a contact that opens, and the same die",
-      hot_steel,
-      1200.,
-      200.,
-      24.,
-      {{10., 0.2}, {0., 0.5}, {10., 0.2}}}};
+     hot_steel,
+     1200.,
+     200.,
+     24.,
+     {{10., 0.2}, {0., 0.5}, {10., 0.2}}}};
   for (const History &history : histories)
     for (const double element : {4., 2.})
     {
       const Errors worst = errors(history, element);
-      std::cout << history.name << ", " << element
-                << " mm: metal, die, heat within 3 %: " << yes(worst.metal < 0.03) << ' '
+      std::cout << history.name << ", " << element << " mm: metal within " << 100. * history.bar
+                << " %, die, heat within 3 %: " << yes(worst.metal < history.bar) << ' '
                 << yes(worst.die < 0.03) << ' ' << yes(worst.heat < 0.03)
                 << ", worst [%]: " << std::round(1000. * worst.metal) / 10. << ' '
                 << std::round(1000. * worst.die) / 10. << ' ' << std::round(1000. * worst.heat) / 10. << "\n";
