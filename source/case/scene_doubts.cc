@@ -5,6 +5,7 @@
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/geometry/facet_curvature.h>
 #include <retroforge/geometry/vector_algebra.h>
+#include <retroforge/heat/thermal_surface.h>
 #include <retroforge/solver/rigid_modes.h>
 
 #include <algorithm>
@@ -203,13 +204,38 @@ namespace retroforge
     }
 
     /// Metal that gives heat to dies from so far off that one would see it: a gap is for what meshes leave between surfaces
-    /// that touch.
-    void tell_wide_gap(const Parameters &parameters, const Scene &scene, std::vector<std::string> &warnings)
+    /// that touch. A die to rest on that is farther off. Times that skins (heat/skin.h) do not remember.
+    void tell_heat(const Parameters           &parameters,
+                   const Scene                &scene,
+                   const Process<double>      &process,
+                   const NodalVectors<double> &X,
+                   std::vector<std::string>   &warnings)
     {
-      constexpr double      most = 0.2; // of the edges' length
+      constexpr double      most = 0.2, remembered = 200.; // of the edges' length; s
       const HeatLaw<double> heat = parameters.heat.law();
       const double          edge = parameters.edge_length(scene.mesh);
-      if (heat.conducts() && heat.gap > most * edge)
+      if (!heat.conducts())
+        return;
+      const auto  &operation = process.operations.front();
+      const double time      = process.time_on_dies(operation.stroke, 0);
+      if (time > remembered)
+        warnings.push_back(
+          "the metal is on dies for " + as_text(time) +
+          " s: dies are thick half spaces, which remember what went through their surface for "
+          "some 200 s; after 300 s it comes out 2 % of the difference too near to what they "
+          "were, after 500 s 7 %, after 1000 s 14 %");
+      if (operation.waiting.dwell > 0.)
+      {
+        std::vector<bool> touch(scene.dies.size(), false);
+        touch[operation.waiting.resting_die] = true;
+        const auto dies                      = process.over({0., 0., 0}).dies;
+        if (thermal_surface(scene.view(dies, X), touch, heat.gap).faces.empty())
+          warnings.push_back("die " + scene.dies[operation.waiting.resting_die].name +
+                             ", on which the billet is to rest for " + as_text(operation.waiting.dwell) +
+                             " s, does not touch a face of it: no heat goes there; move the die, or name "
+                             "another in Heat/resting die");
+      }
+      if (heat.gap > most * edge)
         warnings.push_back("Heat/contact gap = " + as_text(heat.gap) + " mm is " +
                            as_text(rounded_down(heat.gap / edge)) +
                            " of the element size: metal that far from a die gives it heat as if it touched; "
@@ -252,6 +278,6 @@ namespace retroforge
     tell_rims(parameters, scene, process, warnings);
     tell_unseen(parameters, scene, process, X, approaches, warnings);
     tell_loose(parameters, scene, process, X, warnings);
-    tell_wide_gap(parameters, scene, warnings);
+    tell_heat(parameters, scene, process, X, warnings);
   }
 } // namespace retroforge

@@ -433,6 +433,12 @@ def told():
             ("metal in a die", settings("Contact/largest depth=0"), r"the surface was up to .* inside die"),
             ("heat from afar", settings("Heat/heating=conduction", "Material/temperature=900", "Heat/contact gap=5"),
              r"warning: Heat/contact gap = 5 mm is [.0-9]+ of the element size"),
+            ("minutes on dies", settings("Heat/heating=conduction", "Material/temperature=900", "Heat/dwell time=400"),
+             r"warning: the metal is on dies for 400[.0-9]* s: dies are thick half spaces"),
+            ("rest on a die that is off", settings("Heat/heating=conduction", "Material/temperature=900", "Heat/dwell time=4",
+                                                    "Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0",
+                                                    "Heat/resting die=side"),
+             r"warning: die side, on which the billet is to rest for 4 s, does not touch"),
             ("die that nothing touches", settings("Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0"),
              r"warning: no node touched die side")):
         done = run(["case.prm", "--output", "told", "--overwrite"] + short + more, command="simulate")
