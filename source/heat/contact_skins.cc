@@ -246,6 +246,119 @@ namespace retroforge
     {
       return a.after * b.after + a.mean * b.mean;
     }
+
+    /// Derivatives in a node's film, and in what it is made of.
+    struct NodeFilmBar
+    {
+      Skin<double>      both, metal, shown;
+      SkinParts<double> parts;
+      SkinStep<double>  left;
+      double            drops = 0., behind = 0., shift = 0., warmth = 0., rate = 0., part = 0.;
+    };
+
+    /// Of skins after the step, which follow from DeltaT, and that from the temperature with which the film took its heat.
+    /// @param skin_bar  of the dies' skins, those before the touch on exit
+    NodeFilmBar reverse_advance(const HeatFlow<double>    &flow,
+                                const NodeContact<double> &contact,
+                                const NodeFilm<double>    &film,
+                                const double               part,
+                                const double               T,
+                                const NodeSkins<double>   &skin,
+                                NodeSkins<double>         &skin_bar,
+                                NodeContactBar            &contact_bar)
+    {
+      const NodeIndex     k          = contact.node;
+      const Skin<double> &metal_bar  = skin_bar.metal[k];
+      const double        difference = difference_of(film, T);
+      const Skin<double>  comes      = grown(film, difference),
+                         comes_bar   = reverse_grown(flow, contact, part, skin_bar);
+      NodeFilmBar bar;
+      bar.part       = metal_bar * comes;
+      bar.left.after = by_modes(metal_bar, skin.metal[k]) - by_modes(comes_bar, film.both);
+      bar.both       = -1. * by_modes(comes_bar, film.left.after);
+      bar.metal      = by_modes(metal_bar, film.left.after);
+      for (std::size_t e = 0; e < contact.entries.size(); ++e)
+      {
+        const unsigned int i           = contact.entries[e];
+        const double       of_time     = part_of_time(flow, contact, i);
+        const double       along_comes = skin_bar.dies[flow.surface.touching[i].die][k] * comes;
+        bar.part -= of_time * along_comes;
+        const double of_time_bar = (1. - part) * along_comes;
+        contact_bar.entry_weight[e] += of_time_bar / contact.weight;
+        contact_bar.weight -= of_time_bar * of_time / contact.weight;
+      }
+      for (std::size_t d = 0; d < skin_bar.dies.size(); ++d)
+      {
+        bar.left.after += by_modes(skin_bar.dies[d][k], skin.dies[d][k]);
+        skin_bar.dies[d][k] = by_modes(skin_bar.dies[d][k], film.left.after);
+      }
+      bar.parts.carried.after = comes_bar;
+      bar.parts.source.after  = difference * comes_bar;
+
+      const double across     = (T - film.behind - film.shift) / film.drops;
+      const double across_bar = reverse_across(film, comes_bar);
+      bar.drops               = -across_bar * across / film.drops;
+      bar.behind = bar.shift = -across_bar / film.drops;
+      add_to_modes(across_bar, bar.parts.carried.mean);
+      add_to_modes(across_bar * difference, bar.parts.source.mean);
+      return bar;
+    }
+
+    /// Of the temperature behind the film.
+    /// @param difference  T - t
+    /// @return derivative in it
+    double reverse_shift(const NodeFilm<double> &film,
+                         const Skin<double>     &metal,
+                         const double            part,
+                         const double            difference,
+                         const double            warmth,
+                         NodeFilmBar            &bar)
+    {
+      const Skin<double> &mean = film.left.mean, &carried = film.parts.carried.mean;
+      const auto   slopes   = slopes_of_kept_between(unbounded_shift(film, metal, part), difference, warmth);
+      const double free_bar = bar.shift * slopes.in_shift;
+      const Skin<double> own_bar = -free_bar * film.shown;
+      bar.warmth += bar.shift * slopes.in_warmth;
+      bar.drops += free_bar * drop_of(carried);
+      add_to_modes(free_bar * film.drops, bar.parts.carried.mean);
+      bar.shown -= free_bar * metals_own(film, metal, part);
+      bar.left.mean += by_modes(own_bar, metal) - part * by_modes(own_bar, film.both);
+      bar.metal += by_modes(own_bar, mean);
+      bar.both -= part * by_modes(own_bar, mean);
+      bar.parts.carried.mean += part * own_bar;
+      bar.part += own_bar * (carried - by_modes(film.both, mean));
+      return bar.shift * slopes.in_difference;
+    }
+
+    /// Of 1 + R.
+    void reverse_drops(const NodeFilm<double> &film, const double part, NodeFilmBar &bar)
+    {
+      const Skin<double> &source = film.parts.source.mean;
+      const double        drops = unbounded_drops(film, part), without = 1. - drop_of(source),
+                   drops_bar = bar.drops * slope_of_bounded_drops(drops), shows_bar = -drops_bar / without;
+      add_to_modes(drops_bar * drops / without, bar.parts.source.mean);
+      bar.parts.source.mean += shows_bar * part * film.shown;
+      bar.shown += shows_bar * part * source;
+      bar.part += shows_bar * (film.shown * source);
+    }
+
+    /// Of what the time makes of the skins.
+    /// @return derivative in the time
+    double reverse_time(const SkinsOverStep<double> &over,
+                        const NodeFilm<double>      &film,
+                        const double                 time,
+                        NodeFilmBar                 &bar)
+    {
+      double time_bar = along(slope_of_healing(time), bar.left);
+      over.touching(time, [&](const SkinPropagator &beneath) {
+        bar.both += beneath.reverse_carried(bar.parts.carried);
+        const auto  of_carried = beneath.carried_slopes(film.both);
+        const auto &of_source  = beneath.source_slopes();
+        bar.rate += along(of_carried[0], bar.parts.carried) + along(of_source[0], bar.parts.source);
+        time_bar += along(of_carried[1], bar.parts.carried) + along(of_source[1], bar.parts.source);
+      });
+      return time_bar;
+    }
   } // namespace
 
   std::vector<double> ReverseContactSkins::reverse_temperatures(const NodeSkins<double> &skin_bar) const
@@ -282,101 +395,35 @@ namespace retroforge
       open[k] -= contact.weight * dt_;
       if (!contact.has_film)
         continue;
-      const NodeFilm<double> &film  = *next++;
-      const auto             &B     = film.parts.source;
-      const auto             &P     = film.parts.carried;
-      const Skin<double>     &metal = skin_.metal[k], metal_after_bar = skin_bar.metal[k];
-      double                  time_bar = 0.;
+      const NodeFilm<double> &film = *next++;
+      NodeFilmBar             film_bar =
+        reverse_advance(flow_, contact, film, p, T_films[k], skin_, skin_bar, contact_bar);
 
-      // Skins after the step.
-      const double       difference = difference_of(film, T_films[k]);
-      const Skin<double> comes      = grown(film, difference),
-                         comes_bar  = reverse_grown(flow_, contact, p, skin_bar);
-      SkinStep<double> left_bar, B_bar, P_bar;
-      p_bar += metal_after_bar * comes;
-      left_bar.after         = by_modes(metal_after_bar, metal) - by_modes(comes_bar, film.both);
-      Skin<double> both_bar  = -1. * by_modes(comes_bar, film.left.after);
-      Skin<double> metal_bar = by_modes(metal_after_bar, film.left.after);
-      for (std::size_t e = 0; e < contact.entries.size(); ++e)
-      {
-        const unsigned int i           = contact.entries[e];
-        const double       of_time     = part_of_time(flow_, contact, i);
-        const double       along_comes = skin_bar.dies[flow_.surface.touching[i].die][k] * comes;
-        p_bar -= of_time * along_comes;
-        const double of_time_bar = (1. - p) * along_comes;
-        contact_bar.entry_weight[e] += of_time_bar / contact.weight;
-        contact_bar.weight -= of_time_bar * of_time / contact.weight;
-      }
-      for (std::size_t d = 0; d < skin_bar.dies.size(); ++d)
-      {
-        left_bar.after += by_modes(skin_bar.dies[d][k], skin_.dies[d][k]);
-        skin_bar.dies[d][k] = by_modes(skin_bar.dies[d][k], film.left.after);
-      }
-      P_bar.after = comes_bar;
-      B_bar.after = difference * comes_bar;
-
-      // DeltaT.
-      const double across     = (T_films[k] - film.behind - film.shift) / film.drops;
-      const double across_bar = reverse_across(film, comes_bar);
-      double       drops_bar = -across_bar * across / film.drops, behind_bar = -across_bar / film.drops,
-             shift_bar = behind_bar;
-      add_to_modes(across_bar, P_bar.mean);
-      add_to_modes(across_bar * difference, B_bar.mean);
-
-      // The film.
-      const double phi = contact.area * flow_.contact_film / film.drops, seen = film.behind + film.shift;
-      const double phi_bar = films_bar.conductance[k] + films_bar.source[k] * seen;
-      behind_bar += films_bar.source[k] * phi;
-      shift_bar += films_bar.source[k] * phi;
+      // A h/(1 + R), and it times t + u.
+      const double phi     = contact.area * flow_.contact_film / film.drops,
+                   phi_bar = films_bar.conductance[k] + films_bar.source[k] * (film.behind + film.shift);
+      film_bar.behind += films_bar.source[k] * phi;
+      film_bar.shift += films_bar.source[k] * phi;
+      film_bar.drops -= phi_bar * phi / film.drops;
       contact_bar.area += phi_bar * flow_.contact_film / film.drops;
       bar.contact_film += phi_bar * contact.area / film.drops;
-      drops_bar -= phi_bar * phi / film.drops;
 
-      // The temperature behind it.
-      const Skin<double> own    = metals_own(film, metal, p);
-      const auto         slopes = slopes_of_kept_between(
-        unbounded_shift(film, metal, p), T_[k] - film.behind, drop_of(contact.dies_skin(flow_, skin_)));
-      T_bar[k] += shift_bar * slopes.in_difference;
-      behind_bar -= shift_bar * slopes.in_difference;
-      const double free_bar = shift_bar * slopes.in_shift, before_film = drop_of(P.mean);
-      drops_bar += free_bar * before_film;
-      add_to_modes(free_bar * film.drops, P_bar.mean);
-      Skin<double>       shown_bar = -free_bar * own;
-      const Skin<double> own_bar   = -free_bar * film.shown;
-      left_bar.mean                = by_modes(own_bar, metal) - p * by_modes(own_bar, film.both);
-      metal_bar += by_modes(own_bar, film.left.mean);
-      both_bar -= p * by_modes(own_bar, film.left.mean);
-      P_bar.mean += p * own_bar;
-      p_bar += own_bar * (P.mean - by_modes(film.both, film.left.mean));
-
-      // Its resistance.
-      const double raw = unbounded_drops(film, p), without = 1. - drop_of(B.mean);
-      const double raw_bar = drops_bar * slope_of_bounded_drops(raw), shows_bar = -raw_bar / without;
-      add_to_modes(raw_bar * raw / without, B_bar.mean);
-      B_bar.mean += shows_bar * p * film.shown;
-      shown_bar += shows_bar * p * B.mean;
-      p_bar += shows_bar * (film.shown * B.mean);
-      contact_bar.depth += reverse_parts_shown(flow_.law, contact.depth(flow_), shown_bar, bar.law);
-
-      // What the time made of the skins.
-      const double time = contact.weight * dt_;
-      over.touching(time, [&](const SkinPropagator &beneath) {
-        both_bar += beneath.reverse_carried(P_bar);
-        const auto  of_carried = beneath.carried_slopes(film.both);
-        const auto &of_source  = beneath.source_slopes();
-        rate_bar += along(of_carried[0], P_bar) + along(of_source[0], B_bar);
-        time_bar += along(of_carried[1], P_bar) + along(of_source[1], B_bar);
-      });
-      time_bar += along(slope_of_healing(time), left_bar);
+      const double of_difference = reverse_shift(
+        film, skin_.metal[k], p, T_[k] - film.behind, drop_of(contact.dies_skin(flow_, skin_)), film_bar);
+      T_bar[k] += of_difference;
+      contact_bar.die_temperature += film_bar.behind - of_difference;
+      reverse_drops(film, p, film_bar);
+      contact_bar.depth += reverse_parts_shown(flow_.law, contact.depth(flow_), film_bar.shown, bar.law);
+      const double time_bar = reverse_time(over, film, contact.weight * dt_, film_bar);
       contact_bar.weight += time_bar * dt_;
       bar.dt += time_bar * contact.weight;
+      rate_bar += film_bar.rate;
+      p_bar += film_bar.part;
 
-      // Metal and dies.
-      const double warmth_bar = shift_bar * slopes.in_warmth;
-      Skin<double> dies_bar   = both_bar;
-      add_to_modes(warmth_bar, dies_bar);
-      contact_bar.die_temperature += behind_bar;
-      skin_bar.metal[k] = metal_bar + both_bar;
+      // D = M + N
+      skin_bar.metal[k]     = film_bar.metal + film_bar.both;
+      Skin<double> dies_bar = film_bar.both;
+      add_to_modes(film_bar.warmth, dies_bar);
       for (std::size_t e = 0; e < contact.entries.size(); ++e)
       {
         const unsigned int i = contact.entries[e], die = flow_.surface.touching[i].die;
