@@ -151,7 +151,8 @@ namespace
     return dot;
   }
 
-  void check(const double dt)
+  /// @param colder  the metal, so that the temperature behind films is at the ends of its range [K]
+  void check(const double dt, const double colder = 0.)
   {
     RandomNumbers    numbers;
     constexpr double gap = 0.4;
@@ -171,7 +172,7 @@ namespace
     s.dt                  = dt;
     for (NodeIndex k = 0; k < s.X.size(); ++k)
     {
-      s.T.push_back(s.X[k][0] < 5. ? 900. : 1200.);
+      s.T.push_back((s.X[k][0] < 5. ? 900. : 1200.) - colder);
       s.T.back() += 5. * numbers.scalar();
     }
     s.skin = NodeSkins<double>::none(s.X.size(), 2);
@@ -244,4 +245,6 @@ int main()
 {
   for (const double dt : {1e-3, 0.05, 2.})
     check(dt);
+  std::cout << "metal near the temperatures of dies\n";
+  check(0.05, 800.);
 }
