@@ -1,57 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/heat/bounded_films.h>
 #include <retroforge/heat/contact_skins.h>
 
 namespace retroforge
 {
   namespace
   {
-    /// A node that is warmer than the metal above it, as where a film has fallen, is so by at most half of the drop across the film.
-    template <typename Number>
-    Number bounded_drops(const Number &drops)
-    {
-      using std::exp;
-      return value_of(drops) >= 1. ? drops : Number(0.5 + 0.5 * exp(Number(2. * (drops - 1.))));
-    }
-
-    double slope_of_bounded_drops(const double drops)
-    {
-      return drops >= 1. ? 1. : std::exp(2. * (drops - 1.));
-    }
-
-    /// The positive part, smooth over the width, and not above it.
-    template <typename Number>
-    Number positive(const Number &x, const Number &width)
-    {
-      if (value_of(x) <= 0.)
-        return Number(0.);
-      return value_of(x) >= value_of(width) ? x : Number(x * x * (2. - x / width) / width);
-    }
-
-    /// A width for a bound: a degree, or less than the bound where that is near.
-    template <typename Number>
-    Number width_of(const Number &bound)
-    {
-      return bound / (1. + bound);
-    }
-
-    /// A shift of the die's temperature kept in the range of 0 and two others: the difference to the node's, and by how much the
-    /// die's surface is warmer. Within it, it stays what it is.
-    template <typename Number>
-    Number kept_between(const Number &shift, const Number &difference, const Number &warmth)
-    {
-      Number upper(0.), lower(0.);
-      for (const Number *x : {&difference, &warmth})
-      {
-        if (value_of(*x) > value_of(upper))
-          upper = *x;
-        if (value_of(*x) < value_of(lower))
-          lower = *x;
-      }
-      const Number below = upper - positive(Number(upper - shift), width_of(upper));
-      return lower + positive(Number(below - lower), width_of(Number(-lower)));
-    }
-
     template <typename Number>
     Skin<Number> by_modes(Skin<Number> a, const Skin<Number> &b)
     {
@@ -100,14 +55,22 @@ namespace retroforge
       film.behind              = contact.die_temperature(flow);
       film.shift =
         kept_between(unbounded_shift(film, metal, over.part()), Number(T - film.behind), drop_of(dies));
+      if (flow.friction != nullptr && value_of((*flow.friction)[contact.node]) != 0.)
+      {
+        film.friction =
+          friction_in_skins(flow.law, flow.contact_film, (*flow.friction)[contact.node], time, film.left);
+        film.shift += film.friction->shift(film.drops, film.shown, film.parts.source.mean, over.part());
+      }
       return film;
     }
 
-    /// DeltaT, by the temperature with which a film took its heat.
+    /// DeltaT, by the temperature with which a film took its heat, and friction's sigma.
     template <typename Number>
     Number difference_of(const NodeFilm<Number> &film, const Number &T)
     {
-      const Number across = (T - film.behind - film.shift) / film.drops;
+      Number across = (T - film.behind - film.shift) / film.drops;
+      if (film.friction)
+        across += film.friction->difference;
       return (across + drop_of(film.parts.carried.mean)) / (1. - drop_of(film.parts.source.mean));
     }
 
@@ -186,12 +149,15 @@ namespace retroforge
       {
         const NodeIndex    k     = contact.node;
         const Skin<Number> comes = grown(*film, difference_of(*film, T[k]));
-        skin.metal[k]            = by_modes(skin.metal[k], film->left.after) + over_.part() * comes;
+        Skin<Number>       rise; // by friction, of either side
+        if (film->friction)
+          rise = film->friction->rise * film->friction->unit.after;
+        skin.metal[k] = by_modes(skin.metal[k], film->left.after) + over_.part() * comes - rise;
         for (auto &die : skin.dies)
           die[k] = by_modes(die[k], film->left.after);
         for (const unsigned int i : contact.entries)
           skin.dies[flow_.surface.touching[i].die][k] +=
-            Number(part_of_time(flow_, contact, i) * (1. - over_.part())) * comes;
+            part_of_time(flow_, contact, i) * (Number(1. - over_.part()) * comes + rise);
         ++film;
       }
   }
@@ -224,22 +190,21 @@ namespace retroforge
       return bar;
     }
 
+    /// Derivatives in what friction adds to the skins of either side.
+    Skin<double> reverse_rise(const HeatFlow<double>    &flow,
+                              const NodeContact<double> &contact,
+                              const NodeSkins<double>   &skin_bar)
+    {
+      Skin<double> bar = -1. * skin_bar.metal[contact.node];
+      for (const unsigned int i : contact.entries)
+        bar += part_of_time(flow, contact, i) * skin_bar.dies[flow.surface.touching[i].die][contact.node];
+      return bar;
+    }
+
     /// Derivatives in the drop across a film, by which DeltaT follows from the node's temperature.
     double reverse_across(const NodeFilm<double> &film, const Skin<double> &grown_bar)
     {
       return grown_bar * film.parts.source.after / (1. - drop_of(film.parts.source.mean));
-    }
-
-    struct ShiftSlopes
-    {
-      double in_shift, in_difference, in_warmth;
-    };
-
-    ShiftSlopes slopes_of_kept_between(const double shift, const double difference, const double warmth)
-    {
-      using Partial    = Sacado::Fad::SFad<double, 3>;
-      const Partial of = kept_between(Partial(3, 0, shift), Partial(3, 1, difference), Partial(3, 2, warmth));
-      return {of.dx(0), of.dx(1), of.dx(2)};
     }
 
     double along(const SkinStep<double> &a, const SkinStep<double> &b)
@@ -250,10 +215,11 @@ namespace retroforge
     /// Derivatives in a node's film, and in what it is made of.
     struct NodeFilmBar
     {
-      Skin<double>      both, metal, shown;
-      SkinParts<double> parts;
-      SkinStep<double>  left;
-      double            drops = 0., behind = 0., shift = 0., warmth = 0., rate = 0., part = 0.;
+      Skin<double>            both, metal, shown;
+      SkinParts<double>       parts;
+      SkinStep<double>        left;
+      FrictionInSkins<double> friction = {};
+      double                  drops = 0., behind = 0., shift = 0., warmth = 0., rate = 0., part = 0.;
     };
 
     /// Of skins after the step, which follow from DeltaT, and that from the temperature with which the film took its heat.
@@ -273,6 +239,12 @@ namespace retroforge
       const Skin<double>  comes      = grown(film, difference),
                          comes_bar   = reverse_grown(flow, contact, part, skin_bar);
       NodeFilmBar bar;
+      if (film.friction)
+      {
+        const Skin<double> rise_bar = reverse_rise(flow, contact, skin_bar);
+        bar.friction.rise           = rise_bar * film.friction->unit.after;
+        bar.friction.unit.after     = film.friction->rise * rise_bar;
+      }
       bar.part       = metal_bar * comes;
       bar.left.after = by_modes(metal_bar, skin.metal[k]) - by_modes(comes_bar, film.both);
       bar.both       = -1. * by_modes(comes_bar, film.left.after);
@@ -283,7 +255,10 @@ namespace retroforge
         const double       of_time     = part_of_time(flow, contact, i);
         const double       along_comes = skin_bar.dies[flow.surface.touching[i].die][k] * comes;
         bar.part -= of_time * along_comes;
-        const double of_time_bar = (1. - part) * along_comes;
+        double of_time_bar = (1. - part) * along_comes;
+        if (film.friction)
+          of_time_bar += film.friction->rise *
+                         (skin_bar.dies[flow.surface.touching[i].die][k] * film.friction->unit.after);
         contact_bar.entry_weight[e] += of_time_bar / contact.weight;
         contact_bar.weight -= of_time_bar * of_time / contact.weight;
       }
@@ -298,7 +273,8 @@ namespace retroforge
       const double across     = (T - film.behind - film.shift) / film.drops;
       const double across_bar = reverse_across(film, comes_bar);
       bar.drops               = -across_bar * across / film.drops;
-      bar.behind = bar.shift = -across_bar / film.drops;
+      bar.behind = bar.shift  = -across_bar / film.drops;
+      bar.friction.difference = across_bar;
       add_to_modes(across_bar, bar.parts.carried.mean);
       add_to_modes(across_bar * difference, bar.parts.source.mean);
       return bar;
@@ -328,6 +304,22 @@ namespace retroforge
       bar.parts.carried.mean += part * own_bar;
       bar.part += own_bar * (carried - by_modes(film.both, mean));
       return bar.shift * slopes.in_difference;
+    }
+
+    /// Of what the temperature behind the film has by friction.
+    void reverse_frictions_shift(const NodeFilm<double> &film, const double part, NodeFilmBar &bar)
+    {
+      const FrictionInSkins<double> &friction = *film.friction;
+      const Skin<double>            &source   = film.parts.source.mean;
+      const double                   driven   = bar.shift * friction.difference; // by both terms of sigma
+      bar.friction.difference += bar.shift * (film.drops * drop_of(source) - part * (film.shown * source));
+      bar.friction.rise += bar.shift * (film.shown * friction.unit.mean);
+      bar.friction.unit.mean += bar.shift * friction.rise * film.shown;
+      bar.drops += driven * drop_of(source);
+      add_to_modes(driven * film.drops, bar.parts.source.mean);
+      bar.parts.source.mean -= driven * part * film.shown;
+      bar.part -= driven * (film.shown * source);
+      bar.shown += bar.shift * friction.rise * friction.unit.mean - driven * part * source;
     }
 
     /// Of 1 + R.
@@ -408,13 +400,32 @@ namespace retroforge
       contact_bar.area += phi_bar * flow_.contact_film / film.drops;
       bar.contact_film += phi_bar * contact.area / film.drops;
 
+      if (film.friction)
+        reverse_frictions_shift(film, p, film_bar);
       const double of_difference = reverse_shift(
         film, skin_.metal[k], p, T_[k] - film.behind, drop_of(contact.dies_skin(flow_, skin_)), film_bar);
       T_bar[k] += of_difference;
       contact_bar.die_temperature += film_bar.behind - of_difference;
       reverse_drops(film, p, film_bar);
       contact_bar.depth += reverse_parts_shown(flow_.law, contact.depth(flow_), film_bar.shown, bar.law);
-      const double time_bar = reverse_time(over, film, contact.weight * dt_, film_bar);
+      const double time     = contact.weight * dt_;
+      double       time_bar = 0.;
+      if (film.friction)
+      {
+        const auto of_friction = reverse_friction_in_skins(flow_.law,
+                                                           flow_.contact_film,
+                                                           (*flow_.friction)[k],
+                                                           time,
+                                                           film.left,
+                                                           film_bar.friction,
+                                                           bar.law,
+                                                           film_bar.left);
+        film_bar.part += of_friction.part;
+        bar.contact_film += of_friction.film;
+        (*bar.friction)[k] += of_friction.flux;
+        time_bar += of_friction.time;
+      }
+      time_bar += reverse_time(over, film, time, film_bar);
       contact_bar.weight += time_bar * dt_;
       bar.dt += time_bar * contact.weight;
       rate_bar += film_bar.rate;
@@ -458,11 +469,10 @@ namespace retroforge
     // rate = h (1/b_m + 1/b_d)
     const HeatLaw<double> &law   = flow_.law;
     const double           metal = metals_effusivity(law), die = law.die_effusivity,
-                 metal_bar = -rate_bar * flow_.contact_film / (metal * metal);
+                 per_square = -rate_bar * flow_.contact_film;
     bar.contact_film += rate_bar / joint_effusivity(metal, die);
-    bar.law.conductivity += metal_bar * 0.5 * metal / law.conductivity;
-    bar.law.capacity += metal_bar * 0.5 * metal / law.capacity;
-    bar.law.die_effusivity -= rate_bar * flow_.contact_film / (die * die);
+    reverse_metals_effusivity(law, per_square / (metal * metal), bar.law);
+    bar.law.die_effusivity += per_square / (die * die);
     reverse_metals_part(law, p_bar, bar.law);
   }
 } // namespace retroforge

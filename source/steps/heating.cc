@@ -41,6 +41,18 @@ namespace retroforge
       return parts;
     }
 
+    /// Tells whether an operation begins.
+    bool is_first(const StrokeStep &at)
+    {
+      return at.stroke == 0.;
+    }
+
+    template <typename Number>
+    NodeField<Number> no_friction(const WorkpieceState<3, Number> &state)
+    {
+      return NodeField<Number>(state.friction_flux.size(), Number(0.));
+    }
+
     /// Which dies stand in the press.
     template <typename Number>
     std::vector<bool> dies_in(const Process<Number> &process, const StrokeStep &at)
@@ -57,7 +69,7 @@ namespace retroforge
     {
       using Of = typename Spell<Number>::Of;
       std::vector<Spell<Number>> spells;
-      if (half == HalfOfIncrement::first && at.stroke == 0.)
+      if (half == HalfOfIncrement::first && is_first(at))
       {
         const Waiting<Number>    &waiting = process.operations[at.operation].waiting;
         const std::vector<double> steps   = growing_steps(process.heat.waiting_steps);
@@ -104,7 +116,7 @@ namespace retroforge
                      WorkpieceState<3, Number>       &state)
     {
       for (const double part : spell.parts)
-        conduct({edges, network, surface, heat, film_of(heat, spell.of), physics.dies},
+        conduct({edges, network, surface, heat, film_of(heat, spell.of), physics.dies, &state.friction_flux},
                 Number(part * spell.time),
                 state.temperature,
                 state.skin);
@@ -121,6 +133,8 @@ namespace retroforge
     ThermalSurface<Number> surface;
     if (!process.heat.conducts())
       return surface;
+    if (is_first(at))
+      state.friction_flux = no_friction(state);
     const auto physics = process.over(place_of(HalfOfIncrement::first, at));
     const auto network = conduction_network(scene.mesh, edges, state.X);
     const auto view    = scene.view(physics.dies, state.X, &state.velocity);
@@ -190,7 +204,8 @@ namespace retroforge
                surface, dies_surfaces(surface, dies, state.skin), std::vector<double>(state.X.size(), 0.))}};
   }
 
-  /// Steps of a half, remembered.
+  /// Steps of a half, remembered. Friction's heat is that of the mechanics before, and so in the first half that of the
+  /// increment before.
   struct ReversibleConduction::Steps
   {
     const Scene                        &scene;
@@ -199,6 +214,7 @@ namespace retroforge
     const HalfOfIncrement               half;
     const StrokeStep                    at, place;
     const NodalVectors<double>         &X;
+    const std::vector<double>           friction;           ///< its heat, per area and time
     const ThermalSurface<double>       &under_press;        ///< what touches dies
     const NodalVectors<double>         *velocity = nullptr; ///< of the increment before
     const Steps                        *earlier  = nullptr; ///< the first half, of a second one
@@ -217,7 +233,7 @@ namespace retroforge
     }
     HeatFlow<double> flow(const std::size_t i) const
     {
-      return {edges, network, surface(i), process.heat, film_of(process.heat, spells[i].of), dies};
+      return {edges, network, surface(i), process.heat, film_of(process.heat, spells[i].of), dies, &friction};
     }
 
     /// Goes through all steps but the last.
@@ -263,7 +279,8 @@ namespace retroforge
                           physics.heat,
                           film_of(physics.heat, spells[i].of),
                           physics.dies,
-                          dt_bar};
+                          dt_bar,
+                          &workpiece.friction_flux};
           reverse_conduct(flow(i),
                           spells[i].parts[s] * spells[i].time,
                           before[i][s].first,
@@ -331,6 +348,7 @@ namespace retroforge
                                                      at,
                                                      place_of(HalfOfIncrement::first, at),
                                                      state.X,
+                                                     is_first(at) ? no_friction(state) : state.friction_flux,
                                                      touching.first,
                                                      &state.velocity});
     steps->go(state.temperature, state.skin);
@@ -341,7 +359,8 @@ namespace retroforge
   {
     bool follows_heat(const Costate &costate)
     {
-      return !is_zero(costate.workpiece.temperature) || !is_zero(costate.workpiece.skin);
+      return !is_zero(costate.workpiece.temperature) || !is_zero(costate.workpiece.skin) ||
+             !is_zero(costate.workpiece.friction_flux);
     }
   } // namespace
 
@@ -359,6 +378,7 @@ namespace retroforge
                  first.at,
                  place_of(HalfOfIncrement::second, first.at),
                  X,
+                 state.friction_flux,
                  touching_.second,
                  nullptr,
                  &first};
@@ -379,6 +399,8 @@ namespace retroforge
       {
         ThermalSurfaceBar start_bar = start_bars_[j];
         first_->reverse(costates[j], start_bar);
+        if (is_first(first_->at))
+          costates[j].workpiece.friction_flux = no_friction(costates[j].workpiece);
       }
   }
 } // namespace retroforge

@@ -18,7 +18,11 @@ namespace retroforge
     if (!state.temperature.empty())
       add_warming(view, dt, state.temperature);
     if (view.stage.physics.heat.conducts())
+    {
       add_friction_heat(view, dt, state.temperature);
+      if (!state.friction_flux.empty())
+        add_friction_flux(view, state.friction_flux);
+    }
     if (!state.damage.empty())
       add_damage(view, dt, state.damage);
   }
@@ -37,6 +41,8 @@ namespace retroforge
       if (view.stage.physics.heat.conducts())
         reverse_add_friction_heat(view, dt, costate.temperature, bar);
     }
+    if (!is_zero(costate.friction_flux))
+      reverse_add_friction_flux(view, costate.friction_flux, bar);
     if (!is_zero(costate.damage))
       reverse_add_damage(view, dt, costate.damage, bar);
     if (is_zero(costate.strain))
@@ -69,7 +75,8 @@ namespace retroforge
     if (!process.material.depends_on_state())
       return;
     states_.push_back(without_motion(state));
-    states_.back().damage.clear(); // no law follows it
+    states_.back().damage.clear(); // no law follows these
+    states_.back().friction_flux.clear();
     points_.push_back(point_states(scene.mesh, initial_, states_.back()));
   }
 

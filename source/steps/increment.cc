@@ -5,6 +5,16 @@
 
 namespace retroforge
 {
+  namespace
+  {
+    /// The mechanics of an increment make another one.
+    template <typename Number>
+    void forget(NodeField<Number> &friction_flux)
+    {
+      std::fill(friction_flux.begin(), friction_flux.end(), Number(0.));
+    }
+  } // namespace
+
   bool Increment::reads_history(const Process<double> &process)
   {
     return process.material.depends_on_state() || process.heat.conducts();
@@ -67,8 +77,10 @@ namespace retroforge
       memory.start = KeptState(state);
     if (solved.before)
     {
-      state = memory.half = *solved.before;
-      memory.half.skin    = {}; // mechanics reads none, and leaves it to the second half
+      state = memory.half       = *solved.before;
+      memory.half.skin          = {}; // mechanics reads none, and leaves it to the second half
+      memory.half.friction_flux = {};
+      forget(state.friction_flux);
     }
     for (const auto &stage : solved.stages)
       add_history(stage->view(), solved.start->dt, state);
@@ -94,6 +106,7 @@ namespace retroforge
     if (process.heat.conducts())
       touching = conduct_before(scene_, edges(), process, place(record), state);
     WorkpieceState<3, Dual> next = state;
+    forget(next.friction_flux);
     next.X =
       mechanics.tangent(process, state, record, [&](const EquilibriumView<Dual> &view, const Dual &dt) {
         observer(view, dt);
@@ -143,6 +156,8 @@ namespace retroforge
     if (conduction)
     {
       const auto timing = timings_.scope("heat");
+      for (Costate &costate : costates)
+        forget(costate.workpiece.friction_flux);
       conduction->reverse_before(costates);
     }
   }

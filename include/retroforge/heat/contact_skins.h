@@ -3,7 +3,7 @@
 #pragma once
 
 #include <retroforge/heat/conduction_step.h>
-#include <retroforge/heat/node_skins.h>
+#include <retroforge/heat/friction_in_skins.h>
 
 #include <optional>
 #include <vector>
@@ -22,6 +22,8 @@
 /// a die that is warm already, and metal that has cooled. It is kept between those of the node, of the die and of its surface.
 ///
 /// The temperature of the node on the mean over the step gives q, q gives DeltaT, and DeltaT the skins after the step.
+///
+/// Friction between node and die makes heat that skins take, too (friction_in_skins.h).
 ///
 /// A node touches for a part of the time; before, all its skins heal. Of a node that touches several dies, t and N are means
 /// by area, and the skin of each die gets of q the part of the time for which it touches.
@@ -69,6 +71,8 @@ namespace retroforge
     Number            drops;  ///< 1 + R
     Number            behind; ///< t
     Number            shift;  ///< u
+
+    std::optional<FrictionInSkins<Number>> friction; ///< where it makes heat
   };
 
   /// The films of all nodes.

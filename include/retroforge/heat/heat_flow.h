@@ -28,6 +28,8 @@ namespace retroforge
     const HeatLaw<Number>               &law;
     const Number                        &contact_film; ///< h_c [mW/(mm^2 K)]
     const std::vector<DieState<Number>> &dies;
+    /// Heat that friction makes between nodes and dies, per area and time [mW/mm^2]; null: none.
+    const std::vector<Number> *friction = nullptr;
   };
 
   /// Takes temperatures [C] and skins of all nodes over a time.
@@ -45,6 +47,7 @@ namespace retroforge
     double                        &contact_film;
     std::vector<DieState<double>> &dies;
     double                        &dt;
+    std::vector<double>           *friction = nullptr; ///< where the flow has one
   };
 
   /// Reverse of conduct().

@@ -21,6 +21,15 @@ namespace retroforge
     return sqrt(Number(law.conductivity * law.capacity));
   }
 
+  /// Reverse of metals_effusivity().
+  inline void
+  reverse_metals_effusivity(const HeatLaw<double> &law, const double metal_bar, HeatLaw<double> &law_bar)
+  {
+    const double metal = metals_effusivity(law);
+    law_bar.conductivity += metal_bar * 0.5 * metal / law.conductivity;
+    law_bar.capacity += metal_bar * 0.5 * metal / law.capacity;
+  }
+
   /// Of the drop in the skins of metal and die the metal's part, b/b_m.
   template <typename Number>
   Number metals_part(const HeatLaw<Number> &law)
@@ -31,11 +40,9 @@ namespace retroforge
   /// Reverse of metals_part().
   inline void reverse_metals_part(const HeatLaw<double> &law, const double part_bar, HeatLaw<double> &law_bar)
   {
-    const double metal = metals_effusivity(law), both = metal + law.die_effusivity,
-                 metal_bar = -part_bar * law.die_effusivity / (both * both);
+    const double metal = metals_effusivity(law), both = metal + law.die_effusivity;
     law_bar.die_effusivity += part_bar * metal / (both * both);
-    law_bar.conductivity += metal_bar * 0.5 * metal / law.conductivity;
-    law_bar.capacity += metal_bar * 0.5 * metal / law.capacity;
+    reverse_metals_effusivity(law, -part_bar * law.die_effusivity / (both * both), law_bar);
   }
 
   /// From here on less than rounding is shown; depths of nodes that hardly touch would overflow.

@@ -14,7 +14,7 @@
 /// @file
 /// The step that adds to the history of the metal what the solved stages of an increment of time dt give it:
 /// the strain  q' = q + dt sum_s b_s e(Y_s, W_s)  of each cell (discretization/strain_history.h), and the temperature
-/// of each node where the metal warms (steps/warming.h), the damage of each cell where it is followed (steps/damage.h).
+/// of each node where the metal warms (steps/warming.h), what friction makes of heat (steps/friction_heat.h), the damage of each cell where it is followed (steps/damage.h).
 namespace retroforge
 {
   /// Returns the workpiece before the stroke: metal without history, at the temperature that the process gives it
@@ -27,7 +27,10 @@ namespace retroforge
     if (process.heat.warms())
       state.temperature.assign(state.X.size(), process.material.initial.temperature);
     if (process.heat.conducts())
+    {
       state.skin = NodeSkins<Number>::none(state.X.size(), process.dies.size());
+      state.friction_flux.assign(state.X.size(), Number(0.));
+    }
     if (process.material.is_damaged())
       state.damage.assign(n_cells, Number(0.));
     return state;

@@ -65,14 +65,17 @@ namespace retroforge
     NodeField<Number>            temperature; ///< [C]; none where the metal keeps that before the stroke
     /// Of the layers that contacts have chilled, or none at all where heat does not flow. At a change of mesh its modes
     /// follow J as a NodeField does.
-    NodeSkins<Number>        skin;
+    NodeSkins<Number> skin;
+    /// Heat that friction made in the increment before, per area and time [mW/mm^2]; none before the first increment of an
+    /// operation, and none at all where heat does not flow.
+    NodeField<Number>        friction_flux;
     BoundedCellField<Number> damage; ///< dimensionless; none where it is not followed
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[X, strain, velocity, temperature, skin, damage] = self;
-      return std::tie(X, strain, velocity, temperature, skin, damage);
+      auto &[X, strain, velocity, temperature, skin, friction_flux, damage] = self;
+      return std::tie(X, strain, velocity, temperature, skin, friction_flux, damage);
     }
   };
 
@@ -80,12 +83,12 @@ namespace retroforge
   template <int dim, typename Number>
   WorkpieceState<dim, Number> initial_state(NodalPositions<dim, Number> X, const std::size_t n_cells)
   {
-    return {std::move(X), CellField<Number>(n_cells, Number(0.)), {}, {}, {}, {}};
+    return {std::move(X), CellField<Number>(n_cells, Number(0.)), {}, {}, {}, {}, {}};
   }
 
   /// Returns zero derivatives in the state of a mesh.
   /// @param warms    whether it has temperatures
-  /// @param skins    zero ones, or none
+  /// @param skins    zero ones, or none where heat does not flow
   /// @param damages  whether its damage is followed
   template <int dim>
   WorkpieceState<dim, double> zero_costate(const std::size_t n_nodes,
@@ -94,11 +97,13 @@ namespace retroforge
                                            NodeSkins<double> skins   = {},
                                            const bool        damages = false)
   {
+    const std::size_t n_skins = skins.metal.size();
     return {NodalPositions<dim, double>(n_nodes),
             CellField<double>(n_cells, 0.),
             NodeVectorField<dim, double>(n_nodes),
             NodeField<double>(warms ? n_nodes : 0, 0.),
             std::move(skins),
+            NodeField<double>(n_skins, 0.),
             BoundedCellField<double>(damages ? n_cells : 0, 0.)};
   }
 

@@ -28,7 +28,8 @@ namespace
     none,
     strain,      // accumulation of strain
     warming,     // work of deformation
-    friction,    // heat of friction
+    friction,    // heat of friction in the metal
+    flux,        // that of skins
     law,         // law of the metal by strain and temperature
     first_half,  // conduction before mechanics
     second_half, // and after it
@@ -41,6 +42,7 @@ namespace
     position,
     contact,
     state,  // by strain and temperature of the metal
+    flux,   // by friction's flux
     number, // of metal and heat
     time,
     all
@@ -70,12 +72,18 @@ namespace
     {"friction's heat by the state", Piece::friction, Part::state, 0},
     {"friction's heat by numbers", Piece::friction, Part::number, 2},
     {"friction's heat by time", Piece::friction, Part::time, 1},
+    {"friction's flux by velocity", Piece::flux, Part::velocity, 0},
+    {"friction's flux by position", Piece::flux, Part::position, 0},
+    {"friction's flux by contact", Piece::flux, Part::contact, 0},
+    {"friction's flux by the state", Piece::flux, Part::state, 0},
     {"first half of conduction by position", Piece::first_half, Part::position, 0},
     {"first half of conduction by temperature and skin", Piece::first_half, Part::state, 0},
+    {"first half of conduction by friction's flux", Piece::first_half, Part::flux, 0},
     {"first half of conduction by process", Piece::first_half, Part::number, 2},
     {"first half of conduction by the velocity before", Piece::first_half, Part::velocity, 0},
     {"second half of conduction by position", Piece::second_half, Part::position, 0},
     {"second half of conduction by temperature and skin", Piece::second_half, Part::state, 0},
+    {"second half of conduction by friction's flux", Piece::second_half, Part::flux, 0},
     {"second half of conduction by process", Piece::second_half, Part::number, 2},
     {"conduction before strokes by its time", Piece::waiting, Part::time, 3},
     {"conduction before strokes by position", Piece::waiting, Part::position, 0},
@@ -147,6 +155,8 @@ namespace
           [&](EquilibriumBar &part) { reverse_add_warming(view, dt, costate.temperature, part); });
     piece(Piece::friction,
           [&](EquilibriumBar &part) { reverse_add_friction_heat(view, dt, costate.temperature, part); });
+    piece(Piece::flux,
+          [&](EquilibriumBar &part) { reverse_add_friction_flux(view, costate.friction_flux, part); });
     piece(Piece::strain, [&](EquilibriumBar &part) {
       part.physics.dt += view.weight * reverse_accumulate_strain(view.stage.scene.discretization,
                                                                  view.stage.X,
@@ -156,6 +166,11 @@ namespace
                                                                  part.W,
                                                                  part.X);
     });
+  }
+
+  void vanish(NodeField<double> &field)
+  {
+    std::fill(field.begin(), field.end(), 0.);
   }
 
   /// Does something to a costate but for a part.
@@ -178,6 +193,8 @@ namespace
       costate.workpiece.temperature = before.workpiece.temperature;
       costate.workpiece.skin        = before.workpiece.skin;
     }
+    if (part == Part::flux)
+      costate.workpiece.friction_flux = before.workpiece.friction_flux;
   }
 
   /// A time before a stroke: in the surroundings, or on the resting die.
@@ -357,6 +374,7 @@ namespace
           },
           costates);
       });
+      vanish(costate.workpiece.friction_flux); // the mechanics make another one
       without(omission.piece == Piece::first_half, omission.part, costate, [&] {
         conduction.reverse_before(costates);
         if (wait)

@@ -27,12 +27,13 @@ namespace
     Number                        dt;
     std::vector<Number>           T;
     NodeSkins<Number>             skin;
+    std::vector<Number>           friction;
 
     template <typename Self>
     static auto members(Self &self)
     {
-      auto &[X, dies, law, dt, T, skin] = self;
-      return std::tie(X, dies, law, dt, T, skin);
+      auto &[X, dies, law, dt, T, skin, friction] = self;
+      return std::tie(X, dies, law, dt, T, skin, friction);
     }
   };
 
@@ -43,7 +44,8 @@ namespace
   {
     const auto network = conduction_network(body.mesh, body.edges, s.X);
     const auto surface = body.surface(s.dies, s.X, gap);
-    conduct<Number>({body.edges, network, surface, s.law, s.law.contact_film, s.dies}, s.dt, s.T, s.skin);
+    conduct<Number>(
+      {body.edges, network, surface, s.law, s.law.contact_film, s.dies, &s.friction}, s.dt, s.T, s.skin);
     return s;
   }
 
@@ -74,6 +76,7 @@ namespace
      }},
     {"skins of the metal", [](auto &, auto &, auto &bar) { vanish(bar.skin.metal); }},
     {"skins of a die", [](auto &, auto &, auto &bar) { vanish(bar.skin.dies[0]); }},
+    {"friction", [](auto &, auto &, auto &bar) { vanish(bar.friction); }},
     {"time", [](auto &, auto &, auto &bar) { bar.dt = 0.; }}};
 
   /// Derivatives of  T_bar·T + skin_bar·skin  after the step.
@@ -87,8 +90,9 @@ namespace
     const auto                surface = body.surface(s.dies, s.X, gap);
     ThermalSurfaceBar         surface_bar(surface);
     ConductionNetwork<double> network_bar = no_derivatives(network);
-    HeatFlowBar flow_bar{network_bar, surface_bar, bar.law, bar.law.contact_film, bar.dies, bar.dt};
-    reverse_conduct({body.edges, network, surface, s.law, s.law.contact_film, s.dies},
+    HeatFlowBar               flow_bar{
+      network_bar, surface_bar, bar.law, bar.law.contact_film, bar.dies, bar.dt, &bar.friction};
+    reverse_conduct({body.edges, network, surface, s.law, s.law.contact_film, s.dies, &s.friction},
                     s.dt,
                     s.T,
                     s.skin,
@@ -111,12 +115,8 @@ namespace
   }
 
   /// The kinds of arguments: a member of State.
-  const std::vector<std::string> kinds{"positions",
-                                       "dies",
-                                       "numbers of heat",
-                                       "time",
-                                       "temperatures",
-                                       "skins"};
+  const std::vector<std::string>
+    kinds{"positions", "dies", "numbers of heat", "time", "temperatures", "skins", "friction"};
 
   State<double> direction(const State<double> &s, const int kind, RandomNumbers &numbers)
   {
@@ -148,6 +148,9 @@ namespace
         x = 30. * numbers.scalar();
     if (is(5))
       for_each_number([&](double &x) { x = 25. * numbers.scalar(); }, dot.skin);
+    if (is(6))
+      for (double &x : dot.friction)
+        x = 1000. * numbers.scalar();
     return dot;
   }
 
@@ -177,6 +180,8 @@ namespace
     }
     s.skin = NodeSkins<double>::none(s.X.size(), 2);
     for_each_number([&](double &x) { x = 30. + 25. * numbers.scalar(); }, s.skin);
+    for (NodeIndex k = 0; k < s.X.size(); ++k)
+      s.friction.push_back(2000. + 1000. * numbers.scalar());
     State<double> bar = s;
     for_each_number([](double &x) { x = 0.; }, bar);
     bar.T = numbers.scalars(s.T.size());
