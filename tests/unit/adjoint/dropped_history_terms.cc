@@ -78,12 +78,12 @@ namespace
     {"friction's flux by the state", Piece::flux, Part::state, 0},
     {"first half of conduction by position", Piece::first_half, Part::position, 0},
     {"first half of conduction by temperature and skin", Piece::first_half, Part::state, 0},
-    {"first half of conduction by friction's flux", Piece::first_half, Part::flux, 0},
+    {"first half of conduction by friction's flux", Piece::first_half, Part::flux, 1},
     {"first half of conduction by process", Piece::first_half, Part::number, 2},
     {"first half of conduction by the velocity before", Piece::first_half, Part::velocity, 0},
     {"second half of conduction by position", Piece::second_half, Part::position, 0},
     {"second half of conduction by temperature and skin", Piece::second_half, Part::state, 0},
-    {"second half of conduction by friction's flux", Piece::second_half, Part::flux, 0},
+    {"second half of conduction by friction's flux", Piece::second_half, Part::flux, 1},
     {"second half of conduction by process", Piece::second_half, Part::number, 2},
     {"conduction before strokes by its time", Piece::waiting, Part::time, 3},
     {"conduction before strokes by position", Piece::waiting, Part::position, 0},
@@ -390,7 +390,8 @@ int main(int argc, char **argv)
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Parameters                               p = block_of_two_strokes();
   p.press.increments                         = 2;
-  p.heat.gap                                 = 2.; // less than what the die goes: nodes arrive
+  p.heat.gap                                 = 2.;  // less than what the die goes: nodes arrive
+  p.heat.friction_part                       = 0.1; // skins show its heat most where it goes to one side
   p.dies[2].point                            = Vec3({0., 0., 28.});
   for (DieParameters &die : p.dies)
     die.friction_law = "Tresca";
