@@ -63,8 +63,8 @@ namespace retroforge
     prm.add_parameter(
       "friction part",
       friction_part,
-      "Part of friction's heat that goes into the metal. The rest goes into the dies, which are not "
-      "followed so far: their surfaces are told without it. Units: none.",
+      "Part of friction's heat that goes into the metal, on its side of the film. The rest goes into the "
+      "dies. Units: none.",
       Double(0., 1.));
     prm.add_parameter("transfer time",
                       transfer,

@@ -41,7 +41,7 @@ def balance():
 
 
 def scene(number):
-    """File, settings and the range of temperatures of a scene: no heat is made in it."""
+    """File, settings and the range of temperatures of a scene: no heat is made in the metal; friction's goes into the dies."""
     chance = random.Random(number)
     lower, upper, air, metal = (chance.uniform(*between) for between in ((20, 400), (20, 400), (0, 60), (800, 1250)))
     if number % 5 == 4:
