@@ -21,6 +21,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 namespace retroforge
 {
@@ -194,32 +195,21 @@ namespace retroforge
     };
 
     /// A function of block vectors, as Belos calls it.
-    class Operator : public Belos::Operator<double>
+    class AppliedOperator : public Belos::Operator<double>
     {
     public:
-      Operator(const BlockOperator &of, const la::BlockVector &like) : of_(of), x_(like), y_(like) {}
-
-      /// Keeps what it returns from now on, one vector after the other.
-      void keep_in(const std::shared_ptr<Directions> &images)
-      {
-        images_ = images;
-        n_kept_ = 0;
-      }
+      AppliedOperator(const BlockOperator &of, const la::BlockVector &like) : of_(of), x_(like), y_(like) {}
 
       void Apply(const MultiVector &x, MultiVector &y, Belos::ETrans) const override
       {
         copy(dynamic_cast<const Directions &>(x)[0], x_);
         of_(y_, x_);
         copy(y_, dynamic_cast<Directions &>(y)[0]);
-        if (images_ && n_kept_ < images_->GetNumberVecs())
-          copy(y_, (*images_)[n_kept_++]);
       }
 
     private:
-      const BlockOperator        &of_;
-      mutable la::BlockVector     x_, y_;
-      std::shared_ptr<Directions> images_;
-      mutable int                 n_kept_ = 0;
+      const BlockOperator    &of_;
+      mutable la::BlockVector x_, y_;
     };
 
     using Vectors = Belos::MultiVecTraits<double, MultiVector>;
@@ -261,6 +251,13 @@ namespace retroforge
       return gmres.getCurSubspaceDim();
     }
 
+    std::vector<int> first_numbers(const int n)
+    {
+      std::vector<int> numbers(n);
+      std::iota(numbers.begin(), numbers.end(), 0);
+      return numbers;
+    }
+
     /// y = R^(-1) y, or R^(-T) y
     void solve_triangle(const Dense &R, const Teuchos::ETransp transposition, Dense &y)
     {
@@ -277,27 +274,6 @@ namespace retroforge
                                         y.stride());
     }
 
-    std::vector<int> first_numbers(const int n)
-    {
-      std::vector<int> numbers(n);
-      std::iota(numbers.begin(), numbers.end(), 0);
-      return numbers;
-    }
-
-    /// x += Z y with the least residual, which it returns; x is unchanged where that is not a number.
-    double
-    add_directions(const Belos::GmresIterationState<double, MultiVector> &state, const int n, MultiVector &x)
-    {
-      const double residual = std::abs((*state.z)(n, 0));
-      if (n == 0)
-        return residual;
-      Dense y(Teuchos::Copy, *state.z, n, 1);
-      solve_triangle(*state.H, Teuchos::NO_TRANS, y);
-      if (!std::isfinite(residual + y.normOne()))
-        return std::numeric_limits<double>::quiet_NaN();
-      Vectors::MvTimesMatAddMv(1., *Vectors::CloneView(*state.Z, first_numbers(n)), y, 1., x);
-      return residual;
-    }
   } // namespace
 
   struct KrylovSpace::Basis
@@ -306,39 +282,152 @@ namespace retroforge
     Dense                           R; ///< W R^(-1) is orthonormal
 
     /// r -= W y;  returns y.
-    Dense remove_from(la::BlockVector &r) const
+    Dense remove_from(MultiVector &r) const
     {
-      Directions residual(r);
-      Dense      y(R.numRows(), 1);
-      residual.MvTransMv(1., *W, y);
+      Dense y(R.numRows(), 1);
+      r.MvTransMv(1., *W, y);
       solve_triangle(R, Teuchos::TRANS, y);
       solve_triangle(R, Teuchos::NO_TRANS, y);
-      residual.MvTimesMatAddMv(-1., *W, y, 1.);
-      copy(residual[0], r);
+      r.MvTimesMatAddMv(-1., *W, y, 1.);
       return y;
     }
   };
 
-  KrylovSpace::KrylovSpace() = default;
-  KrylovSpace::KrylovSpace(std::unique_ptr<Basis> basis) : basis_(std::move(basis)) {}
-  KrylovSpace &KrylovSpace::operator=(KrylovSpace &&) noexcept = default;
-  KrylovSpace::~KrylovSpace()                                  = default;
+  KrylovSpace::KrylovSpace(const unsigned int room) : room_(room) {}
+  KrylovSpace::KrylovSpace(KrylovSpace &&) noexcept = default;
+  KrylovSpace::~KrylovSpace()                       = default;
+
+  bool KrylovSpace::empty() const
+  {
+    return bases_.empty();
+  }
+
+  bool KrylovSpace::is_full() const
+  {
+    return bases_.size() >= room_;
+  }
+
+  void KrylovSpace::add(Basis basis)
+  {
+    bases_.push_back(std::move(basis));
+  }
 
   void KrylovSpace::reduce(la::BlockVector &x, la::BlockVector &r) const
   {
     if (empty())
       return;
-    Directions  solution(x);
-    const Dense y = basis_->remove_from(r);
-    solution.MvTimesMatAddMv(1., *basis_->Z, y, 1.);
+    Directions solution(x), residual(r);
+    for (const Basis &basis : bases_)
+      solution.MvTimesMatAddMv(1., *basis.Z, basis.remove_from(residual), 1.);
     copy(solution[0], x);
+    copy(residual[0], r);
   }
 
-  void KrylovSpace::project(la::BlockVector &r) const
+  namespace
   {
-    if (!empty())
-      basis_->remove_from(r);
-  }
+    /// The matrix of a solve, less what a space has of its images. Of a direction z the space's bases have the parts c_b,
+    /// so that  z - sum_b Z_b c_b  has the image that is left.
+    class Deflated : public Belos::Operator<double>
+    {
+    public:
+      /// @param space  null: none
+      Deflated(const BlockOperator &M, const la::BlockVector &like, const KrylovSpace *space)
+          : M_(M, like), space_(space)
+      {
+      }
+
+      /// For products with zero, as for the residual of a solve that starts there.
+      bool at_zero = false;
+
+      /// Remembers directions from now on, one after the other.
+      /// @param images  gets what is left of theirs; may be null
+      void remember(const std::shared_ptr<Directions> &images, const int room)
+      {
+        images_ = images;
+        parts_.clear();
+        if (space_)
+          for (const KrylovSpace::Basis &basis : space_->bases())
+            parts_.emplace_back(basis.R.numRows(), room);
+        n_    = 0;
+        room_ = room;
+      }
+      void forget() { room_ = 0; }
+
+      void Apply(const MultiVector &x, MultiVector &y, const Belos::ETrans transposition) const override
+      {
+        if (at_zero)
+        {
+          y.MvInit(0.);
+          return;
+        }
+        M_.Apply(x, y, transposition);
+        const bool remembers = n_ < room_;
+        for (std::size_t b = 0; space_ && b < space_->bases().size(); ++b)
+        {
+          const Dense part = space_->bases()[b].remove_from(y);
+          if (remembers)
+            std::copy(part.values(), part.values() + part.numRows(), parts_[b][n_]);
+        }
+        if (remembers && images_)
+          images_->SetBlock(y, {n_});
+        n_ += remembers;
+      }
+
+      /// x += (Z - sum_b Z_b C_b) y  of the first n remembered directions.
+      void add(const MultiVector &Z, const int n, const Dense &y, MultiVector &x) const
+      {
+        x.MvTimesMatAddMv(1., Z, y, 1.);
+        for (std::size_t b = 0; b < parts_.size(); ++b)
+        {
+          const Dense C(Teuchos::View, parts_[b], parts_[b].numRows(), n);
+          Dense       taken(C.numRows(), y.numCols());
+          taken.multiply(Teuchos::NO_TRANS, Teuchos::NO_TRANS, -1., C, y, 0.);
+          x.MvTimesMatAddMv(1., *space_->bases()[b].Z, taken, 1.);
+        }
+      }
+
+    private:
+      AppliedOperator             M_;
+      const KrylovSpace          *space_;
+      std::shared_ptr<Directions> images_;
+      mutable std::vector<Dense>  parts_; ///< a column for each direction
+      mutable int                 n_    = 0;
+      int                         room_ = 0;
+    };
+
+    /// Adds to x the combination of directions with the least residual, which it returns; x is unchanged where that is
+    /// not a number.
+    double add_directions(const Belos::GmresIterationState<double, MultiVector> &state,
+                          const int                                              n,
+                          const Deflated                                        &matrix,
+                          MultiVector                                           &x)
+    {
+      const double residual = std::abs((*state.z)(n, 0));
+      if (n == 0)
+        return residual;
+      Dense y(Teuchos::Copy, *state.z, n, 1);
+      solve_triangle(*state.H, Teuchos::NO_TRANS, y);
+      if (!std::isfinite(residual + y.normOne()))
+        return std::numeric_limits<double>::quiet_NaN();
+      matrix.add(*Vectors::CloneView(*state.Z, first_numbers(n)), n, y, x);
+      return residual;
+    }
+
+    /// What a solve has found, for others.
+    KrylovSpace::Basis basis_of(const Belos::GmresIterationState<double, MultiVector> &state,
+                                const int                                              n,
+                                const Deflated                                        &matrix,
+                                const MultiVector                                     &images)
+    {
+      Dense identity(n, n);
+      for (int j = 0; j < n; ++j)
+        identity(j, j) = 1.;
+      const auto Z = Teuchos::rcp(images.Clone(n));
+      Z->MvInit(0.);
+      matrix.add(*Vectors::CloneView(*state.Z, first_numbers(n)), n, identity, *Z);
+      return {Z, Vectors::CloneView(images, first_numbers(n)), Dense(Teuchos::Copy, *state.H, n, n)};
+    }
+  } // namespace
 
   KrylovResult solve_by_flexible_gmres(const BlockOperator   &M,
                                        const BlockOperator   &P,
@@ -350,10 +439,14 @@ namespace retroforge
                                        KrylovSpace           *space)
   {
     const auto X = rcp(new Directions(x)), B = rcp(new Directions(b));
-    const auto matrix  = rcp(new Operator(M, b));
+    const bool deflates = space && !space->empty(), keeps = space && !space->is_full();
+    Assert(!deflates || x.l2_norm() == 0., dealii::ExcMessage("a solve beside a space starts at zero"));
+    const auto matrix  = rcp(new Deflated(M, b, deflates ? space : nullptr));
     const auto problem = rcp(new Problem(matrix, X, B));
-    problem->setRightPrec(rcp(new Operator(P, b)));
+    problem->setRightPrec(rcp(new AppliedOperator(P, b)));
+    matrix->at_zero = deflates;
     problem->setProblem();
+    matrix->at_zero = false;
     problem->setLSIndex({0});
 
     const auto norm = rcp(new Norm(tolerance));
@@ -374,33 +467,32 @@ namespace retroforge
     const auto                                      z = rcp(new Dense(1, 1));
     first.V                                           = r;
     first.z                                           = z;
-    double residual                                   = norm_of(*r);
+    double                            residual        = norm_of(*r);
+    std::optional<KrylovSpace::Basis> found;
     while (residual > tolerance && result.iterations < limit)
     {
       r->MvScale(1. / residual);
       (*z)(0, 0) = residual;
       gmres.initializeGmres(first);
-      if (space)
-        *space = KrylovSpace(); // directions before take the same room
+      found.reset(); // directions before take the same room
       const auto images =
-        std::shared_ptr<Directions>(space ? dynamic_cast<Directions *>(X->Clone(room)) : nullptr);
-      matrix->keep_in(images);
+        std::shared_ptr<Directions>(keeps ? dynamic_cast<Directions *>(X->Clone(room)) : nullptr);
+      matrix->remember(images, room);
       const int  n     = iterate(gmres);
       const auto state = gmres.getState();
-      matrix->keep_in(nullptr);
-      residual          = add_directions(state, n, *X);
+      matrix->forget();
+      residual          = add_directions(state, n, *matrix, *X);
       result.iterations = gmres.getNumIters();
-      if (space && n > 0 && std::isfinite(residual))
-        *space = KrylovSpace(std::make_unique<KrylovSpace::Basis>(
-          KrylovSpace::Basis{Vectors::CloneView(*state.Z, first_numbers(n)),
-                             Vectors::CloneView(*images, first_numbers(n)),
-                             Dense(Teuchos::Copy, *state.H, n, n)}));
+      if (keeps && n > 0 && std::isfinite(residual))
+        found = basis_of(state, n, *matrix, *images);
       if (residual > tolerance)
       {
         problem->computeCurrResVec(r.get());
         residual = norm_of(*r);
       }
     }
+    if (found)
+      space->add(std::move(*found));
     copy((*X)[0], x);
     result.converged = residual <= tolerance;
     return result;

@@ -349,22 +349,13 @@ namespace retroforge
       else
         preconditioner_->Tvmult(z, y);
     };
+    const auto M = [&](la::BlockVector &y, const la::BlockVector &v) { multiply(transposition, y, v); };
     if (!shared || shared->empty())
-    {
-      const auto M = [&](la::BlockVector &y, const la::BlockVector &v) { multiply(transposition, y, v); };
       return solve_by_flexible_gmres(M, P, b, x, tolerance, limit, parameters_.restart, shared);
-    }
-    const auto M = [&](la::BlockVector &y, const la::BlockVector &v) {
-      multiply(transposition, y, v);
-      shared->project(y);
-    };
-    la::BlockVector dx(x), image(x);
-    dx                        = 0.;
-    const KrylovResult krylov = solve_by_flexible_gmres(M, P, r, dx, tolerance, limit, parameters_.restart);
-    // What was projected away has its solution in the shared space.
-    multiply(transposition, image, dx);
-    image *= -1.;
-    shared->reduce(dx, image);
+    la::BlockVector dx(x);
+    dx = 0.;
+    const KrylovResult krylov =
+      solve_by_flexible_gmres(M, P, r, dx, tolerance, limit, parameters_.restart, shared);
     x += dx;
     return krylov;
   }

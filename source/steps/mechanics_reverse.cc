@@ -19,6 +19,10 @@ namespace retroforge
     /// costs.
     constexpr std::size_t n_starts = 5;
 
+    /// Objectives whose directions further ones of the same stage take. A second one spares two iterations of thirty,
+    /// about what its projections cost.
+    constexpr std::size_t shared_solves = 1;
+
     /// Derivatives of one scalar that an increment collects from its stages.
     struct IncrementBar
     {
@@ -96,7 +100,8 @@ namespace retroforge
       const EquilibriumView<double> view = at->view();
       system_.assemble(at->stage, at->W, at->active);
       earlier_lambdas_[s].resize(costates.size());
-      KrylovSpace shared;
+      KrylovSpace shared(
+        std::min<std::size_t>(costates.size() - 1, shared_solves)); // the last one's serves none
       for (std::size_t j = 0; j < costates.size(); ++j)
       {
         IncrementBar                 &bar     = bars[j];
@@ -125,12 +130,8 @@ namespace retroforge
         Field<double> minus_rhs(scene_.discretization), lambda;
         minus_rhs.add(-1., rhs);
         auto &guesses = earlier_lambdas_[s][j];
-        system_.solve_derivative(minus_rhs,
-                                 tolerances[j],
-                                 lambda,
-                                 guesses,
-                                 Transposition::transposed,
-                                 costates.size() > 1 ? &shared : nullptr);
+        system_.solve_derivative(
+          minus_rhs, tolerances[j], lambda, guesses, Transposition::transposed, &shared);
         reverse_residual(view, lambda, stage_bar);
         guesses.insert(guesses.begin(), std::move(lambda));
         guesses.resize(std::min(guesses.size(), n_starts));
