@@ -86,7 +86,7 @@ namespace retroforge
     if (summary.spanned.share() > many)
       warnings.push_back(of_spanned(summary.spanned));
     for (const std::string &die : untouched)
-      warnings.push_back("no node touched die " + die);
+      warnings.push_back("the stroke pressed no node against die " + die);
     return warnings;
   }
 } // namespace retroforge

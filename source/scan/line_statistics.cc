@@ -74,8 +74,13 @@ namespace retroforge
     if (!fit)
       return;
     mean_fit_slope = mean(slopes.empty() ? fit_slopes_of_values : fit_slopes);
-    bias           = slopes.empty() || mean_fit_slope == 0. ? unknown : mean_slope / mean_fit_slope - 1.;
+    // An objective that a parameter does not change has a fit whose slope is rounding: nothing is told by ratios to it.
+    constexpr double rounding   = 1e-12;
+    const auto [least, largest] = std::minmax_element(line.x.begin(), line.x.end());
+    const bool   is_flat = std::abs(mean_fit_slope) * (*largest - *least) <= rounding * std::abs(mean_value);
+    const double size    = is_flat ? 0. : mean_fit_slope;
+    bias                 = slopes.empty() || size == 0. ? unknown : mean_slope / size - 1.;
     std::tie(noise_rms, noise_max)         = relative(off_fit, mean_value);
-    std::tie(roughness_rms, roughness_max) = relative(off_slope, mean_fit_slope);
+    std::tie(roughness_rms, roughness_max) = relative(off_slope, size);
   }
 } // namespace retroforge

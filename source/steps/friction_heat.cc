@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
-#include <retroforge/contact/contact_areas.h>
 #include <retroforge/core/rank_sum.h>
 #include <retroforge/solver/contact_pullback.h>
 #include <retroforge/steps/friction_heat.h>
@@ -146,7 +145,7 @@ namespace retroforge
           const ContactNode<Number> node = stage.contact_node(p, view.W, view.active);
           nodes.part().power[k] += friction_power(node, stage.surface_law(p), stage.physics.contact);
           nodes.part().touching[k] += node.Sf;
-          nodes.part().surface[k] += surface_over_S(stage.contact) * node.S;
+          nodes.part().surface[k] += node.S;
           nodes.part().n_dies[k] += 1.;
         }
       return nodes.complete();
@@ -183,7 +182,7 @@ namespace retroforge
       ContactNodeBar node_bar = reverse_friction_power(
         stage.contact_node(p, view.W, view.active), stage.surface_law(p), stage.physics.contact, power_bar);
       node_bar.Sf += (1. - beside) * area_bar;
-      node_bar.S += beside * surface_over_S(stage.contact) * area_bar / nodes.n_dies[k];
+      node_bar.S += beside * area_bar / nodes.n_dies[k];
       pullback.add(p, node_bar);
     }
     pullback.finish();

@@ -11,7 +11,7 @@
 /// In skins (heat/friction_in_skins.h) all of it is a flux, that on the part of the surface that touches dies as friction sees
 /// it,
 ///   q_k = sum_d P_kd / (sum_d S^f_kd + 0.1 (S_k - sum_d S^f_kd)),
-/// S_k the node's part of the surface: so that it sets in gradually where a first face touches.
+/// S_k the same if all faces at the node did: so that it sets in gradually where a first face touches.
 namespace retroforge
 {
   /// Adds it to the temperatures of all nodes, for the part view.weight of the time dt [s], on every rank.

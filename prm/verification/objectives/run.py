@@ -172,7 +172,7 @@ def main():
         curved(build, "curved", PATH + END, CURVED_PARAMETERS + HOT_PARAMETERS, "1e-3, 1e-4, 3e-5, 1e-5, 1e-6",
                {"Press/stroke": 18, "Press/increments": 18, "Remeshing/every": 7})
     elif what == "turned":
-        curved(build, "turned", ["least temperature"], HOT_PARAMETERS, "1e-5, 1e-6",
+        curved(build, "turned", ["least temperature"], HOT_PARAMETERS, "1e-5, 3e-6, 1e-6",
                {**HOT, **TIGHT, "Press/stroke": 18, "Press/increments": 18, "Remeshing/when": "never", "Die upper/rotation angle": 2.3,
                 "Die lower/rotation angle": 2.3})
     elif what == "quick":

@@ -440,7 +440,7 @@ def told():
                                                     "Heat/resting die=side"),
              r"warning: die side, on which the billet is to rest for 4 s, does not touch"),
             ("die that nothing touches", settings("Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0"),
-             r"warning: no node touched die side")):
+             r"warning: the stroke pressed no node against die side")):
         done = run(["case.prm", "--output", "told", "--overwrite"] + short + more, command="simulate")
         judge(name, done.returncode == 0 and re.search(pattern, done.stdout), done.stdout + done.stderr)
     done = run(["case.prm", "--output", "told", "--overwrite"] + short, command="simulate")

@@ -37,7 +37,7 @@ Summary filled()
   s.volume_final          = 7.5;
   s.volume_of_shape       = 8.25;
   s.heat                  = {true, true, 12.5, 1.75, 3., 0.75, 1100.25, {{8., 3.}, {2., 0.}}};
-  s.warnings              = {"no node touched die side"};
+  s.warnings              = {"the stroke pressed no node against die side"};
   s.wall_seconds          = {{"assembly", 0.5}, {"total", 2.}};
   s.record_bytes          = 5000000000;
   s.spanned               = {80, 5, 0.07, 3., {{1., 2., 3.}}, "lower"};

@@ -114,6 +114,14 @@ int main()
     s = NAN;
   print("no slopes", noisy);
 
+  ScannedLine flat = smooth;
+  for (unsigned int i = 0; i < 9; ++i)
+  {
+    flat.y[i]      = 1000. * (1. + 1e-16 * (i % 3));
+    flat.slopes[i] = 1e-9 * (i % 2);
+  }
+  print("a parameter without effect", flat);
+
   ScanParameters scan;
   scan.points = 5;
   scan.range  = 0.1;
