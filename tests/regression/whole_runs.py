@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.path.abspath(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/retroforge")
@@ -129,10 +130,12 @@ def main(files, tests):
         for name, text in files.items():
             write(name, text)
         for test in tests:
+            begun = time.monotonic()
             try:
                 test()
             except (KeyError, IndexError, OSError, StopIteration, ValueError, subprocess.SubprocessError) as error:
                 judge(test.__name__, False, repr(error))
+            print(f"{test.__name__}: {time.monotonic() - begun:.1f} s", flush=True)
         os.chdir("/")
     print(f"{len(failures)} failed")
     sys.exit(1 if failures else 0)
