@@ -48,7 +48,7 @@ class OptimisationPage:
         if self.found["finished"] and missed:
             self.to.heading("NOT FEASIBLE")
             self.to.note("No design that was forged keeps all limits; this one comes closest: "
-                         + "; ".join(f"{limit['objective']} {number(limit['best'])}, {limit['kind']} {number(limit['bound'])}: "
+                         + "; ".join(f"{limit['objective']} {number(limit['best'] + limit.get('correction', 0))}, {limit['kind']} {number(limit['bound'])}: "
                                      f"{number(limit['missed_by'])} too {'little' if limit['kind'] == 'at least' else 'much'}"
                                      for limit in missed) + ".")
 
@@ -97,6 +97,10 @@ class OptimisationPage:
                             *("" if value is None else number(value) for value in
                               (limit["bound"], limit["start"], limit["best"], confirmed.get(limit["objective"]), limit["by_relaxing"])))
                            for limit in self.found["limits"]])
+        corrected = [limit for limit in self.found["limits"] if limit.get("correction")]
+        if corrected:
+            self.to.note("Limits that the finer mesh missed count what it added to the value: "
+                         + "; ".join(f"{limit['objective']} {limit['correction']:+.4g}" for limit in corrected) + ".")
         for objective, details in self.found.get("details", {}).items():
             self.to.note("; ".join(f"{what} of {objective} at the best design: {number(value)}" for what, value in details.items()) + ".")
 

@@ -89,6 +89,11 @@ namespace retroforge
                       "Start and optimum are forged again with elements and increments this much smaller; 0 "
                       "leaves it out. Units: none.",
                       Double(0., 1.));
+    prm.add_parameter("corrections",
+                      corrections,
+                      "How often the search may go on where the confirmation says that a limit is not kept "
+                      "there: the limit then counts what the finer mesh added to the value. Units: none.",
+                      Integer(0, 100));
     prm.add_parameter(
       "keep records",
       keep_records,

@@ -73,6 +73,7 @@ namespace retroforge
   std::optional<Confirmation> confirm(const OptimizationProblem                      &problem,
                                       const std::vector<double>                      &start,
                                       const std::vector<double>                      &best,
+                                      const bool                                      goes_on,
                                       const std::function<void(const std::string &)> &tell)
   {
     const double part = problem.parameters().confirmation;
@@ -92,7 +93,7 @@ namespace retroforge
     try
     {
       fine.emplace(problem, part);
-      journal = confirmation_journal(*fine->scenarios, file, problem.resumes);
+      journal = confirmation_journal(*fine->scenarios, file, goes_on);
     }
     catch (const Error &error)
     {

@@ -169,10 +169,16 @@ namespace retroforge
   double OptimizationResults::missed_by(const std::size_t limit) const
   {
     const Limit &of    = criteria.limits[limit];
-    const double value = best.values[of.objective];
+    const double value = of.counted(best.values);
     if (of.excess(best.values) <= limit_tolerance)
       return 0.;
     return of.at_least ? of.bound - value : value - of.bound;
+  }
+
+  bool OptimizationResults::misses_there(const Limit &limit) const
+  {
+    return confirmation && !confirmation->best.failed() &&
+           limit.excess_of(confirmation->best.values[limit.objective]) > limit_tolerance;
   }
 
   std::size_t OptimizationResults::n_failed_at_the_end() const
@@ -285,6 +291,7 @@ namespace retroforge
                         {"bound", json_number(limit.bound)},
                         {"start", json_number(start.values[limit.objective])},
                         {"best", json_number(best.values[limit.objective])},
+                        {"correction", json_number(limit.correction)},
                         {"missed_by", json_number(missed_by(i))},
                         {"by_relaxing", json_number(by_relaxing(i))}});
     }
@@ -376,7 +383,7 @@ namespace retroforge
         const Limit      &limit = criteria.limits[i];
         const std::string unit  = units[limit.objective].empty() ? "" : " " + units[limit.objective];
         out << std::setprecision(7) << "    " << objectives[limit.objective] << ": "
-            << best.values[limit.objective] << unit << ", " << (limit.at_least ? "at least " : "at most ")
+            << limit.counted(best.values) << unit << ", " << (limit.at_least ? "at least " : "at most ")
             << limit.bound << unit << ": " << std::setprecision(4) << missed << unit;
         if (limit.bound != 0.)
           out << std::setprecision(3) << " (" << 100. * missed / std::abs(limit.bound) << " %)";
@@ -407,6 +414,11 @@ namespace retroforge
                                      : as_text(by_relaxing(i)))
           << '\n';
     }
+    for (const Limit &limit : criteria.limits)
+      if (limit.correction != 0.)
+        out << "  " << objectives[limit.objective] << " counts with " << std::setprecision(4) << std::showpos
+            << limit.correction << std::noshowpos << (units[limit.objective].empty() ? "" : " ")
+            << units[limit.objective] << ", which a finer mesh added to it\n";
   }
 
   void OptimizationResults::print(std::ostream &out) const
@@ -476,8 +488,7 @@ namespace retroforge
         for (const Limit &limit : criteria.limits)
           out << "    " << objectives[limit.objective] << ' ' << confirmation->best.values[limit.objective]
               << ", " << (limit.at_least ? "at least " : "at most ") << limit.bound
-              << (limit.excess(confirmation->best.values) > limit_tolerance ? ": not kept there\n"
-                                                                            : ": kept\n");
+              << (misses_there(limit) ? ": not kept there\n" : ": kept\n");
     }
   }
 } // namespace retroforge

@@ -39,17 +39,18 @@ namespace retroforge
     if (problem_.main.command.check)
       reporter_.print(search_.check());
     measure_noise();
-    // A limit's optimum is the last design, not the least one within its tolerance.
-    const bool settled = search_.run(results_.noise);
-    results_.stop      = search_.stop();
-    results_.best      = settled ? search_.now() : best_so_far();
-    report_best();
-    if (problem_.is_root())
-      reporter_.write_results(); // the confirmation is the longest forging, and may be stopped
-    results_.confirmation =
-      confirm(problem_, results_.start.mu, results_.best.mu, [&](const std::string &line) {
-        reporter_.print_line(line);
-      });
+    search();
+    for (unsigned int round = 0;; ++round)
+    {
+      results_.confirmation = confirm(problem_,
+                                      results_.start.mu,
+                                      results_.best.mu,
+                                      problem_.resumes || round > 0,
+                                      [&](const std::string &line) { reporter_.print_line(line); });
+      if (round == problem_.parameters().corrections || !correct_limits())
+        break;
+      search();
+    }
     if (problem_.is_root())
     {
       reporter_.write_results();
@@ -166,6 +167,40 @@ namespace retroforge
           (!best || is_better(row.evaluation, *best)))
         best = row.evaluation;
     return *best;
+  }
+
+  void Optimize::search()
+  {
+    results_.confirmation.reset();
+    results_.stop = Stop::running;
+    // A limit's optimum is the last design, not the least one within its tolerance.
+    const bool settled = search_.run(results_.noise);
+    results_.stop      = search_.stop();
+    results_.best      = settled ? search_.now() : best_so_far();
+    report_best();
+    if (problem_.is_root())
+      reporter_.write_results(); // the confirmation is the longest forging, and may be stopped
+  }
+
+  bool Optimize::correct_limits()
+  {
+    if (!results_.has_converged() || !results_.limits_are_kept())
+      return false;
+    std::string told;
+    for (Limit &limit : problem_.criteria.limits)
+      if (results_.misses_there(limit))
+      {
+        const unsigned int o = limit.objective;
+        limit.correction     = results_.confirmation->best.values[o] - results_.best.values[o];
+        char text[32];
+        std::snprintf(text, sizeof text, " %+.4g ", limit.correction);
+        told += (told.empty() ? "" : ", ") + results_.objectives[o] + text + results_.units[o];
+      }
+    if (told.empty())
+      return false;
+    reporter_.print_line("limits are not kept on the finer mesh; from here on they count what it adds: " +
+                         told);
+    return true;
   }
 
   void Optimize::report_best()

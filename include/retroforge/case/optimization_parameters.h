@@ -33,6 +33,7 @@ namespace retroforge
     unsigned int             noise_runs         = 3;
     double                   mesh_quality = 0.2; ///< least, of the billet's cells before forging; 0: any
     double                   confirmation = 0.7;
+    unsigned int             corrections  = 2; ///< of limits, by confirmations
     bool                     keep_records = false;
 
     std::string         scattered;       ///< a design parameter that is not known exactly; empty: none

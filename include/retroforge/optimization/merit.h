@@ -8,18 +8,22 @@
 namespace retroforge
 {
   /// A limit of an objective, as a number without unit that may not be positive:
-  /// c = (value - bound) / size,  or (bound - value) / size where the value may not be smaller.
+  /// c = (value + correction - bound) / size,  or (bound - value - correction) / size where the value may not be
+  /// smaller.
   struct Limit
   {
     unsigned int objective;
     double       bound;
     bool         at_least;
     double       size = 1.; ///< the bound's, or the value's at the start where the bound is 0
+    /// What a finer mesh adds to the value, as far as the limit counts it [the objective's unit].
+    double correction = 0.;
 
-    double excess(const std::vector<double> &values) const
-    {
-      return (at_least ? bound - values[objective] : values[objective] - bound) / size;
-    }
+    /// The value as the limit counts it.
+    double counted(const std::vector<double> &values) const { return values[objective] + correction; }
+    double excess(const std::vector<double> &values) const { return excess_of(counted(values)); }
+    /// Of a value that needs no correction.
+    double excess_of(const double value) const { return (at_least ? bound - value : value - bound) / size; }
     /// dc/d(value).
     double slope() const { return (at_least ? -1. : 1.) / size; }
   };

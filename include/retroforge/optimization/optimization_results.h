@@ -84,6 +84,8 @@ namespace retroforge
     /// tolerance.
     double missed_by(std::size_t limit) const;
     bool   limits_are_kept() const { return criteria.largest_excess(best.values) <= limit_tolerance; }
+    /// Returns whether the best design, forged for the confirmation, misses a limit.
+    bool misses_there(const Limit &limit) const;
     /// Returns the number of designs tried since the last accepted one, if all of them failed.
     std::size_t n_failed_at_the_end() const;
     /// Returns whether steps became too short because designs around the last one failed.

@@ -30,6 +30,11 @@ namespace retroforge
 
     void begin();
     void measure_noise();
+    /// Goes on from the design accepted last, to the end of the search and what is told of it.
+    void search();
+    /// Lets limits that the confirmation misses count what it added to their values, and tells so.
+    /// @return whether there are any that a further search may keep
+    bool correct_limits();
     /// Accepted, within the limits, and the least of those; the least beyond its limits where none is. Of
     /// those forged on the present mesh: values of another one differ by the scatter of meshes.
     Evaluation best_so_far() const;
