@@ -27,11 +27,6 @@ namespace retroforge
                   "those are, by Objectives/names: " + join(known),
                   near.empty() ? "name some of these, or add it there" : "did you mean '" + near + "'?");
     }
-
-    double positive_part(const double x)
-    {
-      return std::max(x, 0.);
-    }
   } // namespace
 
   Criteria::Criteria(const Objectives &objectives, const OptimizationParameters &parameters)
@@ -128,14 +123,16 @@ namespace retroforge
     return largest;
   }
 
+  double Merit::pressed(const std::size_t limit, const std::vector<double> &values) const
+  {
+    return std::max(multipliers[limit] + penalties[limit] * criteria->limits[limit].excess(values), 0.);
+  }
+
   double Merit::value(const std::vector<double> &values) const
   {
     double merit = (criteria->value(values) - origin) / size;
     for (std::size_t i = 0; i < multipliers.size(); ++i)
-    {
-      const double pressed = positive_part(multipliers[i] + penalty * criteria->limits[i].excess(values));
-      merit += (pressed * pressed - multipliers[i] * multipliers[i]) / (2. * penalty);
-    }
+      merit += (std::pow(pressed(i, values), 2) - multipliers[i] * multipliers[i]) / (2. * penalties[i]);
     return merit;
   }
 
@@ -150,8 +147,7 @@ namespace retroforge
     for (std::size_t i = 0; i < multipliers.size(); ++i)
     {
       const Limit &limit = criteria->limits[i];
-      by_objective[limit.objective] +=
-        positive_part(multipliers[i] + penalty * limit.excess(values)) * limit.slope();
+      by_objective[limit.objective] += pressed(i, values) * limit.slope();
     }
     std::vector<double> sum(gradients.front().size(), 0.);
     for (std::size_t o = 0; o < by_objective.size(); ++o)

@@ -58,7 +58,7 @@ namespace retroforge
   {
     now_   = start;
     x_     = space_.scaled(now_.mu);
-    merit_ = {&criteria_, criteria_.value(now_.values), 1., {}, 0.};
+    merit_ = {&criteria_, criteria_.value(now_.values), 1., {}, {}};
     // A unit of merit is what the first step promises where nothing bends: so the first guess of the Hessian,
     // which is one, is of the right size.
     const double slope = varied_length(merit_.gradient(now_.values, now_.gradients));
@@ -69,7 +69,8 @@ namespace retroforge
                              : value > 0.         ? felt * value / parameters_.first_step
                                                   : 1.;
     merit_.multipliers.assign(criteria_.limits.size(), 0.);
-    merit_.penalty     = curving_penalty().value_or(1.);
+    for (const Limit &limit : criteria_.limits)
+      merit_.penalties.push_back(curving_penalty(limit).value_or(1.));
     merit_.multipliers = fitted_multipliers();
     radius_            = parameters_.first_step;
   }
@@ -83,13 +84,28 @@ namespace retroforge
     return length(by_x);
   }
 
-  std::optional<double> Search::curving_penalty() const
+  std::optional<double> Search::curving_penalty(const Limit &limit) const
   {
-    double steepest = 0.;
-    for (const Limit &limit : criteria_.limits)
-      steepest = std::max(steepest, std::abs(limit.slope()) * varied_length(now_.gradients[limit.objective]));
+    const double     slope     = limit.slope() * varied_length(now_.gradients[limit.objective]);
     constexpr double curvature = 10.; // of the penalty, in that of the first guess of the Hessian
-    return steepest > 0. ? std::optional<double>(curvature / (steepest * steepest)) : std::nullopt;
+    return slope != 0. ? std::optional<double>(curvature / (slope * slope)) : std::nullopt;
+  }
+
+  bool Search::raise_penalties(const std::vector<double> &before, const std::vector<double> &least)
+  {
+    constexpr double largest_growth = 1e6; // beyond, rounding rules
+    bool             raised         = false;
+    for (std::size_t i = 0; i < before.size(); ++i)
+    {
+      const double excess = criteria_.limits[i].excess(now_.values);
+      double      &rho    = merit_.penalties[i];
+      if (excess > 0.1 * before[i] && excess > parameters_.limit_tolerance && rho < largest_growth * least[i])
+      {
+        rho    = std::max(4. * rho, curving_penalty(criteria_.limits[i]).value_or(0.));
+        raised = true;
+      }
+    }
+    return raised;
   }
 
   std::vector<DifferenceCheck> Search::check()
@@ -117,16 +133,18 @@ namespace retroforge
       minimize_merit();
       return false;
     }
-    constexpr unsigned int most_rounds    = 50;
-    constexpr double       largest_growth = 1e6; // of the penalty: beyond, rounding rules
+    constexpr unsigned int most_rounds = 50;
     // Limits that five rounds of a penalty four times as large each do not bring nearer cannot be met.
-    constexpr unsigned int most_in_vain  = 5;
-    constexpr double       nearer        = 0.99;
-    const double           first_penalty = merit_.penalty;
-    double                 excess        = criteria_.largest_excess(now_.values);
-    unsigned int           n_in_vain     = 0;
+    constexpr unsigned int    most_in_vain    = 5;
+    constexpr double          nearer          = 0.99;
+    const std::vector<double> first_penalties = merit_.penalties;
+    double                    excess          = criteria_.largest_excess(now_.values);
+    unsigned int              n_in_vain       = 0;
     for (unsigned int round = 0; round < most_rounds; ++round)
     {
+      std::vector<double> before;
+      for (const Limit &limit : criteria_.limits)
+        before.push_back(std::max(limit.excess(now_.values), 0.));
       stop_                         = SearchStop::running;
       const unsigned int iterations = iterations_;
       minimize_merit();
@@ -139,11 +157,7 @@ namespace retroforge
       if (settled)
         return true;
       const double excess_now = criteria_.largest_excess(now_.values);
-      const bool   grows      = excess_now > 0.1 * excess && excess_now > parameters_.limit_tolerance &&
-                         merit_.penalty < largest_growth * first_penalty;
-      if (grows)
-        merit_.penalty = std::max(4. * merit_.penalty, curving_penalty().value_or(0.));
-      else if (is_stuck)
+      if (!raise_penalties(before, first_penalties) && is_stuck)
         break;
       n_in_vain = excess_now > nearer * excess ? n_in_vain + 1 : 0;
       if (n_in_vain == most_in_vain && excess_now > parameters_.limit_tolerance)
@@ -260,7 +274,7 @@ namespace retroforge
     for (const Datum &datum : criteria_.data)
       add(datum.objective, 1. / (datum.deviation * datum.deviation * merit_.size));
     for (const unsigned int i : pressing())
-      add(criteria_.limits[i].objective, merit_.penalty * std::pow(criteria_.limits[i].slope(), 2));
+      add(criteria_.limits[i].objective, merit_.penalties[i] * std::pow(criteria_.limits[i].slope(), 2));
     return product;
   }
 
@@ -268,7 +282,7 @@ namespace retroforge
   {
     std::vector<unsigned int> limits;
     for (unsigned int i = 0; i < criteria_.limits.size(); ++i)
-      if (merit_.multipliers[i] + merit_.penalty * criteria_.limits[i].excess(now_.values) > 0.)
+      if (merit_.pressed(i, now_.values) > 0.)
         limits.push_back(i);
     return limits;
   }

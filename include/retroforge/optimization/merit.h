@@ -62,14 +62,16 @@ namespace retroforge
     double largest_excess(const std::vector<double> &values) const;
   };
 
-  /// The augmented Lagrangian  (f - f_0) / size + sum_i ([lambda_i + rho c_i]_+^2 - lambda_i^2) / (2 rho).
+  /// The augmented Lagrangian  (f - f_0) / size + sum_i ([lambda_i + rho_i c_i]_+^2 - lambda_i^2) / (2 rho_i).
   struct Merit
   {
     const Criteria     *criteria;
     double              origin = 0., size = 1.;
     std::vector<double> multipliers; ///< one per limit, not negative
-    double              penalty = 0.;
+    std::vector<double> penalties;   ///< rho_i, one per limit, positive
 
+    /// Returns  [lambda_i + rho_i c_i]_+.
+    double pressed(std::size_t limit, const std::vector<double> &values) const;
     double value(const std::vector<double> &values) const;
     /// Derivative of the merit by a parameter, from those of all objectives.
     /// @param gradients  of each objective

@@ -81,9 +81,15 @@ namespace retroforge
     /// Returns the length of a gradient over scaled variables, without parameters that the search does not
     /// vary.
     double varied_length(const std::vector<double> &by_mu) const;
-    /// The penalty that curves the merit by ten times as much as its first guess, across the limit that is
-    /// felt most at the present design; none where none is felt.
-    std::optional<double> curving_penalty() const;
+    /// The penalty that curves the merit by ten times as much as its first guess, across this limit at the
+    /// present design: how large a limit's unit is, as that of temperatures, has no say. None where it is not
+    /// felt.
+    std::optional<double> curving_penalty(const Limit &limit) const;
+    /// Lets penalties of limits grow that a round has not brought nearer.
+    /// @param before  excesses of the limits before it
+    /// @param least   the first penalties
+    /// @return whether any has
+    bool raise_penalties(const std::vector<double> &before, const std::vector<double> &least);
     /// One minimisation with the multipliers there are; from the present design, to the last accepted one.
     /// Where the mesh is made anew it begins again there: with values of the new mesh, and all that was
     /// learned of the Hessian, which other chords of the same shape change little.

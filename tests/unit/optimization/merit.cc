@@ -70,7 +70,7 @@ int main()
   std::cout << "what has no limit is made small: " << all.objective.name << ", weight "
             << all.objective.weights[0] << "\nlimits: " << all.limits.size() << "\n";
 
-  Merit merit{&all, start[0], 3., {0., 0.}, 5.};
+  Merit merit{&all, start[0], 3., {0., 0.}, {5., 2.}};
   std::cout << "b exceeds its limit, c does not: "
             << answer(all.limits[0].excess(start) > 0. && all.limits[1].excess(start) < 0.) << "\n";
   const double pressed = 5. * all.limits[0].excess(start);

@@ -25,7 +25,7 @@ namespace
     return yes ? "yes" : "NO";
   }
 
-  /// f = (a - 1)^2 + 2 (b - 2)^2,  and g = a^2 + b^2, of a and b.
+  /// f = (a - 1)^2 + 2 (b - 2)^2,  g = a^2 + b^2,  and h = 1000 + a, of a and b.
   struct Functions
   {
     double noise = 0., fails_above = INFINITY; ///< of f; no values where a + b is larger
@@ -42,9 +42,10 @@ namespace
         return evaluation;
       }
       const double rough = noise * std::sin(1e7 * (a + 3. * b));
-      evaluation.values  = {std::pow(a - 1., 2) + 2. * std::pow(b - 2., 2) + rough + by_mesh, a * a + b * b};
+      evaluation.values  = {
+         std::pow(a - 1., 2) + 2. * std::pow(b - 2., 2) + rough + by_mesh, a * a + b * b, 1000. + a};
       if (with_gradients)
-        evaluation.gradients = {{2. * (a - 1.), 4. * (b - 2.)}, {2. * a, 2. * b}};
+        evaluation.gradients = {{2. * (a - 1.), 4. * (b - 2.)}, {2. * a, 2. * b}, {1., 0.}};
       return evaluation;
     }
   };
@@ -89,10 +90,10 @@ namespace
     template <typename Use>
     void with_search(const Vector &start, const Use &use)
     {
-      Objectives objectives(2);
-      for (unsigned int o = 0; o < 2; ++o)
+      Objectives objectives(3);
+      for (unsigned int o = 0; o < 3; ++o)
       {
-        objectives[o].name = o == 0 ? "f" : "g";
+        objectives[o].name = std::vector<std::string>{"f", "g", "h"}[o];
         objectives[o].path = std::make_unique<EnergyObjective>();
       }
       const std::vector<DesignParameter> all = {{"a", "mm", DesignParameter::Kind::billet, 1., 1.},
@@ -207,6 +208,15 @@ int main()
     std::cout << "a lower limit: kept to 1e-7 " << answer(std::abs(g - 9.) < 1e-7)
               << ", gradients parallel to 1e-5 " << answer(std::abs((a - 1.) * b - 2. * (b - 2.) * a) < 1e-5)
               << ", multiplier positive " << answer(problem.multipliers[0] > 0.) << "\n";
+  }
+  {
+    // Two limits, one in a unit in which it hardly changes, as temperatures: a <= 0.3 at the edge of a disk.
+    Problem problem;
+    problem.parameters.at_most = {{"g", 3.}, {"h", 1000.3}};
+    problem.run({1.5, 1.5});
+    std::cout << "two limits of unlike units: settled " << answer(problem.settled) << ", optimum to 1e-5 "
+              << answer(problem.distance({0.3, std::sqrt(3. - 0.09)}) < 1e-5) << ", at most 25 designs "
+              << answer(problem.evaluated.size() <= 25) << "\n";
   }
   {
     // a + b <= 1 cuts the disk before its edge: (a - 1) = 2 (b - 2), so a = -1 / 3 + ... by hand: b = 4/3.
