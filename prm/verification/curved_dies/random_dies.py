@@ -198,6 +198,8 @@ def run_scene(options, number):
     folder = os.path.abspath(f"scene_{options.seed}_{number:02d}")
     os.makedirs(folder, exist_ok=True)
     curved = "upper" if "above" in words["kind"] else "lower"
+    if options.default_increments:
+        settings["Press/increments"] = 0
     settings[f"Die {curved}/file"] = dies.write(os.path.join(folder, f"{curved}.stl"), facets)
     case = runs.write_case(os.path.join(folder, "scene.prm"), {**settings, **options.settings})
     run = runs.forge(options.build, "simulate", case, os.path.join(folder, "run"), timeout=options.timeout)
@@ -217,15 +219,15 @@ def write_csv(rows):
         table.writerows(sorted(rows, key=lambda row: row["scene"]))
 
 
-def figures(rows):
+def figures(rows, name):
     ended = [row for row in rows if row["outcome"] == "end"]
     depths, losses = ([float(row[key]) for row in ended] for key in ("depth", "volume lost"))
-    runs.figure("random_missing", len(rows) - len(ended))
-    runs.figure("random_hangs", sum(row["outcome"] == "timeout" for row in rows))
-    runs.figure("random_crashes", sum(row["outcome"] == "crash" for row in rows))
-    runs.figure("random_volume", np.abs(losses).max() if ended else float("nan"))
-    runs.figure("random_depth", max(depths) if ended else float("nan"))
-    runs.figure("random_depth_median", float(np.median(depths)) if ended else float("nan"))
+    runs.figure(f"{name}_missing", len(rows) - len(ended))
+    runs.figure(f"{name}_hangs", sum(row["outcome"] == "timeout" for row in rows))
+    runs.figure(f"{name}_crashes", sum(row["outcome"] == "crash" for row in rows))
+    runs.figure(f"{name}_volume", np.abs(losses).max() if ended else float("nan"))
+    runs.figure(f"{name}_depth", max(depths) if ended else float("nan"))
+    runs.figure(f"{name}_depth_median", float(np.median(depths)) if ended else float("nan"))
 
 
 def main():
@@ -233,6 +235,7 @@ def main():
         parser.add_argument("--count", type=int, default=60, help="number of scenes")
         parser.add_argument("--seed", type=int, default=1)
         parser.add_argument("--only", type=int, nargs="*", metavar="I", help="these scenes alone, counted from 0")
+        parser.add_argument("--default-increments", action="store_true", help="as many as the default accuracy needs, instead of 25, 40 or 60")
         parser.add_argument("--jobs", type=int, default=1, help="scenes at the same time")
         parser.set_defaults(timeout=600.0)
     options = runs.arguments(__doc__, extra=more)
@@ -244,7 +247,7 @@ def main():
                 print("| " + " | ".join(rows[0]) + " |\n" + "| --- " * len(rows[0]) + "|")
             print_row(rows[-1])
             write_csv(rows)
-    figures(rows)
+    figures(rows, "random_default" if options.default_increments else "random")
 
 
 if __name__ == "__main__":
