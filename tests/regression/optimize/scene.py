@@ -12,7 +12,7 @@ SCENE = {
                "symmetry planes": "-1, 0, 0; 0, -1, 0; 0, 0, -1", "volume held by": "control point 4 r"},
     "Dies": {"names": "upper"},
     "Die upper": {"point": "0, 0, 15", "facing": "0, 0, -1", "velocity": "0, 0, -100", "friction": 0.3},
-    "Press": {"stroke": 5, "increments": 10},
+    "Press": {"stroke": 5, "increments": 5},
     "Objectives": {"names": "barrel, energy"},
     "Objective barrel": {"type": "cylinder distance", "patches": "side outer"},
     "Design": {"parameters": "billet/control point 1 r, billet/control point 2 r"},
