@@ -92,10 +92,10 @@ class OptimisationPage:
         confirmed = self.found.get("confirmation", {}).get("values") or {}
         if self.found["limits"]:
             self.to.heading("Limits")
-            self.to.table(("objective", "", "#bound", "#start", "#best", "#confirmed", "#objective by relaxing it by 1"),
+            self.to.table(("objective", "", "#bound", "#start", "#best", "#confirmed", "#noise", "#objective by relaxing it by 1"),
                           [(limit["objective"], limit["kind"],
                             *("" if value is None else number(value) for value in
-                              (limit["bound"], limit["start"], limit["best"], confirmed.get(limit["objective"]), limit["by_relaxing"])))
+                              (limit["bound"], limit["start"], limit["best"], confirmed.get(limit["objective"]), limit.get("noise"), limit["by_relaxing"])))
                            for limit in self.found["limits"]])
         corrected = [limit for limit in self.found["limits"] if limit.get("correction")]
         if corrected:

@@ -20,16 +20,16 @@ namespace retroforge
     }
   } // namespace
 
-  double measure_noise(OptimizationProblem                                             &problem,
-                       const Evaluation                                                &start,
-                       const std::function<void(const Evaluation &evaluation, double)> &tell)
+  Noise measure_noise(OptimizationProblem                                             &problem,
+                      const Evaluation                                                &start,
+                      const std::function<void(const Evaluation &evaluation, double)> &tell)
   {
     constexpr double              part       = 1e-3; // of the scales: what bends over it is no noise
     const OptimizationParameters &parameters = problem.parameters();
     const Criteria               &criteria   = problem.criteria;
     std::mt19937                  generator(1);
-    double                        sum      = 0.;
-    unsigned int                  n_values = 0;
+    Noise                         noise{0., std::vector<double>(start.values.size(), 0.)}; // squares first
+    unsigned int                  n_forged = 0;
     for (unsigned int i = 0;
          i < parameters.noise_runs && problem.evaluator.n_asked() < parameters.simulations;
          ++i)
@@ -43,9 +43,16 @@ namespace retroforge
       if (evaluation.failed())
         continue;
       // Values are linear over so short a step; their misfit against data need not be.
-      sum += std::pow(criteria.value(evaluation.values) - criteria.value(predicted_values(start, mu)), 2);
-      ++n_values;
+      const std::vector<double> predicted = predicted_values(start, mu);
+      noise.objective += std::pow(criteria.value(evaluation.values) - criteria.value(predicted), 2);
+      for (std::size_t o = 0; o < predicted.size(); ++o)
+        noise.values[o] += std::pow(evaluation.values[o] - predicted[o], 2);
+      ++n_forged;
     }
-    return n_values > 0 ? std::sqrt(sum / n_values) : 0.;
+    const auto mean = [&](const double sum) { return n_forged > 0 ? std::sqrt(sum / n_forged) : 0.; };
+    noise.objective = mean(noise.objective);
+    for (double &value : noise.values)
+      value = mean(value);
+    return noise;
   }
 } // namespace retroforge

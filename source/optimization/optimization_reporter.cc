@@ -179,12 +179,12 @@ namespace retroforge
       return;
     const double value = problem_.criteria.value(results_.start.values);
     std::printf("  noise: %.3g%s%s",
-                results_.noise,
+                results_.noise.objective,
                 problem_.criteria.objective.unit.empty() ? "" : " ",
                 problem_.criteria.objective.unit.c_str());
     // A misfit that begins near 0 has nothing to be compared with.
     if (value != 0. && problem_.criteria.data.empty())
-      std::printf(", %.2g of the value", results_.noise / std::abs(value));
+      std::printf(", %.2g of the value", results_.noise.objective / std::abs(value));
     std::printf("\n");
   }
 

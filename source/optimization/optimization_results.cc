@@ -292,6 +292,7 @@ namespace retroforge
                         {"start", json_number(start.values[limit.objective])},
                         {"best", json_number(best.values[limit.objective])},
                         {"correction", json_number(limit.correction)},
+                        {"noise", json_number(noise_of(limit))},
                         {"missed_by", json_number(missed_by(i))},
                         {"by_relaxing", json_number(by_relaxing(i))}});
     }
@@ -333,7 +334,7 @@ namespace retroforge
                    {"unit", criteria.objective.unit},
                    {"start", json_number(value(start))},
                    {"best", json_number(value(best))},
-                   {"noise", json_number(noise)},
+                   {"noise", json_number(noise.objective)},
                    {"counted_as", counted_as}}},
                  {"limits", limits},
                  {"relations", relations},
@@ -419,6 +420,11 @@ namespace retroforge
         out << "  " << objectives[limit.objective] << " counts with " << std::setprecision(4) << std::showpos
             << limit.correction << std::noshowpos << (units[limit.objective].empty() ? "" : " ")
             << units[limit.objective] << ", which a finer mesh added to it\n";
+    for (const Limit &limit : criteria.limits)
+      if (noise_of(limit) > limit_tolerance * limit.size)
+        out << "  noise of " << objectives[limit.objective] << ": " << std::setprecision(3) << noise_of(limit)
+            << (units[limit.objective].empty() ? "" : " ") << units[limit.objective]
+            << "; whether it keeps its limit is known no better\n";
   }
 
   void OptimizationResults::print(std::ostream &out) const
@@ -443,8 +449,8 @@ namespace retroforge
       out << "; the last " << n_failed_at_the_end() << " failed: it is at the edge of what can be forged";
     out << "\n  " << n_simulations << " forgings; " << n_failed << " of " << rows.size()
         << " designs failed; " << n_sweeps << " swept back\n";
-    if (noise > 0.)
-      out << std::setprecision(3) << "  noise of the objective: " << noise << unit << '\n';
+    if (noise.objective > 0.)
+      out << std::setprecision(3) << "  noise of the objective: " << noise.objective << unit << '\n';
     out << "\n  " << std::left << std::setw(28) << "parameter" << std::right << std::setw(14) << "start"
         << std::setw(14) << "best" << '\n';
     for (std::size_t j = 0; j < space.size(); ++j)

@@ -174,7 +174,7 @@ namespace retroforge
     results_.confirmation.reset();
     results_.stop = Stop::running;
     // A limit's optimum is the last design, not the least one within its tolerance.
-    const bool settled = search_.run(results_.noise);
+    const bool settled = search_.run(results_.noise.objective);
     results_.stop      = search_.stop();
     results_.best      = settled ? search_.now() : best_so_far();
     report_best();

@@ -8,14 +8,20 @@
 
 namespace retroforge
 {
-  /// Measures the noise of the objective: forges a few designs around the start (Optimisation/noise runs),
+  struct Noise
+  {
+    double              objective = 0.; ///< in its unit
+    std::vector<double> values;         ///< of each value of the problem, in its unit
+  };
+
+  /// Measures the noise of the objective and of all values: forges a few designs around the start (Optimisation/noise runs),
   /// over steps so short that all they add to what the gradient predicts is what decisions of the program
   /// change,
   ///   noise = sqrt(mean (phi(mu) - phi_linear(mu))^2).
   /// @param start  with gradients
   /// @param tell   gets each design that was forged, and its largest distance from the start, in scales
-  /// @return in the unit of the objective; 0 where no design was forged
-  double measure_noise(OptimizationProblem                                             &problem,
-                       const Evaluation                                                &start,
-                       const std::function<void(const Evaluation &evaluation, double)> &tell);
+  /// @return 0 where no design was forged
+  Noise measure_noise(OptimizationProblem                                             &problem,
+                      const Evaluation                                                &start,
+                      const std::function<void(const Evaluation &evaluation, double)> &tell);
 } // namespace retroforge

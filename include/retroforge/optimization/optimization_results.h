@@ -4,6 +4,7 @@
 
 #include <retroforge/optimization/confidence.h>
 #include <retroforge/optimization/confirmation.h>
+#include <retroforge/optimization/noise_estimate.h>
 #include <retroforge/optimization/search.h>
 
 #include <iosfwd>
@@ -63,7 +64,7 @@ namespace retroforge
 
     std::vector<TrialRow> rows   = {};
     std::vector<NewMesh>  meshes = {}; ///< after the first
-    double                noise  = 0.; ///< noise of the objective, in its unit
+    Noise                 noise  = {}; ///< 0 and empty where it is not measured
     SearchStop            stop   = SearchStop::running;
     Evaluation            start = {}, best = {}; ///< with gradients
     /// Multipliers of the limits, per unit of the limit's excess.
@@ -84,6 +85,11 @@ namespace retroforge
     /// tolerance.
     double missed_by(std::size_t limit) const;
     bool   limits_are_kept() const { return criteria.largest_excess(best.values) <= limit_tolerance; }
+    /// Returns the noise of what a limit is set on, in its unit.
+    double noise_of(const Limit &limit) const
+    {
+      return noise.values.empty() ? 0. : noise.values[limit.objective];
+    }
     /// Returns whether the best design, forged for the confirmation, misses a limit.
     bool misses_there(const Limit &limit) const;
     /// Returns the number of designs tried since the last accepted one, if all of them failed.

@@ -274,6 +274,11 @@ def limits_that_do_not_press():
     judge("one that is not felt", found["limits"][0]["by_relaxing"] == 0 and "not felt" in printed, found["limits"])
     found, printed = optimize("unfinished", f"Optimisation/at most=energy: {2 * at_start!r}", "Optimisation/noise runs=0", "Optimisation/iterations=1")
     judge("before the end nothing is known", found["limits"][0]["by_relaxing"] is None and "did not come to its end" in printed, found["limits"])
+    judge("nor of a noise that was not measured", found["limits"][0]["noise"] == 0 and "noise of" not in printed, found["limits"])
+    at_start = found_in("whole")["objective"]["start"]
+    found, printed = optimize("noisy", f"Optimisation/at most=barrel: {2 * at_start!r}", "Optimisation/iterations=1", "Optimisation/limit tolerance=1e-8")
+    judge("the noise of a limit on the objective is that of the objective", found["limits"][0]["noise"] == found["objective"]["noise"] > 0, found["limits"])
+    judge("and is told", "noise of barrel: " in printed and "known no better" in printed, printed)
 
 
 def beset():
