@@ -120,6 +120,7 @@ namespace retroforge
     void print_limits(std::ostream &out) const;
   };
 
+  std::string in_words(DesignSpace::At at);
   std::string in_words(SearchStop stop);
   std::string in_words(TrialRow::Decision decision, bool failed);
 } // namespace retroforge
