@@ -48,9 +48,13 @@ class OptimisationPage:
         if self.found["finished"] and missed:
             self.to.heading("NOT FEASIBLE")
             self.to.note("No design that was forged keeps all limits; this one comes closest: "
-                         + "; ".join(f"{limit['objective']} {number(limit['best'] + limit.get('correction', 0))}, {limit['kind']} {number(limit['bound'])}: "
+                         + "; ".join(f"{limit['objective']} {number(limit['best'])}{self.correction(limit)}, {limit['kind']} {number(limit['bound'])}: "
                                      f"{number(limit['missed_by'])} too {'little' if limit['kind'] == 'at least' else 'much'}"
                                      for limit in missed) + ".")
+
+    @staticmethod
+    def correction(limit):
+        return f" {limit['correction']:+.4g} for the finer mesh" if limit.get("correction") else ""
 
     def gain(self):
         objective, confirmed = self.found["objective"], self.found.get("confirmation")
@@ -97,6 +101,8 @@ class OptimisationPage:
                             *("" if value is None else number(value) for value in
                               (limit["bound"], limit["start"], limit["best"], confirmed.get(limit["objective"]), limit.get("noise"), limit["by_relaxing"])))
                            for limit in self.found["limits"]])
+        if not self.found.get("confirmation", {}).get("limits_kept", True):
+            self.to.note(f"Limits are not kept on the finer mesh. The search did not go on for that: {self.found['confirmation']['not_corrected']}.")
         corrected = [limit for limit in self.found["limits"] if limit.get("correction")]
         if corrected:
             self.to.note("Limits that the finer mesh missed count what it added to the value: "

@@ -92,7 +92,8 @@ namespace retroforge
     prm.add_parameter("corrections",
                       corrections,
                       "How often the search may go on where the confirmation says that a limit is not kept "
-                      "there: the limit then counts what the finer mesh added to the value. Units: none.",
+                      "there, within iterations and simulations: the limit then counts what the finer mesh "
+                      "added to the value. Units: none.",
                       Integer(0, 100));
     prm.add_parameter(
       "keep records",

@@ -218,7 +218,7 @@ namespace retroforge
                     results_.objectives[limit.objective].c_str(),
                     evaluation.values[limit.objective],
                     limit.at_least ? "at least" : "at most",
-                    limit.bound);
+                    limit.bound - limit.correction);
     }
     if (row.decision == Decision::accepted || row.decision == Decision::refused)
       std::printf("  step %.3g", row.radius);

@@ -129,6 +129,13 @@ namespace retroforge
            limit.excess_of(confirmation->best.values[limit.objective]) > limit_tolerance;
   }
 
+  bool OptimizationResults::misses_there() const
+  {
+    return std::any_of(criteria.limits.begin(), criteria.limits.end(), [&](const Limit &limit) {
+      return misses_there(limit);
+    });
+  }
+
   std::size_t OptimizationResults::n_failed_at_the_end() const
   {
     std::size_t n = 0;
@@ -279,7 +286,7 @@ namespace retroforge
                  {"relations", relations},
                  {"parameters", parameters},
                  {"stop", in_words(stop)},
-                 {"finished", stop != SearchStop::running},
+                 {"finished", stop != SearchStop::running && !goes_on},
                  {"converged", has_converged()},
                  {"limits_kept", limits_are_kept()},
                  {"simulations", n_simulations},
@@ -309,6 +316,8 @@ namespace retroforge
         {"best", confirmation->best.failed() ? Json() : json_number(value(confirmation->best))},
         {"values_start", values_by_name(objectives, confirmation->start.values)},
         {"values", values_by_name(objectives, confirmation->best.values)},
+        {"limits_kept", !misses_there()},
+        {"not_corrected", not_corrected},
         {"failure", confirmation->start.failure + confirmation->best.failure}};
     write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   }

@@ -7,6 +7,7 @@
 
 #include <cstdio>
 #include <iostream>
+#include <utility>
 
 namespace retroforge
 {
@@ -40,16 +41,22 @@ namespace retroforge
       reporter_.print(search_.check());
     measure_noise();
     search();
-    for (unsigned int round = 0;; ++round)
+    confirm(problem_.resumes);
+    for (unsigned int n_corrections = 0; results_.misses_there(); ++n_corrections)
     {
-      results_.confirmation = confirm(problem_,
-                                      results_.start.mu,
-                                      results_.best.mu,
-                                      problem_.resumes || round > 0,
-                                      [&](const std::string &line) { reporter_.print_line(line); });
-      if (round == problem_.parameters().corrections || !correct_limits())
+      results_.not_corrected = why_not_corrected(n_corrections);
+      if (!results_.not_corrected.empty())
         break;
-      search();
+      const std::vector<Limit> before = problem_.criteria.limits;
+      correct_limits();
+      if (!search())
+      {
+        problem_.criteria.limits = before;
+        results_.not_corrected   = "a search with it corrected was cut off, " + in_words(search_.stop()) +
+                                 "; --resume with more goes on";
+        break;
+      }
+      confirm(true);
     }
     if (problem_.is_root())
     {
@@ -169,38 +176,58 @@ namespace retroforge
     return *best;
   }
 
-  void Optimize::search()
+  bool Optimize::search()
   {
-    results_.confirmation.reset();
-    results_.stop = Stop::running;
-    // A limit's optimum is the last design, not the least one within its tolerance.
+    results_.goes_on   = results_.confirmation.has_value();
     const bool settled = search_.run(results_.noise.objective);
-    results_.stop      = search_.stop();
-    results_.best      = settled ? search_.now() : best_so_far();
+    const bool is_cut  = search_.stop() == Stop::iterations || search_.stop() == Stop::simulations;
+    if (std::exchange(results_.goes_on, false) && is_cut)
+      return false;
+    results_.confirmation.reset();
+    results_.stop = search_.stop();
+    // A limit's optimum is the last design, not the least one within its tolerance.
+    results_.best = settled ? search_.now() : best_so_far();
     report_best();
     if (problem_.is_root())
       reporter_.write_results(); // the confirmation is the longest forging, and may be stopped
+    return true;
   }
 
-  bool Optimize::correct_limits()
+  void Optimize::confirm(const bool goes_on)
   {
-    if (!results_.has_converged() || !results_.limits_are_kept())
-      return false;
+    results_.confirmation = retroforge::confirm(
+      problem_, results_.start.mu, results_.best.mu, goes_on, [&](const std::string &line) {
+        reporter_.print_line(line);
+      });
+  }
+
+  std::string Optimize::why_not_corrected(const unsigned int n_corrections) const
+  {
+    if (!results_.has_converged())
+      return "it had not come to its end, " + in_words(results_.stop) + "; --resume with more goes on";
+    if (!results_.limits_are_kept())
+      return "it did not keep its limits itself";
+    if (n_corrections == problem_.parameters().corrections)
+      return "Optimisation/corrections is " + std::to_string(n_corrections);
+    return "";
+  }
+
+  void Optimize::correct_limits()
+  {
     std::string told;
     for (Limit &limit : problem_.criteria.limits)
       if (results_.misses_there(limit))
       {
         const unsigned int o = limit.objective;
-        limit.correction     = results_.confirmation->best.values[o] - results_.best.values[o];
+        // Its tolerance is kept for what the correction of another design differs by.
+        const double reserve = (limit.at_least ? -1. : 1.) * results_.limit_tolerance * limit.size;
+        limit.correction     = results_.confirmation->best.values[o] - results_.best.values[o] + reserve;
         char text[32];
         std::snprintf(text, sizeof text, " %+.4g ", limit.correction);
         told += (told.empty() ? "" : ", ") + results_.objectives[o] + text + results_.units[o];
       }
-    if (told.empty())
-      return false;
     reporter_.print_line("limits are not kept on the finer mesh; from here on they count what it adds: " +
                          told);
-    return true;
   }
 
   void Optimize::report_best()
@@ -225,6 +252,7 @@ namespace retroforge
     if (results_.stop == Stop::running)
       results_.best = best_so_far();
     results_.n_simulations = problem_.evaluator.n_asked();
+    results_.n_sweeps      = problem_.evaluator.n_swept();
     reporter_.add_row(search_.n_iterations());
   }
 } // namespace retroforge

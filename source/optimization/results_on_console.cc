@@ -12,6 +12,11 @@ namespace retroforge
 {
   namespace
   {
+    std::string after_number(const std::string &unit)
+    {
+      return unit.empty() || unit == "none" ? "" : " " + unit;
+    }
+
     void print_confidence(const OptimizationResults &results, std::ostream &out)
     {
       const Confidence &confidence = *results.confidence;
@@ -79,10 +84,13 @@ namespace retroforge
       if (const double missed = missed_by(i); missed > 0.)
       {
         const Limit      &limit = criteria.limits[i];
-        const std::string unit  = units[limit.objective].empty() ? "" : " " + units[limit.objective];
+        const std::string unit  = after_number(units[limit.objective]);
         out << std::setprecision(7) << "    " << objectives[limit.objective] << ": "
-            << limit.counted(best.values) << unit << ", " << (limit.at_least ? "at least " : "at most ")
-            << limit.bound << unit << ": " << std::setprecision(4) << missed << unit;
+            << best.values[limit.objective] << unit;
+        if (limit.correction != 0.)
+          out << std::showpos << ' ' << limit.correction << std::noshowpos << unit << " for the finer mesh";
+        out << ", " << (limit.at_least ? "at least " : "at most ") << limit.bound << unit << ": "
+            << std::setprecision(4) << missed << unit;
         if (limit.bound != 0.)
           out << std::setprecision(3) << " (" << 100. * missed / std::abs(limit.bound) << " %)";
         out << (limit.at_least ? " too little\n" : " too much\n");
@@ -115,13 +123,13 @@ namespace retroforge
     for (const Limit &limit : criteria.limits)
       if (limit.correction != 0.)
         out << "  " << objectives[limit.objective] << " counts with " << std::setprecision(4) << std::showpos
-            << limit.correction << std::noshowpos << (units[limit.objective].empty() ? "" : " ")
-            << units[limit.objective] << ", which a finer mesh added to it\n";
+            << limit.correction << std::noshowpos << after_number(units[limit.objective])
+            << ", which a finer mesh added to it\n";
     for (const Limit &limit : criteria.limits)
-      if (noise_of(limit) > limit_tolerance * limit.size)
+      if (noise_of(limit) > std::abs(limit.excess(best.values)) * limit.size)
         out << "  noise of " << objectives[limit.objective] << ": " << std::setprecision(3) << noise_of(limit)
-            << (units[limit.objective].empty() ? "" : " ") << units[limit.objective]
-            << "; whether it keeps its limit is known no better\n";
+            << after_number(units[limit.objective]) << "; the best design is nearer to the limit than that\n";
+    out << std::setprecision(7);
   }
 
   void OptimizationResults::print(std::ostream &out) const
@@ -172,17 +180,17 @@ namespace retroforge
     const auto accepted = std::find_if(rows.rbegin(), rows.rend(), [](const TrialRow &row) {
       return row.decision == TrialRow::Decision::accepted || row.decision == TrialRow::Decision::renewed;
     });
-    if (stop != SearchStop::running && accepted != rows.rend() && accepted->evaluation.mu != best.mu)
-      out << "  the search ended at another design, of " << std::setprecision(10)
-          << value(accepted->evaluation) << unit
+    if (stop != SearchStop::running && not_corrected.empty() && accepted != rows.rend() &&
+        accepted->evaluation.mu != best.mu)
+      out << "  the search ended at another design, of " << value(accepted->evaluation) << unit
           << (value(accepted->evaluation) < value(best) ? "; the one that keeps the limits best is shown\n"
                                                         : "; the least is shown\n");
     if (confidence)
       print_confidence(*this, out);
     if (confirmation)
     {
-      out << "\n  on a mesh of " << confirmation->n_nodes << " nodes, in " << confirmation->n_increments
-          << " increments: ";
+      out << std::setprecision(7) << "\n  on a mesh of " << confirmation->n_nodes << " nodes, in "
+          << confirmation->n_increments << " increments: ";
       if (confirmation->start.failed() || confirmation->best.failed())
         out << "failed: " << confirmation->start.failure + confirmation->best.failure << '\n';
       else
@@ -192,6 +200,8 @@ namespace retroforge
           out << "    " << objectives[limit.objective] << ' ' << confirmation->best.values[limit.objective]
               << ", " << (limit.at_least ? "at least " : "at most ") << limit.bound
               << (misses_there(limit) ? ": not kept there\n" : ": kept\n");
+      if (!not_corrected.empty())
+        out << "    the search did not go on for that: " << not_corrected << '\n';
     }
   }
 } // namespace retroforge

@@ -72,6 +72,9 @@ namespace retroforge
     std::vector<double>         by_moving_relation = {}; ///< objective per unit of each relation's bound
     std::optional<Confidence>   confidence         = {}; ///< confidence, where there are data
     std::optional<Confirmation> confirmation       = {};
+    /// Why the search did not go on for limits that the confirmation misses; empty where there are none.
+    std::string not_corrected = {};
+    bool        goes_on       = false; ///< a search with corrected limits is under way
     /// Told beside values of the best design's forging, as the true maximum beside a smooth one: of each
     /// objective of the case itself, in its unit unless their names say other.
     std::vector<std::map<std::string, double>> details = {};
@@ -90,8 +93,9 @@ namespace retroforge
     {
       return noise.values.empty() ? 0. : noise.values[limit.objective];
     }
-    /// Returns whether the best design, forged for the confirmation, misses a limit.
+    /// Returns whether the best design, forged for the confirmation, misses a limit, or any.
     bool misses_there(const Limit &limit) const;
+    bool misses_there() const;
     /// Returns the number of designs tried since the last accepted one, if all of them failed.
     std::size_t n_failed_at_the_end() const;
     /// Returns whether steps became too short because designs around the last one failed.

@@ -31,10 +31,13 @@ namespace retroforge
     void begin();
     void measure_noise();
     /// Goes on from the design accepted last, to the end of the search and what is told of it.
-    void search();
+    /// @return whether it came there: of one that is cut off after a confirmation nothing is taken
+    bool search();
+    void confirm(bool goes_on);
     /// Lets limits that the confirmation misses count what it added to their values, and tells so.
-    /// @return whether there are any that a further search may keep
-    bool correct_limits();
+    void correct_limits();
+    /// Returns why limits that the confirmation misses are not corrected. @param n_corrections  so far
+    std::string why_not_corrected(unsigned int n_corrections) const;
     /// Accepted, within the limits, and the least of those; the least beyond its limits where none is. Of
     /// those forged on the present mesh: values of another one differ by the scatter of meshes.
     Evaluation best_so_far() const;

@@ -278,7 +278,10 @@ def limits_that_do_not_press():
     at_start = found_in("whole")["objective"]["start"]
     found, printed = optimize("noisy", f"Optimisation/at most=barrel: {2 * at_start!r}", "Optimisation/iterations=1", "Optimisation/limit tolerance=1e-8")
     judge("the noise of a limit on the objective is that of the objective", found["limits"][0]["noise"] == found["objective"]["noise"] > 0, found["limits"])
-    judge("and is told", "noise of barrel: " in printed and "known no better" in printed, printed)
+    judge("and not told far from the limit", "noise of barrel: " not in printed, printed)
+    bound = found["trials"][0]["values"]["barrel"] + 0.5 * found["objective"]["noise"]
+    found, printed = optimize("close", f"Optimisation/at most=barrel: {bound!r}", "Optimisation/iterations=1", "Optimisation/first step=1e-6", "Optimisation/limit tolerance=1e-8")
+    judge("near it, it is", "noise of barrel: " in printed and "nearer to the limit" in printed, printed)
 
 
 def beset():
@@ -488,9 +491,16 @@ def corrected():
     bound = best - 0.5 * sign * abs(best - trials[0])
     settings = (f"Optimisation/{'at most' if sign > 0 else 'at least'}=energy: {bound!r}", "Optimisation/confirmation=0.7", "Optimisation/noise runs=0")
     first, printed = optimize("corrected", "Optimisation/corrections=0", *settings)
+    design = text_of("corrected", "designs", "best_design.prm")
     judge("missed on the finer mesh", sign * (first["confirmation"]["values"]["energy"] - bound) > 1e-3 * bound and "not kept there" in printed, first["confirmation"])
     judge("though it is kept", first["limits_kept"] and first["limits"][0]["correction"] == 0, first["limits"])
+    judge("and that the search does not go on", not first["confirmation"]["limits_kept"] and "Optimisation/corrections is 0" in printed, printed)
+    found, printed = optimize("corrected", "--resume", f"Optimisation/simulations={first['simulations']}", *settings)
+    judge("cut off, it leaves the design before", best_of(found) == best_of(first) and found["confirmation"]["values"] == first["confirmation"]["values"]
+          and found["limits"] == first["limits"] and "was cut off" in printed, [found["limits"], printed])
+    judge("in its parameters, too", text_of("corrected", "designs", "best_design.prm") == design, text_of("corrected", "designs", "best_design.prm"))
     found, printed = optimize("corrected", "--resume", *settings)
+    judge("kept on the finer mesh, says the result", found["confirmation"]["limits_kept"] and not found["confirmation"]["not_corrected"], found["confirmation"])
     limit, there = found["limits"][0], found["confirmation"]["values"]["energy"]
     judge("kept there", sign * (there - bound) < 1e-4 * bound and "not kept there" not in printed, [limit, found["confirmation"]])
     judge("by what it adds", abs(limit["best"] + limit["correction"] - bound) < 1e-3 * bound and sign * limit["correction"] > 0, limit)
