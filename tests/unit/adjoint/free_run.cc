@@ -161,7 +161,8 @@ namespace
                   is_same_one_by_one_ ? "yes" : "NO");
     }
 
-    /// @param vertex_steps  of the mini element smaller ones: middles of edges touch with small jumps
+    /// @param vertex_steps  of the mini element smaller ones: middles of edges touch with small jumps. At 3e-7 energies
+    /// round: by the kernels of the BLAS, differences are 1.5e-6 to 1.7e-4 beside the slope
     void check_all(const std::array<double, 2> &vertex_steps)
     {
       Direction direction{"offset", NodalVectors<double>(mesh_.n_nodes())};
@@ -296,14 +297,14 @@ int main(int argc, char **argv)
   std::printf("mini element\n");
   Bench mini(p, argc > 1);
   mini.describe();
-  mini.check_all({{3e-6, 3e-7}});
+  mini.check_all({{3e-6, 1e-6}});
   p.material.type        = "power";
   p.material.numbers     = {{"n", 0.4}, {"q0", 0.1}, {"beta", 0.}, {"m1", 0.}, {"T0", 900.}};
   p.material.temperature = "900";
   std::printf("mini element, hardening\n");
   Bench hardening(p, argc > 1);
   hardening.describe();
-  hardening.check_all({{3e-6, 3e-7}});
+  hardening.check_all({{3e-6, 1e-6}});
   p.discretization.choice.pair = ElementPair::taylor_hood;
   std::printf("P2-P1, hardening\n");
   Bench quadratic(p, argc > 1);
