@@ -145,12 +145,20 @@ namespace retroforge
 
   double CheckRow::best_replayed_error() const
   {
+    const auto error = [&](const double difference) {
+      return std::abs(difference - adjoint) /
+             std::max({std::abs(difference), std::abs(adjoint), least_difference, 1e-300});
+    };
     double best = std::numeric_limits<double>::max();
-    for (const auto &step : steps)
-      best =
-        std::min(best,
-                 std::abs(step.replayed_central - adjoint) /
-                   std::max({std::abs(step.replayed_central), std::abs(adjoint), least_difference, 1e-300}));
+    for (std::size_t i = 0; i < steps.size(); ++i)
+    {
+      best = std::min(best, error(steps[i].replayed_central));
+      if (i == 0 || steps[i].step == steps[i - 1].step)
+        continue;
+      const double ratio2 = std::pow(steps[i - 1].step / steps[i].step, 2);
+      best                = std::min(
+        best, error((ratio2 * steps[i].replayed_central - steps[i - 1].replayed_central) / (ratio2 - 1.)));
+    }
     return best;
   }
 

@@ -47,8 +47,9 @@ namespace retroforge
     /// Against the larger of the derivative and its magnitude: in a direction along which the derivative
     /// cancels, rounding does not.
     double tangent_error() const;
-    /// Smallest error of the replayed central differences, and the decades of step over which it stays below
-    /// the bar.
+    /// Smallest error of the replayed central differences, and of what two neighbouring steps extrapolate to,
+    /// without the error in h^2: where the derivative nearly cancels, no step is small enough for that and
+    /// large enough for rounding.
     double best_replayed_error() const;
     double best_free_error() const;
     /// What the differences that decide everything anew, and those that replay, have in common; jumps over the
