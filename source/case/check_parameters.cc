@@ -24,12 +24,14 @@ namespace retroforge
                       "Largest relative step of the Taylor test. Units: none.",
                       Double(1e-12, 1.));
     prm.add_parameter("taylor halvings", taylor_halvings, "Units: none.", Integer(2));
-    prm.add_parameter("replayed bar",
-                      replayed_bar,
-                      "Relative error that the best replayed central difference must reach: the forces of "
-                      "contact, penalties times "
-                      "small differences of speeds, are known to some 1e-10. Units: none.",
-                      Double(0.));
+    prm.add_parameter(
+      "replayed bar",
+      replayed_bar,
+      "Relative error that the best replayed central difference, or what two neighbouring steps "
+      "extrapolate to, must reach: the forces of "
+      "contact, penalties times "
+      "small differences of speeds, are known to some 1e-10. Units: none.",
+      Double(0.));
     prm.add_parameter(
       "tangent bar",
       tangent_bar,
