@@ -207,9 +207,8 @@ def write_cases(tests, folder):
             settings["Optimisation/uncertainties"] = ", ".join(f"{name}: {float(datum.deviation)!r}" for name, datum in data)
             settings["Optimisation/operations"] = ", ".join(f"{other.name}.prm" for other in tests[1:])
             settings["Optimisation/confirmation"] = 0
-            for name, default, better in (("first step", "1", "5"), ("largest step", "4", "20")):
-                if settings[f"Optimisation/{name}"] == default:
-                    settings[f"Optimisation/{name}"] = better
+            if settings["Optimisation/first step"] == "1":
+                settings["Optimisation/first step"] = "5"
         write_settings(folder / f"{test.name}.prm", settings)
     return folder / f"{tests[0].name}.prm"
 

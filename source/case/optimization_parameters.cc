@@ -52,11 +52,12 @@ namespace retroforge
                       "are relative to. Units: those of the parameters.");
     prm.add_parameter("first step",
                       first_step,
-                      "Largest length of the first step, in scales: no parameter changes by more than this "
-                      "times its scale. Units: none.",
+                      "Largest change of any parameter in the first step, in scales. Units: none.",
                       Double(1e-6, 1e6));
-    prm.add_parameter(
-      "largest step", largest_step, "Largest length of any step, in scales. Units: none.", Double(1e-6, 1e6));
+    prm.add_parameter("largest step",
+                      largest_step,
+                      "Largest change of any parameter in a step, in scales. Units: none.",
+                      Double(1e-6, 1e6));
     prm.add_parameter("iterations", iterations, "Steps that may be tried. Units: none.", Integer(1, 100000));
     prm.add_parameter("simulations",
                       simulations,

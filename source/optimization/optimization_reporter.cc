@@ -6,6 +6,7 @@
 #include <retroforge/geometry/stl_file.h>
 #include <retroforge/mesh/whole_part.h>
 #include <retroforge/optimization/design_text.h>
+#include <retroforge/optimization/local_model.h>
 #include <retroforge/optimization/optimization_reporter.h>
 #include <retroforge/output/console.h>
 #include <retroforge/output/mesh_files.h>

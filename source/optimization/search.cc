@@ -1,26 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/optimization/local_model.h>
 #include <retroforge/optimization/search.h>
+#include <retroforge/optimization/small_vectors.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <random>
 
 namespace retroforge
 {
   namespace
   {
-    double dot(const std::vector<double> &x, const std::vector<double> &y)
-    {
-      return std::inner_product(x.begin(), x.end(), y.begin(), 0.);
-    }
-
-    double length(const std::vector<double> &x)
-    {
-      return std::sqrt(dot(x, x));
-    }
-
     /// The part of x along orthonormal directions.
     std::vector<double> along(const std::vector<std::vector<double>> &directions,
                               const std::vector<double>              &x)
@@ -179,14 +170,13 @@ namespace retroforge
     problem.upper     = space_.scaled_upper();
     problem.relations = space_.scaled_relations();
     problem.value = [&](const std::vector<double> &x) { return merit_of(task_.evaluate(space_.values(x))); };
-    problem.gradient = [&](const std::vector<double> &x) {
+    problem.linearize = [&](const std::vector<double> &x) {
       x_   = x;
       now_ = task_.differentiate(space_.values(x));
-      return space_.pull_back(merit_.gradient(now_.values, now_.gradients));
+      return linearization();
     };
-    problem.known_hessian = [&](const std::vector<double> &v) { return known_hessian(v); };
-    problem.known_is_all  = !criteria_.data.empty();
-    problem.decided       = [&](const std::vector<double> &x, const bool accepted) {
+    problem.learns  = criteria_.data.empty();
+    problem.decided = [&](const std::vector<double> &x, const bool accepted) {
       task_.decided(task_.evaluate(space_.values(x)), accepted);
     };
     return problem;
@@ -239,6 +229,7 @@ namespace retroforge
     const bool             presses       = !pressing().empty();
     const double           enough        = presses ? part * begun_with_ : 0.;
     constexpr double       far_off       = 0.01; // of the limit
+    constexpr double       seen_part     = 0.1;  // of the noise
     const bool             is_long =
       iterations_ - begun_at_ >= longest_round && criteria_.largest_excess(now_.values) > far_off;
     const bool may_go_on =
@@ -249,7 +240,9 @@ namespace retroforge
     else if (is_long ||
              state.gradient <= std::max(enough, parameters_.gradient_tolerance * parameters_.first_step))
       stop_ = SearchStop::gradient;
-    else if (state.gradient * state.radius <= noise_)
+    else if (state.gradient * state.radius <= noise_ ||
+             (state.promised <= seen_part * noise_ &&
+              criteria_.largest_excess(now_.values) <= parameters_.limit_tolerance))
       stop_ = SearchStop::noise;
     else if (state.radius < shortest * parameters_.first_step)
       stop_ = SearchStop::step;
@@ -260,22 +253,33 @@ namespace retroforge
     return stop_ == SearchStop::running;
   }
 
-  std::vector<double> Search::known_hessian(const std::vector<double> &v) const
+  Linearization Search::linearization() const
   {
-    std::vector<double> product(v.size(), 0.);
-    const auto          add = [&](const unsigned int objective, const double factor) {
-      const std::vector<double> row = space_.pull_back(now_.gradients[objective]);
-      double                    sum = 0.;
-      for (std::size_t j = 0; j < v.size(); ++j)
-        sum += row[j] * v[j];
-      for (std::size_t j = 0; j < v.size(); ++j)
-        product[j] += factor * sum * row[j];
+    const auto scaled = [&](const unsigned int objective, const double factor) {
+      std::vector<double> row = space_.pull_back(now_.gradients[objective]);
+      for (double &entry : row)
+        entry *= factor;
+      return row;
     };
+    Linearization known;
+    known.gradient.assign(x_.size(), 0.);
+    for (unsigned int o = 0; o < now_.gradients.size(); ++o)
+      if (criteria_.objective.weights[o] != 0.)
+        add(
+          criteria_.objective.weights[o] / merit_.size, space_.pull_back(now_.gradients[o]), known.gradient);
     for (const Datum &datum : criteria_.data)
-      add(datum.objective, 1. / (datum.deviation * datum.deviation * merit_.size));
-    for (const unsigned int i : pressing())
-      add(criteria_.limits[i].objective, merit_.penalties[i] * std::pow(criteria_.limits[i].slope(), 2));
-    return product;
+      known.terms.push_back(
+        {datum.misfit(now_.values), scaled(datum.objective, 1. / datum.deviation), 1. / merit_.size});
+    for (unsigned int i = 0; i < criteria_.limits.size(); ++i)
+    {
+      const Limit &limit = criteria_.limits[i];
+      known.terms.push_back({limit.excess(now_.values),
+                             scaled(limit.objective, limit.slope()),
+                             merit_.penalties[i],
+                             true,
+                             merit_.multipliers[i]});
+    }
+    return known;
   }
 
   std::vector<unsigned int> Search::pressing() const
@@ -321,8 +325,9 @@ namespace retroforge
     {
       const Limit &limit  = criteria_.limits[i];
       const double excess = limit.excess(now_.values);
+      // What a limit that presses still leaves to be gained may be less than the noise.
       if (excess > parameters_.limit_tolerance ||
-          (multipliers[i] > 0. && excess < -parameters_.limit_tolerance))
+          (excess < -parameters_.limit_tolerance && multipliers[i] * -excess > noise_))
         return false;
       for (std::size_t j = 0; j < gradient.size(); ++j)
         gradient[j] += multipliers[i] * limit.slope() * now_.gradients[limit.objective][j];

@@ -25,7 +25,7 @@ namespace retroforge
     std::vector<std::string> relations; ///< linear, of design parameters
     Values                   scales;    ///< changes of design parameters that matter alike
     double                   first_step         = 1.;
-    double                   largest_step       = 4.;
+    double                   largest_step       = 20.;
     unsigned int             iterations         = 30;
     unsigned int             simulations        = 100;
     double                   gradient_tolerance = 1e-3;

@@ -2,48 +2,11 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/optimization/linear_relation.h>
-
-#include <functional>
-#include <memory>
-#include <string>
-#include <vector>
+#include <retroforge/optimization/bounded_problem.h>
+#include <retroforge/optimization/secant_hessian.h>
 
 namespace retroforge
 {
-  /// A function of a few scaled variables between bounds, with linear relations, known by its values and its
-  /// gradients.
-  struct BoundedProblem
-  {
-    using Vector = std::vector<double>;
-
-    Vector start, lower, upper; ///< bounds may be infinite
-    /// lower <= weights . x <= upper,  with weights of length 1; points that are tried keep them.
-    std::vector<LinearRelation> relations;
-
-    /// +infinity where there is none: never NaN, and nothing is thrown.
-    std::function<double(const Vector &x)> value;
-    /// At a point whose value was finite.
-    std::function<Vector(const Vector &x)> gradient;
-    /// Returns the known part of the Hessian times v, at the point of the last gradient; null: nothing is
-    /// known.
-    std::function<Vector(const Vector &v)> known_hessian;
-    bool                                   known_is_all = false; ///< else the rest is learned
-    /// A point that was tried becomes the next one, or is refused: called after its value.
-    std::function<void(const Vector &x, bool accepted)> decided;
-  };
-
-  /// A derivative along a direction, and its central difference.
-  struct DifferenceCheck
-  {
-    double step, derivative, difference, error; ///< error: absolute, of the last two
-  };
-
-  /// At the start of a problem, by ROL's check of objectives.
-  std::vector<DifferenceCheck> check_derivative(const BoundedProblem         &problem,
-                                                const BoundedProblem::Vector &direction,
-                                                const std::vector<double>    &steps);
-
   /// State of a minimisation.
   struct MinimizerState
   {
@@ -51,6 +14,7 @@ namespace retroforge
     double       value     = 0.;
     double       gradient  = 0.; ///< length of  P(x - g) - x,  with P onto bounds and relations
     double       radius    = 0.; ///< radius of the trust region
+    double       promised  = 0.; ///< by the model, of the next step
   };
 
   struct MinimizerSettings
@@ -63,21 +27,18 @@ namespace retroforge
     std::function<bool(const MinimizerState &)> go_on;
   };
 
-  /// Trust region by Lin and Moré, from ROL of Trilinos: each iteration takes one value, and each that is
-  /// accepted one gradient. A trust region refuses a point of infinite value, and goes on with a quarter of
-  /// the step. What of the Hessian is not known is learned from gradients, by limited-memory BFGS of ten
-  /// pairs, and kept from one minimisation to the next: functions may differ by their known parts.
+  /// A trust region whose model keeps terms as they are: the smooth part's gradient, what was learned of its
+  /// Hessian, and each term of its linearised value. So a step knows where limits begin to press before
+  /// it is tried. The region is a box. Each iteration takes one value, and each that is accepted one
+  /// linearisation; a point of infinite value is refused. What is learned is kept from one minimisation to
+  /// the next: functions may differ by their terms. @cite Conn, Gould and Toint 2000, sections 6.1 and 11.4
   class Minimizer
   {
   public:
-    Minimizer();
-    ~Minimizer();
-
     /// @return the last point that was accepted
     BoundedProblem::Vector minimize(const BoundedProblem &problem, const MinimizerSettings &settings);
 
   private:
-    struct Learned;
-    const std::unique_ptr<Learned> learned_;
+    SecantHessian learned_;
   };
 } // namespace retroforge

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
+#include <retroforge/optimization/local_model.h>
 #include <retroforge/optimization/optimization_problem.h>
 #include <retroforge/optimization/optimization_results.h>
 

@@ -4,6 +4,7 @@
 
 #include <retroforge/optimization/design_space.h>
 #include <retroforge/optimization/journal.h>
+#include <retroforge/optimization/local_model.h>
 #include <retroforge/optimization/merit.h>
 #include <retroforge/optimization/minimize.h>
 
@@ -96,9 +97,8 @@ namespace retroforge
     void minimize_merit();
     void minimize_on_one_mesh();
     bool go_on(const MinimizerState &state);
-    /// J^T J v: of the misfit of data, its Hessian where they agree with the forging; of the penalty of
-    /// limits, what does not come from their curvature.
-    std::vector<double> known_hessian(const std::vector<double> &v) const;
+    /// The merit at the present design, over scaled variables: data and limits are its terms.
+    Linearization linearization() const;
     /// Limits whose penalty is felt at the present design.
     std::vector<unsigned int> pressing() const;
     /// Multipliers that fit the gradients at the present design.

@@ -3,8 +3,9 @@
 
 // The minimizer on functions whose minima are known: Rosenbrock's valley, free and with a bound that holds
 // its minimum back; one that has no value in a part of the plane, which must be walked around; one that is
-// rough, where steps within the noise are taken and the search ends when asked; and one whose start is its
-// minimum.
+// rough, where steps within the noise are taken and the search ends when asked; one whose start is its
+// minimum; one of squares, whose Hessian is known; one that bends downwards; and one with a limit's kink on the way,
+// which the model must know before it is passed.
 
 #include <retroforge/optimization/minimize.h>
 
@@ -53,9 +54,9 @@ namespace
         ++values;
         return last = value(x);
       };
-      problem.gradient = [this](const Vector &x) {
+      problem.linearize = [this](const Vector &x) {
         ++gradients;
-        return rosenbrock_gradient(x);
+        return linearize(x);
       };
       problem.decided = [this](const Vector &x, const bool accepted) {
         refused += accepted ? 0 : 1;
@@ -64,7 +65,10 @@ namespace
     }
     Counted(const Counted &) = delete;
 
-    std::function<double(const Vector &)> value = rosenbrock;
+    std::function<double(const Vector &)>        value     = rosenbrock;
+    std::function<Linearization(const Vector &)> linearize = [](const Vector &x) {
+      return Linearization{rosenbrock_gradient(x), {}};
+    };
   };
 
   MinimizerSettings until(const double gradient, const unsigned int iterations)
@@ -149,23 +153,44 @@ int main()
   }
   {
     // Gauss and Newton's Hessian of its two squares: all that is known, and all but what is learned.
-    for (const bool is_all : {true, false})
+    for (const bool learns : {false, true})
     {
       Counted counted({-1., 1.}, {-infinity, -infinity}, {infinity, infinity});
-      Vector  at;
-      counted.problem.gradient = [&](const Vector &x) {
-        ++counted.gradients;
-        at = x;
-        return rosenbrock_gradient(x);
+      counted.linearize = [&](const Vector &x) {
+        return Linearization{{0., 0.},
+                             {{x[1] - x[0] * x[0], {-2. * x[0], 1.}, 20.}, {1. - x[0], {-1., 0.}, 2.}}};
       };
-      counted.problem.known_hessian = [&](const Vector &v) {
-        const double first = -2. * at[0] * v[0] + v[1];
-        return Vector{20. * first * -2. * at[0] + 2. * v[0], 20. * first};
-      };
-      counted.problem.known_is_all = is_all;
-      const Vector x               = Minimizer().minimize(counted.problem, until(1e-7, 200));
-      report(is_all ? "by squares" : "by squares and what they leave", x, {1., 1.}, counted);
+      counted.problem.learns = learns;
+      const Vector x         = Minimizer().minimize(counted.problem, until(1e-7, 200));
+      report(learns ? "by squares and what they leave" : "by squares", x, {1., 1.}, counted);
       std::cout << "in less than 30 values: " << answer(counted.values < 30) << "\n";
     }
+  }
+  {
+    // A saddle: what bends downwards is followed to its bound by as long steps as there may be.
+    Counted counted({1., 1.}, {0., -infinity}, {50., infinity});
+    counted.value     = [](const Vector &x) { return -x[0] * x[0] + 0.5 * x[0] * x[1] + x[1] * x[1]; };
+    counted.linearize = [](const Vector &x) {
+      return Linearization{{-2. * x[0] + 0.5 * x[1], 0.5 * x[0] + 2. * x[1]}, {}};
+    };
+    const Vector x = Minimizer().minimize(counted.problem, until(1e-7, 200));
+    report("a saddle", x, {50., -12.5}, counted);
+    std::cout << "in less than 20 values: " << answer(counted.values < 20) << "\n";
+  }
+  {
+    // (a - 4)^2 + (b - 1)^2, and a <= 1 by a penalty that is 1000 times as stiff, which the start does not feel.
+    Counted    counted({-3., 0.}, {-infinity, -infinity}, {infinity, infinity});
+    const auto limit = [](const double a) { return PenaltyTerm{a - 1., {1., 0.}, 2000., true, 1.}; };
+    counted.value    = [&](const Vector &x) {
+      return std::pow(x[0] - 4., 2) + std::pow(x[1] - 1., 2) + limit(x[0]).value(x[0] - 1.);
+    };
+    counted.linearize = [&](const Vector &x) {
+      return Linearization{{2. * (x[0] - 4.), 2. * (x[1] - 1.)}, {limit(x[0])}};
+    };
+    const Vector x = Minimizer().minimize(counted.problem, until(1e-7, 200));
+    // 2 (a - 4) + 1 + 2000 (a - 1) = 0.
+    report("a kink", x, {2007. / 2002., 1.}, counted);
+    std::cout << "in at most 10 values, none refused: "
+              << answer(counted.values <= 10 && counted.refused == 0) << "\n";
   }
 }

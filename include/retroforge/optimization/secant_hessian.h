@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#pragma once
+
+#include <deal.II/lac/full_matrix.h>
+
+#include <vector>
+
+namespace retroforge
+{
+  /// A Hessian that is learned from changes of the gradient: after each step the nearest symmetric matrix, by
+  /// Frobenius' norm, that explains the last one (Powell's symmetric Broyden update). It may bend
+  /// downwards, and noise in a gradient changes it by no more than the noise over the step; BFGS,
+  /// which must bend upwards, takes both for walls. @cite Dennis and Schnabel 1983, section 9.1
+  class SecantHessian
+  {
+  public:
+    /// Before anything is learned it is one; the first step scales it, where it bends upwards.
+    std::vector<double> times(const std::vector<double> &v) const;
+
+    /// @param change  of the gradient over the step
+    /// @param noise   of the function: steps over which it bends by less teach nothing
+    void learn(const std::vector<double> &step, const std::vector<double> &change, double noise);
+
+  private:
+    dealii::FullMatrix<double> matrix_; ///< empty: one
+  };
+} // namespace retroforge

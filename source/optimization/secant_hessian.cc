@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/optimization/secant_hessian.h>
+#include <retroforge/optimization/small_vectors.h>
+
+#include <deal.II/base/exceptions.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace retroforge
+{
+  std::vector<double> SecantHessian::times(const std::vector<double> &v) const
+  {
+    if (matrix_.empty())
+      return v;
+    AssertDimension(v.size(), matrix_.n());
+    std::vector<double> product(v.size(), 0.);
+    for (unsigned int i = 0; i < v.size(); ++i)
+      for (unsigned int j = 0; j < v.size(); ++j)
+        product[i] += matrix_(i, j) * v[j];
+    return product;
+  }
+
+  void
+  SecantHessian::learn(const std::vector<double> &step, const std::vector<double> &change, const double noise)
+  {
+    AssertDimension(step.size(), change.size());
+    const double ss = dot(step, step), sy = dot(step, change);
+    if (std::max(std::abs(sy), std::abs(dot(step, times(step)))) <= noise)
+      return;
+    const auto n = static_cast<unsigned int>(step.size());
+    if (matrix_.empty())
+    {
+      matrix_.reinit(n, n);
+      for (unsigned int i = 0; i < n; ++i)
+        matrix_(i, i) = sy > 0. ? sy / ss : 1.;
+    }
+    const std::vector<double> missing = difference(change, times(step));
+    const double              along   = dot(missing, step) / ss;
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        matrix_(i, j) += (missing[i] * step[j] + step[i] * missing[j] - along * step[i] * step[j]) / ss;
+  }
+} // namespace retroforge
