@@ -69,10 +69,12 @@ namespace retroforge
                       "The optimum is reached when the gradient, without what bounds hold, is this part of "
                       "that at the start. Units: none.",
                       Double(0., 1.));
-    prm.add_parameter("limit tolerance",
-                      limit_tolerance,
-                      "Part of a limit by which it may be exceeded at the optimum. Units: none.",
-                      Double(1e-8, 0.1));
+    prm.add_parameter(
+      "limit tolerance",
+      limit_tolerance,
+      "Part of a limit by which it may be exceeded at the optimum: 1e-4 of 1185 C is 0.12 K. Of a limit "
+      "of 0, part of the value at the start. Units: none.",
+      Double(1e-8, 0.1));
     prm.add_parameter("noise runs",
                       noise_runs,
                       "Forgings around the start, 0.001 scales away, that measure how rough the objective "

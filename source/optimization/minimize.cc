@@ -51,7 +51,7 @@ namespace retroforge
   Vector Minimizer::minimize(const BoundedProblem &problem, const MinimizerSettings &settings)
   {
     constexpr double least_kept = 0.05, poor = 0.25, good = 0.75; // parts of what the model promised
-    constexpr double refused_by = 0.25, poor_by = 0.5, good_by = 2.5;
+    constexpr double refused_by = 0.25, failed_by = 0.5, poor_by = 0.5, good_by = 2.5;
     constexpr double at_edge = 0.8; // of the radius
 
     Vector              x      = problem.start;
@@ -105,8 +105,7 @@ namespace retroforge
       {
         if (std::isinf(value_there))
           fences.add(x, tried);
-        else
-          radius = refused_by * reach;
+        radius = (std::isinf(value_there) ? failed_by : refused_by) * reach;
         continue;
       }
       if (kept < poor)

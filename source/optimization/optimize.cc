@@ -85,8 +85,12 @@ namespace retroforge
       if (!problem_.is_root())
         return;
       std::printf("  limits exceeded by %.2g at most; multipliers renewed:", excess);
-      for (const double multiplier : search_.multipliers())
-        std::printf(" %.4g", multiplier);
+      const std::vector<double> multipliers = search_.multipliers();
+      for (std::size_t i = 0; i < multipliers.size(); ++i)
+        std::printf("%s %s %.4g",
+                    i == 0 ? "" : ",",
+                    results_.objectives[problem_.criteria.limits[i].objective].c_str(),
+                    multipliers[i]);
       std::printf("\n");
     };
     return task;

@@ -10,8 +10,8 @@ import unittest
 CONTRIB = pathlib.Path(__file__).resolve().parents[2] / "contrib"
 
 
-def call(script, *arguments):
-    return subprocess.run([sys.executable, CONTRIB / script, *arguments], capture_output=True, text=True, check=False)
+def call(script, *arguments, environment=None):
+    return subprocess.run([sys.executable, CONTRIB / script, *arguments], capture_output=True, text=True, check=False, env=environment)
 
 
 class ScratchTest(unittest.TestCase):

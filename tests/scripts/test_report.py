@@ -6,6 +6,7 @@ By hand: the boundary of n^3 boxes of six tetrahedra has 12 n^2 triangles, and i
 surface is the nodal gradient p x area vector; per area, its normal part is p, at edges and corners too.
 """
 import json
+import os
 import sys
 import unittest
 
@@ -391,6 +392,14 @@ class Report(ScratchTest):
         oblique, _ = sections.cuts([0, -3, -4], [0, 0, 0])
         self.assertAlmostEqual(oblique.normal @ [0, -3, -4], 0, 12)
         np.testing.assert_allclose(oblique.axes @ oblique.axes.T, np.eye(2), atol=1e-12)
+
+    def test_a_python_without_packages(self):
+        synthetic_run.write(self.root / "run", n=2, increments=2)
+        (self.root / "matplotlib.py").write_text("raise ModuleNotFoundError(\"No module named 'matplotlib'\", name='matplotlib')\n", encoding="utf-8")
+        result = call("report", "--no-vtk", self.root / "run", environment={**os.environ, "PYTHONPATH": str(self.root)})
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("has no matplotlib", result.stderr)
+        self.assertNotIn("Traceback", result.stderr)
 
     def test_bad_input(self):
         self.assertIn("neither summary.json nor history.csv", call("report", "--no-vtk", self.root).stderr)
