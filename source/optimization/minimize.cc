@@ -97,7 +97,7 @@ namespace retroforge
       }
       const double value_there = problem.value(tried);
       const double noise =
-        std::max(settings.noise, 100. * std::numeric_limits<double>::epsilon() * std::abs(value));
+        std::max(known.noise, 100. * std::numeric_limits<double>::epsilon() * std::abs(value));
       const double kept     = (value - value_there + noise) / (promised + noise);
       const bool   accepted = std::isfinite(value_there) && kept > least_kept;
       problem.decided(tried, accepted);
@@ -114,7 +114,7 @@ namespace retroforge
         radius = std::min(good_by * radius, settings.largest_radius);
       const Linearization before = std::exchange(known, problem.linearize(tried));
       if (problem.learns)
-        learned_.learn(step, change_of_slopes(before, known), settings.noise);
+        learned_.learn(step, change_of_slopes(before, known), before.noise);
       x     = tried;
       value = value_there;
       fences.loosen(x);

@@ -116,9 +116,10 @@ namespace retroforge
     return check_derivative(asked, direction, steps);
   }
 
-  bool Search::run(const double noise)
+  bool Search::run(const Noise &noise)
   {
-    noise_ = noise / merit_.size;
+    noise_           = noise.objective / merit_.size;
+    noise_of_values_ = noise.values;
     if (criteria_.limits.empty())
     {
       minimize_merit();
@@ -207,9 +208,9 @@ namespace retroforge
     begun_with_ = slope;
     begun_at_   = iterations_;
     n_designs_  = task_.n_evaluated();
-    minimizer_.minimize(
-      problem(),
-      {radius, parameters_.largest_step, noise_, [&](const MinimizerState &state) { return go_on(state); }});
+    minimizer_.minimize(problem(), {radius, parameters_.largest_step, [&](const MinimizerState &state) {
+                                      return go_on(state);
+                                    }});
   }
 
   bool Search::go_on(const MinimizerState &state)
@@ -262,6 +263,7 @@ namespace retroforge
       return row;
     };
     Linearization known;
+    known.noise = noise_of_merit();
     known.gradient.assign(x_.size(), 0.);
     for (unsigned int o = 0; o < now_.gradients.size(); ++o)
       if (criteria_.objective.weights[o] != 0.)
@@ -280,6 +282,20 @@ namespace retroforge
                              merit_.multipliers[i]});
     }
     return known;
+  }
+
+  double Search::noise_of_merit() const
+  {
+    double squares = noise_ * noise_;
+    for (std::size_t i = 0; i < criteria_.limits.size() && !noise_of_values_.empty(); ++i)
+    {
+      const Limit &limit = criteria_.limits[i];
+      const double c     = limit.excess(now_.values);
+      const double more  = noise_of_values_[limit.objective] / limit.size;
+      PenaltyTerm  term{c, {}, merit_.penalties[i], true, merit_.multipliers[i]};
+      squares += std::pow(term.value(c + more) - term.value(c), 2);
+    }
+    return std::sqrt(squares);
   }
 
   std::vector<unsigned int> Search::pressing() const

@@ -37,9 +37,13 @@ namespace retroforge
         matrix_(i, i) = sy > 0. ? sy / ss : 1.;
     }
     const std::vector<double> missing = difference(change, times(step));
-    const double              along   = dot(missing, step) / ss;
+    const double              along   = dot(missing, step);
+    constexpr double          least   = 0.2; // cosine: noise must not grow without bound
+    const bool                rank_1  = std::abs(along) > least * length(missing) * std::sqrt(ss);
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int j = 0; j < n; ++j)
-        matrix_(i, j) += (missing[i] * step[j] + step[i] * missing[j] - along * step[i] * step[j]) / ss;
+        matrix_(i, j) +=
+          rank_1 ? missing[i] * missing[j] / along
+                 : (missing[i] * step[j] + step[i] * missing[j] - along * step[i] * step[j] / ss) / ss;
   }
 } // namespace retroforge

@@ -29,6 +29,7 @@ namespace retroforge
   {
     std::vector<double>      gradient; ///< of the smooth one
     std::vector<PenaltyTerm> terms;
+    double                   noise = 0.; ///< of the value
 
     /// Returns the gradient of both together.
     std::vector<double> whole_gradient() const;

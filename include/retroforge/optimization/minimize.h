@@ -21,8 +21,6 @@ namespace retroforge
   {
     double first_radius   = 1.;
     double largest_radius = 4.;
-    /// Noise of the values, which is added to both reductions before they are compared.
-    double noise = 0.;
     /// Asked before each iteration; the minimisation ends where it says false.
     std::function<bool(const MinimizerState &)> go_on;
   };
@@ -30,7 +28,7 @@ namespace retroforge
   /// A trust region whose model keeps terms as they are: the smooth part's gradient, what was learned of its
   /// Hessian, and each term of its linearised value. So a step knows where limits begin to press before
   /// it is tried. The region is a box. Each iteration takes one value, and each that is accepted one
-  /// linearisation; a point of infinite value is refused. What is learned is kept from one minimisation to
+  /// linearisation, whose noise is added to both reductions before they are compared; a point of infinite value is refused. What is learned is kept from one minimisation to
   /// the next: functions may differ by their terms. @cite Conn, Gould and Toint 2000, sections 6.1 and 11.4
   class Minimizer
   {

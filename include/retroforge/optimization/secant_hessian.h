@@ -8,10 +8,11 @@
 
 namespace retroforge
 {
-  /// A Hessian that is learned from changes of the gradient: after each step the nearest symmetric matrix, by
-  /// Frobenius' norm, that explains the last one (Powell's symmetric Broyden update). It may bend
-  /// downwards, and noise in a gradient changes it by no more than the noise over the step; BFGS,
-  /// which must bend upwards, takes both for walls. @cite Dennis and Schnabel 1983, section 9.1
+  /// A Hessian that is learned from changes of the gradient: after each step the symmetric matrix of rank one is
+  /// added that explains the last one; or, where that would be large, as what is missing is nearly across
+  /// the step, the least matrix by Frobenius' norm (Powell's symmetric Broyden update). It may bend downwards, and an error
+  /// of a gradient changes it by no more than five times the error over the step; BFGS, which must bend upwards, takes both for
+  /// walls. @cite Nocedal and Wright 2006, section 6.2; Dennis and Schnabel 1983, section 9.1
   class SecantHessian
   {
   public:

@@ -120,9 +120,8 @@ int main()
     counted.value = [](const Vector &x) {
       return rosenbrock(x) + noise * std::sin(1e5 * x[0]) * std::cos(1e5 * x[1]);
     };
-    MinimizerSettings settings = until(1e-3, 200);
-    settings.noise             = 2. * noise;
-    const Vector x             = Minimizer().minimize(counted.problem, settings);
+    counted.linearize = [](const Vector &x) { return Linearization{rosenbrock_gradient(x), {}, 2. * noise}; };
+    const Vector x    = Minimizer().minimize(counted.problem, until(1e-3, 200));
     std::cout << "rough: within the noise of the minimum: " << answer(rosenbrock(x) < noise)
               << "; in less than 60 values: " << answer(counted.values < 60) << "\n";
   }

@@ -29,7 +29,8 @@ namespace
   struct Functions
   {
     double noise = 0., fails_above = INFINITY; ///< of f; no values where a + b is larger
-    double by_mesh = 0.;                       ///< added to f
+    double by_mesh           = 0.;             ///< added to f
+    double noise_of_gradient = 0.;             ///< of f's
 
     Evaluation operator()(const Vector &mu, const bool with_gradients) const
     {
@@ -45,7 +46,8 @@ namespace
       evaluation.values  = {
          std::pow(a - 1., 2) + 2. * std::pow(b - 2., 2) + rough + by_mesh, a * a + b * b, 1000. + a};
       if (with_gradients)
-        evaluation.gradients = {{2. * (a - 1.), 4. * (b - 2.)}, {2. * a, 2. * b}, {1., 0.}};
+        evaluation.gradients = {
+          {2. * (a - 1.) + noise_of_gradient * std::cos(1e7 * b), 4. * (b - 2.)}, {2. * a, 2. * b}, {1., 0.}};
       return evaluation;
     }
   };
@@ -80,7 +82,7 @@ namespace
     void run(const Vector &start)
     {
       with_search(start, [&](Search &search) {
-        settled     = search.run(functions.noise);
+        settled     = search.run({functions.noise, {}});
         end         = search.now();
         multipliers = search.multipliers();
         stop        = search.stop();
@@ -274,7 +276,8 @@ int main()
   }
   {
     Problem problem;
-    problem.functions.noise = 1e-3;
+    problem.functions.noise             = 1e-3;
+    problem.functions.noise_of_gradient = 0.03;
     problem.run({0.2, 0.3});
     std::cout << "noise: ended for it " << answer(problem.stop == SearchStop::noise) << ", within some of it "
               << answer(problem.end.values[0] < 10. * 1e-3) << "\n";
