@@ -208,6 +208,7 @@ namespace retroforge
     begun_with_ = slope;
     begun_at_   = iterations_;
     n_designs_  = task_.n_evaluated();
+    n_repeated_ = 0;
     minimizer_.minimize(problem(), {radius, parameters_.largest_step, [&](const MinimizerState &state) {
                                       return go_on(state);
                                     }});
@@ -218,8 +219,9 @@ namespace retroforge
     radius_ = state.radius;
     // Designs that were tried before cost nothing, as all but the first of those that shorter and shorter
     // steps ask for again.
-    if (task_.n_evaluated() != n_designs_)
-      ++iterations_;
+    const bool is_new = task_.n_evaluated() != n_designs_;
+    iterations_ += is_new ? 1 : 0;
+    n_repeated_               = is_new ? 0 : n_repeated_ + 1;
     n_designs_                = task_.n_evaluated();
     constexpr double shortest = 1e-5;
     // While a limit presses, multipliers are renewed as soon as most of what the last ones changed is done;
@@ -231,6 +233,8 @@ namespace retroforge
     const double           enough        = presses ? part * begun_with_ : 0.;
     constexpr double       far_off       = 0.01; // of the limit
     constexpr double       seen_part     = 0.1;  // of the noise
+    // Where noise hides all, from one corner between bounds to another and back.
+    constexpr unsigned int most_repeated = 50;
     const bool             is_long =
       iterations_ - begun_at_ >= longest_round && criteria_.largest_excess(now_.values) > far_off;
     const bool may_go_on =
@@ -241,7 +245,7 @@ namespace retroforge
     else if (is_long ||
              state.gradient <= std::max(enough, parameters_.gradient_tolerance * parameters_.first_step))
       stop_ = SearchStop::gradient;
-    else if (state.gradient * state.radius <= noise_ ||
+    else if (n_repeated_ > most_repeated || state.gradient * state.radius <= noise_ ||
              (state.promised <= seen_part * noise_ &&
               criteria_.largest_excess(now_.values) <= parameters_.limit_tolerance))
       stop_ = SearchStop::noise;

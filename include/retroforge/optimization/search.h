@@ -124,6 +124,7 @@ namespace retroforge
     unsigned int           iterations_ = 0;  ///< designs tried, without those known before
     unsigned int           begun_at_   = 0;  ///< how many there were then
     unsigned int           n_designs_  = 0;  ///< evaluated, as of the last iteration
+    unsigned int           n_repeated_ = 0;  ///< iterations in a row whose design was known before
     SearchStop             stop_       = SearchStop::running;
   };
 } // namespace retroforge

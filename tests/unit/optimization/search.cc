@@ -283,6 +283,20 @@ int main()
               << answer(problem.end.values[0] < 10. * 1e-3) << "\n";
   }
   {
+    // A noise of more than all that the objective changes by between the bounds, where it is the same: to and fro.
+    Problem problem;
+    problem.varied            = {"a"};
+    problem.parameters.scales = {{"a", 1.}};
+    problem.parameters.lower  = {{"a", 0.5}};
+    problem.parameters.upper  = {{"a", 1.5}};
+    problem.with_search({0.5, 2.}, [&](Search &search) {
+      search.run({2., {}});
+      problem.stop = search.stop();
+    });
+    std::cout << "nothing but noise: ends " << answer(problem.stop == SearchStop::noise)
+              << ", after few designs " << answer(problem.evaluated.size() <= 5) << "\n";
+  }
+  {
     // Each mesh adds something of its own to the values: nothing of that is taken for a step's.
     Problem problem;
     problem.mesh_reach = 0.7;
