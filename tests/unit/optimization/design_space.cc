@@ -114,7 +114,7 @@ int main()
   });
   refuse("start outside", [](auto &o) { o.lower.emplace("billet/radius", 21.); });
   refuse("scale", [](auto &o) { o.scales.emplace("billet/radius", -1.); });
-  refuse("first step", [](auto &o) { o.first_step = 5.; });
+  refuse("first step", [](auto &o) { o.first_step = 5., o.largest_step = 4.; });
   refuse("a relation without comparison",
          [](OptimizationParameters &o) { o.relations = {"billet/radius + 1"}; });
   refuse("a misspelt name in a relation",
