@@ -34,16 +34,19 @@ namespace retroforge
     {
       matrix_.reinit(n, n);
       for (unsigned int i = 0; i < n; ++i)
-        matrix_(i, i) = sy > 0. ? sy / ss : 1.;
+        matrix_(i, i) = sy > 0. ? dot(change, change) / sy : 1.;
     }
-    const std::vector<double> missing = difference(change, times(step));
-    const double              along   = dot(missing, step);
-    constexpr double          least   = 0.2; // cosine: noise must not grow without bound
-    const bool                rank_1  = std::abs(along) > least * length(missing) * std::sqrt(ss);
+    const std::vector<double> bent = times(step), missing = difference(change, bent);
+    const double              sbs = dot(step, bent), along = dot(missing, step);
+    constexpr double          least  = 0.2; // cosine or part: noise must not grow without bound
+    const bool                rank_1 = std::abs(along) > least * length(missing) * std::sqrt(ss);
+    const bool                rank_2 =
+      n > most_of_rank_1 && sbs > 0. && sy >= least * sbs && sy >= least * length(change) * std::sqrt(ss);
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int j = 0; j < n; ++j)
         matrix_(i, j) +=
-          rank_1 ? missing[i] * missing[j] / along
-                 : (missing[i] * step[j] + step[i] * missing[j] - along * step[i] * step[j] / ss) / ss;
+          rank_2   ? change[i] * change[j] / sy - bent[i] * bent[j] / sbs
+          : rank_1 ? missing[i] * missing[j] / along
+                   : (missing[i] * step[j] + step[i] * missing[j] - along * step[i] * step[j] / ss) / ss;
   }
 } // namespace retroforge

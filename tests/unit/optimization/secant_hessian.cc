@@ -90,6 +90,25 @@ int main()
             << ", a quadratic function's Hessian to 1e-3: "
             << answer(distance(columns(hessian, 3), exact) < 1e-3) << "\n";
 
+  // Of twelve variables, stiffer and stiffer: steps are explained, and nothing bends downwards.
+  SecantHessian large;
+  bool          explains_too = true, is_positive = true;
+  for (unsigned int k = 0; k < 12; ++k)
+  {
+    Vector step(12, 0.), change(12);
+    for (unsigned int j = 0; j < 12; ++j)
+    {
+      step[j]   = 2. * (generator() / 4294967296.) - 1.;
+      change[j] = (1. + j) * step[j];
+    }
+    large.learn(step, change, 0.);
+    explains_too = explains_too && length(difference(large.times(step), change)) < 1e-11;
+    for (unsigned int j = 0; j < 12; ++j)
+      is_positive = is_positive && columns(large, 12)[j][j] > 0.;
+  }
+  std::cout << "of many variables: explains each step: " << answer(explains_too)
+            << ", positive: " << answer(is_positive) << "\n";
+
   const std::vector<Vector> before = columns(hessian, 3);
   hessian.learn({1e-3, 0., 0.}, {1., 5., 0.}, 0.01);
   std::cout << "within the noise nothing is learned: " << answer(columns(hessian, 3) == before) << "\n";
