@@ -26,10 +26,11 @@ namespace retroforge
   };
 
   /// A trust region whose model keeps terms as they are: the smooth part's gradient, what was learned of its
-  /// Hessian, and each term of its linearised value. So a step knows where limits begin to press before
-  /// it is tried. The region is a box. Each iteration takes one value, and each that is accepted one
-  /// linearisation, whose noise is added to both reductions before they are compared; a point of infinite value is refused. What is learned is kept from one minimisation to
-  /// the next: functions may differ by their terms. @cite Conn, Gould and Toint 2000, sections 6.1 and 11.4
+  /// Hessian, and each term of its linearised value. So a step knows where limits begin to press before it is
+  /// tried. The region is a box. Each iteration takes one value, and each that is accepted one linearisation,
+  /// whose noise is added to both reductions before they are compared; a point of infinite value is refused.
+  /// What is learned is kept from one minimisation to the next: functions may differ by their terms.
+  /// @cite Conn, Gould and Toint 2000, sections 6.1 and 11.4
   class Minimizer
   {
   public:
