@@ -116,10 +116,9 @@ namespace retroforge
     return check_derivative(asked, direction, steps);
   }
 
-  bool Search::run(const Noise &noise)
+  bool Search::run(const double noise)
   {
-    noise_           = noise.objective / merit_.size;
-    noise_of_values_ = noise.values;
+    noise_ = noise / merit_.size;
     if (criteria_.limits.empty())
     {
       minimize_merit();
@@ -267,7 +266,7 @@ namespace retroforge
       return row;
     };
     Linearization known;
-    known.noise = noise_of_merit();
+    known.noise = noise_;
     known.gradient.assign(x_.size(), 0.);
     for (unsigned int o = 0; o < now_.gradients.size(); ++o)
       if (criteria_.objective.weights[o] != 0.)
@@ -286,20 +285,6 @@ namespace retroforge
                              merit_.multipliers[i]});
     }
     return known;
-  }
-
-  double Search::noise_of_merit() const
-  {
-    double squares = noise_ * noise_;
-    for (std::size_t i = 0; i < criteria_.limits.size() && !noise_of_values_.empty(); ++i)
-    {
-      const Limit &limit = criteria_.limits[i];
-      const double c     = limit.excess(now_.values);
-      const double more  = noise_of_values_[limit.objective] / limit.size;
-      PenaltyTerm  term{c, {}, merit_.penalties[i], true, merit_.multipliers[i]};
-      squares += std::pow(term.value(c + more) - term.value(c), 2);
-    }
-    return std::sqrt(squares);
   }
 
   std::vector<unsigned int> Search::pressing() const

@@ -2,13 +2,18 @@
 // Copyright (C) 2026 The Retroforge authors
 #pragma once
 
-#include <retroforge/optimization/noise.h>
 #include <retroforge/optimization/optimization_problem.h>
 
 #include <functional>
 
 namespace retroforge
 {
+  struct Noise
+  {
+    double              objective = 0.; ///< in its unit
+    std::vector<double> values;         ///< of each value of the problem, in its unit
+  };
+
   /// Measures the noise of the objective and of all values: forges a few designs around the start (Optimisation/noise runs),
   /// over steps so short that all they add to what the gradient predicts is what decisions of the program
   /// change,

@@ -4,7 +4,7 @@
 
 #include <retroforge/optimization/confidence.h>
 #include <retroforge/optimization/confirmation.h>
-#include <retroforge/optimization/noise.h>
+#include <retroforge/optimization/noise_estimate.h>
 #include <retroforge/optimization/search.h>
 
 #include <iosfwd>

@@ -7,7 +7,6 @@
 #include <retroforge/optimization/local_model.h>
 #include <retroforge/optimization/merit.h>
 #include <retroforge/optimization/minimize.h>
-#include <retroforge/optimization/noise.h>
 
 #include <optional>
 
@@ -64,8 +63,9 @@ namespace retroforge
     /// The merit's gradient along a direction that is free both ways, against central differences.
     std::vector<DifferenceCheck> check();
 
+    /// @param noise  of the objective, in its unit
     /// @return whether limits are kept by the design accepted last, and no multiplier would change it
-    bool run(const Noise &noise);
+    bool run(double noise);
 
     SearchStop        stop() const { return stop_; }
     const Evaluation &now() const { return now_; } ///< the design accepted last, with gradients
@@ -99,8 +99,6 @@ namespace retroforge
     bool go_on(const MinimizerState &state);
     /// The merit at the present design, over scaled variables: data and limits are its terms.
     Linearization linearization() const;
-    /// Noise of the merit at the present design, that of its limits counted.
-    double noise_of_merit() const;
     /// Limits whose penalty is felt at the present design.
     std::vector<unsigned int> pressing() const;
     /// Multipliers that fit the gradients at the present design.
@@ -117,8 +115,7 @@ namespace retroforge
     Evaluation now_;
     /// Variables of the present design, as it was tried: its values come back bit for bit.
     BoundedProblem::Vector x_;
-    double                 noise_ = 0.; ///< noise of the merit, as far as it is the objective's
-    std::vector<double>    noise_of_values_;
+    double                 noise_      = 0.; ///< noise of the merit
     double                 radius_     = 0.;
     double                 begun_with_ = 0.; ///< the merit's gradient where the present round began
     unsigned int           iterations_ = 0;  ///< designs tried, without those known before

@@ -242,7 +242,7 @@ namespace
     criteria.set_sizes(start.values);
     Search searching(space, criteria, parameters, task);
     searching.begin(start);
-    const bool settled = searching.run(is_rough ? Noise{problem.noise[0], problem.noise} : Noise{});
+    const bool settled = searching.run(is_rough ? problem.noise[0] : 0.);
     Evaluation best    = searching.now();
     // As `optimize` does.
     const auto excess = [&](const Evaluation &evaluation) {

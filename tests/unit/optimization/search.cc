@@ -82,7 +82,7 @@ namespace
     void run(const Vector &start)
     {
       with_search(start, [&](Search &search) {
-        settled     = search.run({functions.noise, {}});
+        settled     = search.run(functions.noise);
         end         = search.now();
         multipliers = search.multipliers();
         stop        = search.stop();
@@ -290,7 +290,7 @@ int main()
     problem.parameters.lower  = {{"a", 0.5}};
     problem.parameters.upper  = {{"a", 1.5}};
     problem.with_search({0.5, 2.}, [&](Search &search) {
-      search.run({2., {}});
+      search.run(2.);
       problem.stop = search.stop();
     });
     std::cout << "nothing but noise: ends " << answer(problem.stop == SearchStop::noise)
