@@ -78,10 +78,12 @@ int main()
     // Nearly across the step, what is missing is added as the least matrix that can do it.
     Vector across = random_vector(generator);
     add(-dot(across, step) / dot(step, step), step, across);
+    add(0.1 * length(across) / length(step), step, across);
     Vector        other_change = hessian.times(step);
     SecantHessian other        = hessian;
     add(1., across, other_change);
     other.learn(step, other_change, 0.);
+    explains           = explains && length(difference(other.times(step), other_change)) < 1e-12;
     const double reach = distance(columns(other, 3), columns(hessian, 3));
     is_bounded         = is_bounded && reach <= 1.5 * length(across) / length(step);
   }
