@@ -20,15 +20,19 @@ namespace retroforge
                       tolerance,
                       "Relative tolerance of the adjoint and tangent linear systems. Units: none.",
                       dealii::Patterns::Double(1e-14, 1e-2));
-    add_enum<Increments>(
+    add_enum<Remeshings>(
       prm,
-      "increments",
-      increments,
-      {{"hold", Increments::hold}, {"follow", Increments::follow}},
-      "Where increments end at other values of the design, in derivatives and replays of a run in which "
-      "quality had the mesh made anew: follow, sooner where the metal is strained farther, which gives the "
-      "trend across runs that decide anew; or hold, at the same strokes, which gives the slope between two "
-      "jumps (manual, gradients). Units: none.");
+      "remeshings",
+      remeshings,
+      {{"hold", Remeshings::hold}, {"follow", Remeshings::follow}},
+      "What derivatives and replays do at other values of the design where the mesh was made anew: follow, "
+      "new "
+      "meshes go as the shape does, not along with the metal, and come sooner where quality asked for them "
+      "and "
+      "the metal is strained farther, which gives the trend across runs that decide anew; or hold, at the "
+      "same "
+      "strokes by the same operations, which gives the slope between two jumps (manual, gradients). Units: "
+      "none.");
     using Derivatives = ShapeDerivatives::Method;
     add_enum<Derivatives>(
       prm,

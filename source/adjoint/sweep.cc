@@ -275,6 +275,7 @@ namespace retroforge
         const StrokeStep at{record.stroke, 0., record.operation};
         const auto       states = run.process.over(at).dies;
         MovingTransfer   moving(epoch->scene.mesh, remesh->X_before, remesh->mesh, remesh->transfer);
+        const auto       following = following_mesh(run.meshes_follow, i, *remesh);
         for (std::size_t j = 0; j < costates.size(); ++j)
         {
           PhysicsBar bar(run.model.dies);
@@ -285,7 +286,8 @@ namespace retroforge
                                                       states,
                                                       costates[j].workpiece,
                                                       moving,
-                                                      bar.dies);
+                                                      bar.dies,
+                                                      following.get());
           costates[j].process.add_once(
             [&](Process<double> &part) { reverse_over(run.process, at, 0., bar, part); });
           if (moves_start)
@@ -326,10 +328,11 @@ namespace retroforge
       if (record.remesh)
       {
         const StrokeStep at{record.stroke, 0., record.operation};
-        const auto       dies = with_moved_ends(process, at, {ends.end, ends.end}).over(at).dies;
-        state                 = change_mesh(epoch->scene.mesh, *record.remesh, state, run.model.dies, dies);
-        epoch                 = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model, run.timings);
-        X_made                = state.X;
+        const auto       dies      = with_moved_ends(process, at, {ends.end, ends.end}).over(at).dies;
+        const auto       following = following_mesh(run.meshes_follow, i, *record.remesh);
+        state  = change_mesh(epoch->scene.mesh, *record.remesh, state, run.model.dies, dies, following.get());
+        epoch  = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model, run.timings);
+        X_made = state.X;
       }
       end  = place(record);
       ends = {ends.end, Dual(0.)};

@@ -8,6 +8,7 @@
 #include <retroforge/output/safe_file.h>
 #include <retroforge/run/forward_run.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -171,10 +172,16 @@ namespace retroforge
     Forging::change_numerics(segment.input.parameters, state_);
   }
 
+  bool ForwardRun::follows_trend() const
+  {
+    const auto is_on_the_way = [](const unsigned int increment) { return increment > 0; };
+    return problem_.parameters.adjoint.remeshings == AdjointParameters::Remeshings::follow &&
+           std::any_of(state_.remeshed.begin(), state_.remeshed.end(), is_on_the_way);
+  }
+
   std::vector<FollowingRule> ForwardRun::following_rules() const
   {
-    if (problem_.parameters.adjoint.increments != AdjointParameters::Increments::follow ||
-        problem_.parameters.remeshing.when != RemesherParameters::When::quality)
+    if (!follows_trend() || problem_.parameters.remeshing.when != RemesherParameters::When::quality)
       return {};
     return retroforge::following_rules(increments_, state_.remeshed);
   }
@@ -243,7 +250,8 @@ namespace retroforge
             trace_.recorded(),
             timings_,
             following_rules(),
-            problem_.X_0};
+            problem_.X_0,
+            follows_trend()};
   }
 
   AdjointSweep ForwardRun::sweep(const std::vector<Combination> &combinations) const
@@ -262,7 +270,7 @@ namespace retroforge
   {
     ForgingState                    state = Forging::start(first_epoch_, process, X_0);
     std::optional<Forging::Nominal> nominal;
-    if (ends_follow())
+    if (follows_trend())
       nominal.emplace(Forging::Nominal{problem_.process, problem_.X_0, following_rules()});
     running_->forging.replay(
       process, nominal ? &*nominal : nullptr, state_.increments, recorded().record, state, observer);

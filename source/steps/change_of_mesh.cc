@@ -116,6 +116,37 @@ namespace retroforge
   template struct MemberTransfer<double>;
   template struct MemberTransfer<Dual>;
 
+  template <typename Number>
+  void MemberMotion<Number>::operator()(NodeSkins<Number> &skins) const
+  {
+    for_each_side(
+      [&](auto &side) {
+        for (unsigned int j = 0; j < n_skin_modes; ++j)
+        {
+          NodeField<Number> mode = mode_of(side, j);
+          (*this)(mode);
+          set_mode(j, mode, side);
+        }
+      },
+      skins);
+  }
+
+  template struct MemberMotion<double>;
+  template struct MemberMotion<Dual>;
+
+  void ReverseMemberMotion::operator()(const NodeSkins<double> &skins,
+                                       const NodeSkins<double> &skins_bar) const
+  {
+    if (skins_bar.dies.size() == skins.dies.size())
+      for_each_side(
+        [&](const auto &side, const auto &bar) {
+          for (unsigned int j = 0; j < n_skin_modes; ++j)
+            (*this)(mode_of(side, j), mode_of(bar, j));
+        },
+        skins,
+        skins_bar);
+  }
+
   ReverseMemberTransfer::ReverseMemberTransfer(const TetMesh              &old_mesh,
                                                const RemeshRecord         &remesh,
                                                const NodalVectors<double> &X,
@@ -220,7 +251,8 @@ namespace retroforge
                                                 const std::vector<DieState<double>> &states,
                                                 const WorkpieceState<3, double>     &costate,
                                                 MovingTransfer                      &moving,
-                                                std::vector<DieState<double>>       &dies_bar)
+                                                std::vector<DieState<double>>       &dies_bar,
+                                                const FollowingMesh                 *following)
   {
     AssertDimension(before.X.size(), old_mesh.n_nodes());
     AssertDimension(costate.X.size(), remesh.mesh.n_nodes());
@@ -237,6 +269,17 @@ namespace retroforge
                                                   X_bar,
                                                   T_bar,
                                                   of_transfer.X);
+    }
+    if (following != nullptr)
+    {
+      WorkpieceState<3, double> moved;
+      NodalVectors<double>      w_bar(remesh.mesh.n_nodes());
+      internal::for_each_member(
+        MemberTransfer<double>{old_mesh, remesh.mesh, before.X, remesh.mesh.X, remesh.transfer},
+        before,
+        moved);
+      internal::for_each_member(ReverseMemberMotion{*following, w_bar}, moved, of_transfer);
+      of_transfer.X = following->reverse_positions(std::move(of_transfer.X), w_bar);
     }
     ReverseMemberTransfer reverse(old_mesh, remesh, before.X, moving, there.X);
     internal::for_each_member(

@@ -104,7 +104,8 @@ namespace retroforge
 
   void Forging::change_mesh(const std::vector<DieState<double>> &dies,
                             const RemeshRecord                  &remesh,
-                            ForgingState                        &state) const
+                            ForgingState                        &state,
+                            const FollowingMesh                 *following) const
   {
     state.removed_volume += remesh.removed_volume;
     const TransferOperator          &J           = remesh.transfer;
@@ -118,7 +119,8 @@ namespace retroforge
       return interpolated(
         state.epoch->scene.discretization, J.apply(V), J.apply(W.P.complete(*old.pressure_nodes())));
     };
-    auto workpiece = retroforge::change_mesh(before->scene.mesh, remesh, state.workpiece, model_.dies, dies);
+    auto workpiece =
+      retroforge::change_mesh(before->scene.mesh, remesh, state.workpiece, model_.dies, dies, following);
     state.left_behind.push_back(without_motion(std::exchange(state.workpiece, std::move(workpiece))));
     state.epoch  = std::make_shared<MeshEpoch>(remesh.mesh, model_, timings_);
     state.next.W = transferred(state.next.W);
@@ -431,13 +433,17 @@ namespace retroforge
       if (record.remesh)
       {
         const StrokeStep at{record.stroke, 0., record.operation};
-        change_mesh(with_moved_ends(process, at, {ends.end, ends.end}).over(at).dies, *record.remesh, state);
+        const auto       following = following_mesh(nominal != nullptr, i, *record.remesh);
+        change_mesh(with_moved_ends(process, at, {ends.end, ends.end}).over(at).dies,
+                    *record.remesh,
+                    state,
+                    following.get());
         X_made_nominal = X_nominal = record.remesh->mesh.X;
         X_made                     = state.workpiece.X;
       }
       Mechanics &mechanics = state.epoch->increment.mechanics;
       ends                 = {ends.end, 0.};
-      if (nominal != nullptr)
+      if (nominal != nullptr && !nominal->rules.empty())
       {
         const NodalVectors<double> V = mechanics.mean_velocity(record);
         ends.end                     = FollowingEnd(state.epoch->scene.mesh,

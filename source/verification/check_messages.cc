@@ -23,9 +23,9 @@ namespace retroforge
     std::fflush(stdout);
   }
 
-  void print_ends_follow()
+  void print_follows_trend()
   {
-    std::printf("  increments follow the state (Adjoint/increments): the adjoint is that of the trend, and "
+    std::printf("  remeshings follow the design (Adjoint/remeshings): the adjoint is that of the trend, and "
                 "differences that "
                 "decide anew\n  have the slope between two jumps instead; `hold` checks that\n");
   }

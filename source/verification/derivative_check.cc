@@ -69,8 +69,8 @@ namespace retroforge
         else if (root_)
         {
           print_check_begin(all, done, case_.parameters.check.n_runs(), forging_seconds_);
-          if (case_.parameters.check.free && run_.ends_follow())
-            print_ends_follow();
+          if (case_.parameters.check.free && run_.follows_trend())
+            print_follows_trend();
         }
         before = before.value_or(done);
       });

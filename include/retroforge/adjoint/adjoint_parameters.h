@@ -17,15 +17,16 @@ namespace retroforge
       direct   ///< one forward sweep per parameter
     };
 
-    enum class Increments
+    /// At other values of the design.
+    enum class Remeshings
     {
-      follow, ///< they end where the state does that they end at
-      hold    ///< they end at their strokes
+      follow, ///< new meshes go as the shape does, and come when the state does that they came at
+      hold    ///< they go where the operations take them, at the same strokes
     };
 
     Method           method     = Method::adjoint;
     double           tolerance  = 1e-6;
-    Increments       increments = Increments::follow;
+    Remeshings       remeshings = Remeshings::follow;
     ShapeDerivatives shape_derivatives;
 
     void add_parameters(dealii::ParameterHandler &prm);

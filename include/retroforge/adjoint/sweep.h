@@ -20,6 +20,7 @@ namespace retroforge
     /// Of each increment, where ends follow the state (steps/moved_ends.h); else none.
     std::vector<FollowingRule> rules = {};
     NodalVectors<double>       X_0   = {}; ///< where the run began, if so [mm]
+    bool meshes_follow = false;            ///< whether new meshes follow the shape (steps/following_mesh.h)
   };
 
   /// dPhi/dX_0 and dPhi/d(process) of one combination of objectives.

@@ -130,9 +130,8 @@ namespace retroforge
     Recording                  &recording() { return recording_; }
     const Recording            &recording() const { return recording_; }
 
-    /// Returns whether ends of increments follow the state in derivatives and replays (steps/moved_ends.h): where its quality
-    /// had the mesh made anew on the way.
-    bool ends_follow() const { return !following_rules().empty(); }
+    /// Returns whether derivatives and replays follow the trend across remeshings: where the mesh was made anew on the way.
+    bool follows_trend() const;
 
     /// Returns whether the mesh may be made anew.
     bool remeshes() const
@@ -154,7 +153,7 @@ namespace retroforge
 
     RecordedForging recorded() const;
 
-    /// Returns those of the increments, where their ends follow the state; else none.
+    /// Returns those of the increments, where their ends follow the state (steps/moved_ends.h); else none.
     std::vector<FollowingRule> following_rules() const;
 
     /// Takes the run into a segment, whose numerics the model has.

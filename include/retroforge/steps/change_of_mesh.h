@@ -3,6 +3,7 @@
 #pragma once
 
 #include <retroforge/record/increment_record.h>
+#include <retroforge/steps/following_mesh.h>
 #include <retroforge/steps/kept_heat.h>
 #include <retroforge/steps/workpiece_state.h>
 #include <retroforge/transfer/cell_transfer.h>
@@ -12,8 +13,9 @@
 /// The step that takes the workpiece from one mesh to the next. What happens to a member of the state follows
 /// from its kind: positions by the tape of what remeshing did to them (PositionTape), one number or vector per
 /// node q' = J q, one number per cell transfer_cells(); fields of nodes and bounded ones of cells within the range of the
-/// values that a row of J takes. The weights of J follow positions (MovingTransfer). Temperatures are then corrected so that
-/// heat is kept (steps/kept_heat.h).
+/// values that a row of J takes. The weights of J follow positions (MovingTransfer). Where the new mesh follows the shape
+/// (FollowingMesh), nodes and what they carry are then moved. Temperatures are at last corrected so that heat is kept
+/// (steps/kept_heat.h).
 namespace retroforge
 {
   /// Returns the positions on the new mesh: of a state, its first member.
@@ -50,7 +52,48 @@ namespace retroforge
     void operator()(const BoundedCellField<Number> &q, BoundedCellField<Number> &to) const;
   };
 
-  /// The reverse of it: from a member of the costate on the new mesh to that on the old one. Positions come
+  /// Moves a member of the state with the nodes of a mesh that follows the shape, but for the positions themselves.
+  template <typename Number>
+  struct MemberMotion
+  {
+    const FollowingMesh        &mesh;
+    const NodalVectors<Number> &w; ///< motion of the nodes [mm]
+
+    void operator()(NodalVectors<Number> &) const {}
+    void operator()(NodeField<Number> &q) const { mesh.move_nodes(w, q); }
+    void operator()(NodeSkins<Number> &skins) const;
+    void operator()(NodeVectorField<3, Number> &v) const { mesh.move_nodes(w, v); }
+    void operator()(CellField<Number> &q) const { mesh.move_cells(w, q); }
+    void operator()(BoundedCellField<Number> &q) const { mesh.move_cells(w, q); }
+  };
+
+  /// The reverse of it: derivatives in w, where that is 0. Those in the member stay what they are.
+  struct ReverseMemberMotion
+  {
+    const FollowingMesh  &mesh;
+    NodalVectors<double> &w_bar;
+
+    void operator()(const NodalVectors<double> &, const NodalVectors<double> &) const {}
+    void operator()(const NodeField<double> &q, const NodeField<double> &q_bar) const
+    {
+      mesh.reverse_nodes(q, q_bar, w_bar);
+    }
+    void operator()(const NodeSkins<double> &skins, const NodeSkins<double> &skins_bar) const;
+    void operator()(const NodeVectorField<3, double> &v, const NodeVectorField<3, double> &v_bar) const
+    {
+      mesh.reverse_nodes(v, v_bar, w_bar);
+    }
+    void operator()(const CellField<double> &q, const CellField<double> &q_bar) const
+    {
+      mesh.reverse_cells(q, q_bar, w_bar);
+    }
+    void operator()(const BoundedCellField<double> &q, const BoundedCellField<double> &q_bar) const
+    {
+      mesh.reverse_cells(q, q_bar, w_bar);
+    }
+  };
+
+  /// The reverse of MemberTransfer: from a member of the costate on the new mesh to that on the old one. Positions come
   /// before cells, which add to them by way of the volumes that they were weighed with, and are complete after
   /// reverse_positions().
   class ReverseMemberTransfer
@@ -103,12 +146,14 @@ namespace retroforge
   };
 
   /// Returns the state on the new mesh; on dual numbers its tangent.
+  /// @param following  the new mesh, where it follows the shape; null: it goes where the operations take it
   template <typename Number>
   WorkpieceState<3, Number> change_mesh(const TetMesh                       &old_mesh,
                                         const RemeshRecord                  &remesh,
                                         const WorkpieceState<3, Number>     &before,
                                         const std::vector<Die>              &dies,
-                                        const std::vector<DieState<Number>> &states)
+                                        const std::vector<DieState<Number>> &states,
+                                        const FollowingMesh                 *following = nullptr)
   {
     AssertDimension(remesh.transfer.n_old, old_mesh.n_nodes());
     AssertDimension(remesh.transfer.n_new(), remesh.mesh.n_nodes());
@@ -118,6 +163,14 @@ namespace retroforge
     WorkpieceState<3, Number> after;
     internal::for_each_member(
       MemberTransfer<Number>{old_mesh, remesh.mesh, before.X, X_new, J}, before, after);
+    if (following != nullptr)
+    {
+      after.X                = following->positions(X_new);
+      NodalVectors<Number> w = after.X;
+      for (std::size_t k = 0; k < w.size(); ++k)
+        w[k] -= X_new[k];
+      internal::for_each_member(MemberMotion<Number>{*following, w}, after);
+    }
     if (!before.temperature.empty())
       after.temperature = keep_heat<Number>({old_mesh, before.X, before.temperature},
                                             {remesh.mesh, after.X, after.temperature});
@@ -128,6 +181,7 @@ namespace retroforge
   /// @param before    the state on the old mesh, where it was remeshed
   /// @param moving    of this change of mesh
   /// @param dies_bar  gets the derivatives in the dies added
+  /// @param following  as there
   WorkpieceState<3, double> reverse_change_mesh(const TetMesh                       &old_mesh,
                                                 const RemeshRecord                  &remesh,
                                                 const WorkpieceState<3, double>     &before,
@@ -135,5 +189,6 @@ namespace retroforge
                                                 const std::vector<DieState<double>> &states,
                                                 const WorkpieceState<3, double>     &costate,
                                                 MovingTransfer                      &moving,
-                                                std::vector<DieState<double>>       &dies_bar);
+                                                std::vector<DieState<double>>       &dies_bar,
+                                                const FollowingMesh                 *following = nullptr);
 } // namespace retroforge

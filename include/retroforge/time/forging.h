@@ -7,6 +7,8 @@
 
 namespace retroforge
 {
+  class FollowingMesh;
+
   /// What is known at the end of an increment.
   struct IncrementEvent
   {
@@ -27,12 +29,13 @@ namespace retroforge
     using Observer     = std::function<void(const IncrementEvent &)>;
     using RecordAccess = std::function<const IncrementRecord &(unsigned int)>;
 
-    /// What a replay whose increments follow the state must know of the recorded run (steps/moved_ends.h).
+    /// What a replay that follows the trend must know of the recorded run.
     struct Nominal
     {
       const Process<double>      &process;
       const NodalVectors<double> &X_0;
-      std::vector<FollowingRule>  rules; ///< of each increment
+      std::vector<FollowingRule>
+        rules; ///< of each increment (steps/moved_ends.h), or none where ends are held
     };
 
     /// @param end  where the run goes: that of the process, or where other numerics begin to hold
@@ -65,7 +68,8 @@ namespace retroforge
                  const Observer        &observer) const;
 
     /// Obeys the decisions of n recorded increments, and starts each solve from the recorded one.
-    /// @param nominal  the recorded run, where ends of increments follow the state; null: they stay
+    /// @param nominal  the recorded run, where new meshes follow the shape, and ends of increments the state; null: both
+    /// are held
     void replay(const Process<double> &process,
                 const Nominal         *nominal,
                 unsigned int           n,
@@ -75,9 +79,11 @@ namespace retroforge
 
     /// Takes the state to another mesh as recorded: the workpiece by the step steps/change_of_mesh.h.
     /// @param dies  at its stroke
+    /// @param following  the new mesh, where it follows the shape; null: it is held
     void change_mesh(const std::vector<DieState<double>> &dies,
                      const RemeshRecord                  &remesh,
-                     ForgingState                        &state) const;
+                     ForgingState                        &state,
+                     const FollowingMesh                 *following = nullptr) const;
 
   private:
     /// Takes the state to the start of an operation, unless it is in it: other dies, which have not met the

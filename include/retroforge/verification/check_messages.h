@@ -12,9 +12,9 @@ namespace retroforge
   /// @param seconds       of one forging; 0 when unknown
   void print_check_begin(unsigned int n_directions, unsigned int n_done, unsigned int n_runs, double seconds);
 
-  /// Says which slope the adjoint is, and which one differences that decide anew have, where ends of increments follow the
-  /// state (steps/moved_ends.h).
-  void print_ends_follow();
+  /// Says which slope the adjoint is, and which one differences that decide anew have, where derivatives follow the trend
+  /// across remeshings (Adjoint/remeshings).
+  void print_follows_trend();
 
   /// Prints the verdict on the direction checked last, and the time left as those so far took it.
   /// @param rows    of all objectives along the directions so far

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
-"""`Adjoint/increments`, used as the manual says, on the hub of the tutorial with coarse elements, whose quality has meshes made anew. Proved:
+"""`Adjoint/remeshings`, used as the manual says, on the hub of the tutorial with coarse elements, whose quality has meshes made anew. Proved:
 - the forging is the same with both values: its history to the last digit;
 - slopes by the offset of the die and the radius differ by more than 1 %, and what is left out is `follow`;
 - with `follow` adjoint and direct method agree to 1e-6, and a finished record, resumed, has the slope of the value it is resumed with;
@@ -38,27 +38,27 @@ def apart(a, b):
 def increments():
     shutil.copytree(ROOT / "prm/tutorial/hub", ".", dirs_exist_ok=True)
     forged("gradient", "plain")
-    forged("gradient", "hold", "Adjoint/increments=hold")
-    forged("gradient", "follow", "Adjoint/increments=follow")
-    forged("gradient", "direct", "Adjoint/increments=follow", "Adjoint/method=direct")
+    forged("gradient", "hold", "Adjoint/remeshings=hold")
+    forged("gradient", "follow", "Adjoint/remeshings=follow")
+    forged("gradient", "direct", "Adjoint/remeshings=follow", "Adjoint/method=direct")
     judge("remeshed on the way", summary_of("follow")["remeshings"] > 1)
     judge("the same forging", text_of("hold", "history.csv") == text_of("follow", "history.csv"))
     hold, follow = slopes("hold"), slopes("follow")
     judge("left out, follow", slopes("plain") == follow)
     judge("slopes of their own", min(abs(x / y - 1) for x, y in zip(hold, follow)) > 0.01, (hold, follow))
     judge("direct method", apart(follow, slopes("direct")) < 1e-6, (follow, slopes("direct")))
-    forged("gradient", "hold", "Adjoint/increments=follow", "--resume")
+    forged("gradient", "hold", "Adjoint/remeshings=follow", "--resume")
     judge("resumed", apart(follow, slopes("hold")) < 1e-9, (follow, slopes("hold")))
     at_strokes = ("Remeshing/when=increments", "Remeshing/every=3")
     for value in ("hold", "follow"):
-        forged("gradient", "every " + value, f"Adjoint/increments={value}", *at_strokes)
+        forged("gradient", "every " + value, f"Adjoint/remeshings={value}", *at_strokes)
     judge("prescribed strokes", slopes("every hold") == slopes("every follow"))
 
 
 def said_by_check():
     few = ("Press/stroke=2", "Check/steps=1e-6", "Check/taylor halvings=2")
     for value in ("hold", "follow"):
-        done = run("check", "check " + value, *SCENE, f"Adjoint/increments={value}", *few, case="hub.prm")
+        done = run("check", "check " + value, *SCENE, f"Adjoint/remeshings={value}", *few, case="hub.prm")
         judge(f"check, {value}", "check of" in done.stdout and (SAYS in done.stdout) == (value == "follow"),
               done.stdout[-2000:] + done.stderr)
 

@@ -17,7 +17,7 @@ SCENE = ("Billet/element size=5", "Newton/tolerance=1e-12", "Adjoint/tolerance=1
 
 
 def slopes(increments, method):
-    done = run("gradient", "hub", *SCENE, f"Adjoint/increments={increments}", f"Adjoint/method={method}", "--resume", case="hub.prm")
+    done = run("gradient", "hub", *SCENE, f"Adjoint/remeshings={increments}", f"Adjoint/method={method}", "--resume", case="hub.prm")
     judge(f"{increments}, {method}", done.returncode == 0, done.stderr)
     found = {parameter["name"]: parameter["gradient"]["energy"] for parameter in summary_of("hub")["parameters"]}
     return [found[name] for name in PARAMETERS]

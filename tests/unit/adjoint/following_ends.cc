@@ -98,9 +98,9 @@ namespace
   }
 
   ForgingProblem
-  problem_of(Parameters p, const AdjointParameters::Increments increments, const std::vector<double> &strokes)
+  problem_of(Parameters p, const AdjointParameters::Remeshings remeshings, const std::vector<double> &strokes)
   {
-    p.adjoint.increments = increments;
+    p.adjoint.remeshings = remeshings;
     p.resolve_defaults({p.billet.height, p.billet.height});
     TetMesh       mesh = make_billet(p.billet, MPI_COMM_WORLD);
     RandomNumbers numbers;
@@ -191,11 +191,13 @@ namespace
       {
         const Dual       moved = omitted == Term::mesh ? Dual(0.) : ends.end;
         const StrokeStep at{record.stroke, 0., record.operation};
-        state  = change_mesh(epoch->scene.mesh,
+        const auto       following = following_mesh(true, i, *record.remesh);
+        state                      = change_mesh(epoch->scene.mesh,
                             *record.remesh,
                             state,
                             run.dies(),
-                            with_moved_ends(process, at, {moved, moved}).over(at).dies);
+                            with_moved_ends(process, at, {moved, moved}).over(at).dies,
+                            following.get());
         epoch  = std::make_shared<MeshEpoch>(record.remesh->mesh, run.model(), timings_of_runs());
         X_made = state.X;
       }
@@ -344,15 +346,15 @@ namespace
              const std::vector<double> &strokes,
              const unsigned int         n_ways)
   {
-    using Increments = AdjointParameters::Increments;
-    const RecordedRun run(problem_of(p, Increments::follow, strokes)),
-      held(problem_of(p, Increments::hold, strokes));
+    using Remeshings = AdjointParameters::Remeshings;
+    const RecordedRun run(problem_of(p, Remeshings::follow, strokes)),
+      held(problem_of(p, Remeshings::hold, strokes));
     const auto &remeshed = run.state().remeshed;
     std::cout << name << "\n  made anew on the way, twice or more: "
               << yes(std::count_if(
                        remeshed.begin(), remeshed.end(), [](const unsigned int i) { return i > 0; }) > 1)
-              << ", ends follow: " << yes(run.ends_follow())
-              << ", others are held: " << yes(!held.ends_follow()) << "\n";
+              << ", ends follow: " << yes(run.follows_trend())
+              << ", others are held: " << yes(!held.follows_trend()) << "\n";
     const std::vector<Way> ways = ways_of(run);
     const auto             bars = run.sweep(each(run.objectives())).gradients;
     check_nominal(run, held);

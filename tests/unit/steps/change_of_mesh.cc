@@ -6,6 +6,10 @@
 // - <A x_dot, y> = <x_dot, A^T y> of the state, A from dual numbers; and of an aggregate of all kinds of
 //   members, positions, one number or vector per node, one number per cell, for each kind alone and all together.
 // - Volumes change as they did.
+// - A mesh that follows the shape: its volume changes as by the operations; what goes along the flat ends of the cylinder is
+//   dropped, what goes across stays; no node goes farther than those of the surface; nodes stay in planes of symmetry; constant
+//   fields stay, and linear ones are inside what they are at the new places; the dot product as above, for each member of the
+//   state alone and for all, and a member of which the motion is left out is told.
 // - No derivatives in a field: none arrive, and none are computed.
 
 #include <deal.II/base/mpi.h>
@@ -119,11 +123,15 @@ namespace
   template <typename Number>
   using State = WorkpieceState<3, Number>;
 
-  State<double> reversed(const Meshes &meshes, const State<double> &at, const State<double> &y)
+  State<double> reversed(const Meshes        &meshes,
+                         const State<double> &at,
+                         const State<double> &y,
+                         const FollowingMesh *following = nullptr)
   {
     std::vector<DieState<double>> no_bar;
     MovingTransfer moving(meshes.old_mesh, meshes.X, meshes.remesh.mesh, meshes.remesh.transfer);
-    return reverse_change_mesh(meshes.old_mesh, meshes.remesh, at, no_dies, no_states, y, moving, no_bar);
+    return reverse_change_mesh(
+      meshes.old_mesh, meshes.remesh, at, no_dies, no_states, y, moving, no_bar, following);
   }
 
   /// Zero derivatives in all that a state may have.
@@ -134,14 +142,137 @@ namespace
   }
 
   /// |<A x_dot, y> - <x_dot, A^T y>|, relative.
-  double defect_of_state(const Meshes &meshes)
+  /// @param keep  takes from y what is not asked for
+  template <typename Keep>
+  double defect_of_state(const Meshes &meshes, const FollowingMesh *following, const Keep &keep)
   {
     const TetMesh &old_mesh = meshes.old_mesh, &new_mesh = meshes.remesh.mesh;
     auto           at = randomised(costate_of(old_mesh));
     at.X              = meshes.X;
-    const auto dir = randomised(at), y = randomised(costate_of(new_mesh));
-    const auto after = change_mesh<Dual>(old_mesh, meshes.remesh, along<State>(at, dir), no_dies, {});
-    return defect(dots(after, y), y, dot(dir, reversed(meshes, at, y)));
+    const auto dir    = randomised(at);
+    auto       y      = randomised(costate_of(new_mesh));
+    keep(y);
+    const auto after =
+      change_mesh<Dual>(old_mesh, meshes.remesh, along<State>(at, dir), no_dies, {}, following);
+    return defect(dots(after, y), y, dot(dir, reversed(meshes, at, y, following)));
+  }
+
+  /// A quarter of a cylinder, whose nodes lie on planes of symmetry and their axis, too.
+  TetMesh quarter()
+  {
+    return billet({{"shape", "cylinder"},
+                   {"radius", "20"},
+                   {"height", "30"},
+                   {"element size", "6"},
+                   {"sector angle", "90"}});
+  }
+
+  void check_shape_motion(const TetMesh &mesh)
+  {
+    constexpr double     height = 30., small = 1e-6;
+    const ShapeMotion    motion(mesh);
+    NodalVectors<double> d;
+    double               farthest = 0., off_planes = 0., across = 0., along_ends = 0.;
+    const auto           is_on = [&](const NodeIndex k, const Patch &patch) {
+      return patch.symmetry && std::abs((mesh.X[k] - patch.symmetry->point) * patch.symmetry->normal) < small;
+    };
+    for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
+    {
+      d.push_back(numbers.vector());
+      for (const Patch &patch : mesh.patches)
+        if (is_on(k, patch))
+          d[k] -= (d[k] * patch.symmetry->normal) * patch.symmetry->normal;
+    }
+    const NodalVectors<double> r          = motion.of(d);
+    double                     of_surface = 0.;
+    for (const BoundaryFace &face : mesh.faces)
+      if (mesh.is_surface(face))
+        for (const NodeIndex k : face.nodes)
+          of_surface = std::max(of_surface, r[k].norm());
+    for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
+    {
+      farthest = std::max(farthest, r[k].norm());
+      for (const Patch &patch : mesh.patches)
+        if (is_on(k, patch))
+          off_planes = std::max(off_planes, std::abs(r[k] * patch.symmetry->normal));
+      const bool at_end  = mesh.X[k][2] < small || mesh.X[k][2] > height - small;
+      const bool at_side = std::hypot(mesh.X[k][0], mesh.X[k][1]) > 19.9;
+      if (!at_end || at_side)
+        continue;
+      across     = std::max(across, std::abs(r[k][2] - d[k][2]));
+      along_ends = std::max(along_ends, std::hypot(r[k][0], r[k][1]));
+    }
+    constexpr double h      = 1e-6;
+    const auto       change = [&](const NodalVectors<double> &motion_of) {
+      const auto moved = [&](const double t) {
+        NodalVectors<double> X = mesh.X;
+        for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
+          X[k] += t * motion_of[k];
+        return volume(mesh.cells, X);
+      };
+      return (moved(h) - moved(-h)) / (2. * h);
+    };
+    std::cout << "follows the shape: volume "
+              << yes(std::abs(change(r) - change(d)) < 1e-6 * std::abs(change(d))) << ", across the ends "
+              << yes(across < 1e-13) << ", along them nothing " << yes(along_ends < 1e-13)
+              << ", in the planes " << yes(off_planes < 1e-13) << ", no farther than the surface "
+              << yes(farthest <= of_surface * (1. + 1e-13)) << "\n";
+  }
+
+  void check_moved_fields(const TetMesh &mesh)
+  {
+    const FollowingMesh  following(mesh);
+    const Vec3           slope = numbers.vector();
+    std::vector<double>  linear, constant(mesh.n_nodes(), 3.), in_cells(mesh.n_cells(), 3.);
+    NodalVectors<double> w;
+    std::vector<bool>    is_inside(mesh.n_nodes(), true);
+    for (const BoundaryFace &face : mesh.faces)
+      for (const NodeIndex k : face.nodes)
+        if (mesh.is_surface(face))
+          is_inside[k] = false;
+    for (const Vec3 &x : mesh.X)
+    {
+      linear.push_back(slope * x);
+      w.push_back(numbers.vector());
+    }
+    following.move_nodes(w, linear);
+    following.move_nodes(w, constant);
+    following.move_cells(w, in_cells);
+    double of_linear = 0., of_constants = 0.;
+    for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
+    {
+      if (is_inside[k])
+        of_linear = std::max(of_linear, std::abs(linear[k] - slope * (mesh.X[k] + w[k])));
+      of_constants = std::max(of_constants, std::abs(constant[k] - 3.));
+    }
+    for (const double q : in_cells)
+      of_constants = std::max(of_constants, std::abs(q - 3.));
+    std::cout << "fields: linear ones inside " << yes(of_linear < 1e-12) << ", constants "
+              << yes(of_constants < 1e-12) << "\n";
+  }
+
+  /// Of a mesh that follows the shape.
+  void check_following(const Meshes &meshes)
+  {
+    const FollowingMesh following(meshes.remesh.mesh);
+    const auto          only = [](const unsigned int member) {
+      return [member](State<double> &y) {
+        unsigned int i = 0;
+        internal::for_each_member(
+          [&](auto &q) {
+            if (i++ != member)
+              for_each_number([](double &x) { x = 0.; }, q);
+          },
+          y);
+      };
+    };
+    std::cout << "dot product, following the shape: "
+              << yes(defect_of_state(meshes, &following, [](const State<double> &) {}) < 1e-13) << ", alone:";
+    const std::vector<std::string> names = {
+      "positions", "strain", "velocity", "temperature", "skin", "friction flux", "damage"};
+    for (unsigned int i = 0; i < names.size(); ++i)
+      std::cout << " " << names[i] << " " << yes(defect_of_state(meshes, &following, only(i)) < 1e-13);
+    std::cout << "\n";
   }
 
   Everything<double> everything(const TetMesh &mesh)
@@ -216,7 +347,8 @@ int main(int argc, char **argv)
 
   const auto small = [](const double defect) { return yes(defect < 1e-14); };
   const auto none  = [](auto &field) { for_each_number([](double &x) { x = 0.; }, field); };
-  std::cout << "dot product, state: " << small(defect_of_state(meshes)) << "\n"
+  std::cout << "dot product, state: " << small(defect_of_state(meshes, nullptr, [](const State<double> &) {}))
+            << "\n"
             << "dot product, all kinds: " << small(defect_of_kinds(meshes, [](auto &) {})) << "\n"
             << "positions alone: "
             << small(defect_of_kinds(meshes,
@@ -250,4 +382,10 @@ int main(int argc, char **argv)
   const auto nothing = reversed(meshes, before, zero_costate<3>(new_mesh.n_nodes(), new_mesh.n_cells()));
   std::cout << "nothing comes of nothing: " << yes(dot(nothing, nothing) == 0.)
             << ", in each old cell: " << yes(nothing.strain.size() == old_mesh.n_cells()) << "\n";
+  for (const TetMesh &mesh : {old_mesh, quarter()})
+  {
+    check_shape_motion(mesh);
+    check_moved_fields(mesh);
+  }
+  check_following(meshes);
 }
