@@ -4,11 +4,22 @@
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/steps/following_mesh.h>
 
+#include <algorithm>
+
 namespace retroforge
 {
   FollowingMesh::FollowingMesh(const TetMesh &mesh)
-      : mesh_(mesh), motion_(mesh), volume_(mesh.n_nodes(), 0.), area_(mesh.n_nodes(), 0.)
+      : mesh_(mesh)
+      , motion_(mesh)
+      , volume_(mesh.n_nodes(), 0.)
+      , area_(mesh.n_nodes(), 0.)
+      , below_(mesh.n_nodes())
   {
+    for (const auto &cell : mesh.cells)
+      for (const NodeIndex a : cell)
+        for (const NodeIndex b : cell)
+          if (b < a)
+            below_[a].push_back(b);
     for (const auto &cell : mesh.cells)
     {
       cells_.push_back(cell_geometry(corners(cell, mesh.X)));
@@ -109,14 +120,29 @@ namespace retroforge
   }
 
   template <typename Number>
+  std::vector<NodeIndex> FollowingMesh::moved_like(const std::vector<Number> &q) const
+  {
+    std::vector<NodeIndex> first(q.size());
+    for (NodeIndex k = 0; k < q.size(); ++k)
+    {
+      first[k] = k;
+      for (const NodeIndex b : below_[k])
+        if (value_of(q[b]) == value_of(q[k]))
+          first[k] = std::min(first[k], first[b]);
+    }
+    return first;
+  }
+
+  template <typename Number>
   void FollowingMesh::move_nodes(const NodalVectors<Number> &w, std::vector<Number> &q) const
   {
     if (q.empty())
       return;
-    const NodalVectors<Number> gradients = node_gradients(q);
+    const NodalVectors<Number>   gradients = node_gradients(q);
+    const std::vector<NodeIndex> moved_as  = moved_like(q);
     for (std::size_t k = 0; k < q.size(); ++k)
       if (is_there(q[k]))
-        q[k] += gradients[k] * w[k];
+        q[k] += gradients[moved_as[k]] * w[moved_as[k]];
   }
 
   template <typename Number>
@@ -148,10 +174,11 @@ namespace retroforge
   {
     if (q.empty() || q_bar.empty())
       return;
-    const NodalVectors<double> gradients = node_gradients(q);
+    const NodalVectors<double>   gradients = node_gradients(q);
+    const std::vector<NodeIndex> moved_as  = moved_like(q);
     for (std::size_t k = 0; k < q.size(); ++k)
       if (is_there(q[k]))
-        w_bar[k] += q_bar[k] * gradients[k];
+        w_bar[moved_as[k]] += q_bar[k] * gradients[moved_as[k]];
   }
 
   void FollowingMesh::reverse_nodes(const NodalVectors<double> &q,

@@ -59,6 +59,11 @@ namespace retroforge
     template <typename Number>
     NodalVectors<Number> cell_gradients(const std::vector<Number> &q) const;
 
+    /// Returns for each node the one by which it moves what it carries: itself, or one around that has the same value. The
+    /// transfer stops new values at those of nodes around, and heat that flows has a kink where two are equal: they stay so.
+    template <typename Number>
+    std::vector<NodeIndex> moved_like(const std::vector<Number> &q) const;
+
     /// A face of the surface: gradients along it of the linear functions of its corners [1/mm].
     struct Face
     {
@@ -67,11 +72,12 @@ namespace retroforge
       std::array<Vec3, 3>      g;
     };
 
-    const TetMesh                    &mesh_;
-    const ShapeMotion                 motion_;
-    std::vector<CellGeometry<double>> cells_;
-    std::vector<Face>                 faces_;
-    std::vector<double>               volume_, area_; ///< around the nodes; area 0 off the surface
+    const TetMesh                      &mesh_;
+    const ShapeMotion                   motion_;
+    std::vector<CellGeometry<double>>   cells_;
+    std::vector<Face>                   faces_;
+    std::vector<double>                 volume_, area_; ///< around the nodes; area 0 off the surface
+    std::vector<std::vector<NodeIndex>> below_;         ///< nodes around each that come before it
   };
 
   /// Returns the mesh that an increment begins with, where it follows the shape, else null. That of the first increment

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 
-// Whole runs whose increments end where the state does (steps/moved_ends.h): a sector of a cylinder under a bell, whose
-// mesh is made anew by its quality, at constant speed, by a crank with metal that hardens and conducts heat, and in two
-// operations. Proved of the energy, the wear of a die, the largest effort, mean efforts over windows of stroke and of
-// time that begin within an increment, and the radius at the end:
+// Whole runs whose increments end where the state does (steps/moved_ends.h) and whose new meshes follow the shape
+// (steps/following_mesh.h): a sector of a cylinder under a bell, whose mesh is made anew by its quality, at constant speed,
+// by a crank with metal that hardens and conducts heat, and in two operations. Proved of the energy, the wear of a die, the
+// largest effort, mean efforts over windows of stroke and of time that begin within an increment, and the radius at the end:
 // - the backward sweep agrees with the direct method to 1e-10 and with replayed differences to 1e-6, by the offset of
 //   the bell and the nodes, at constant speed by the radius, K and m and the vertices of the bell, too; the remainder is
 //   of second order;
@@ -159,6 +159,7 @@ namespace
     start,   ///< where dies begin
     end,     ///< where they end
     mesh,    ///< where dies are at which nodes are put when the mesh is made anew
+    shape,   ///< that new meshes follow the shape
     strokes, ///< of rows
     times    ///< of rows
   };
@@ -191,7 +192,7 @@ namespace
       {
         const Dual       moved = omitted == Term::mesh ? Dual(0.) : ends.end;
         const StrokeStep at{record.stroke, 0., record.operation};
-        const auto       following = following_mesh(true, i, *record.remesh);
+        const auto       following = following_mesh(omitted != Term::shape, i, *record.remesh);
         state                      = change_mesh(epoch->scene.mesh,
                             *record.remesh,
                             state,
@@ -276,6 +277,7 @@ namespace
                                                    {Term::start, "where dies begin"},
                                                    {Term::end, "where dies end"},
                                                    {Term::mesh, "dies at new meshes"},
+                                                   {Term::shape, "the shape that new meshes follow"},
                                                    {Term::strokes, "strokes of rows"},
                                                    {Term::times, "times of rows"}})
     {
