@@ -25,14 +25,11 @@ namespace retroforge
       "remeshings",
       remeshings,
       {{"hold", Remeshings::hold}, {"follow", Remeshings::follow}},
-      "What derivatives and replays do at other values of the design where the mesh was made anew: follow, "
-      "new "
-      "meshes go as the shape does, not along with the metal, and come sooner where quality asked for them "
-      "and "
-      "the metal is strained farther, which gives the trend across runs that decide anew; or hold, at the "
-      "same "
-      "strokes by the same operations, which gives the slope between two jumps (manual, gradients). Units: "
-      "none.");
+      "What derivatives and replays do at other values of the design where the mesh was made anew. "
+      "follow: new meshes go as the shape does, not along with the metal, and come sooner where quality "
+      "asked for them and the metal is strained farther, which gives the trend across runs that decide "
+      "anew. hold: they go where the operations of the run take them, at the same strokes, which gives the "
+      "slope between two jumps (manual, gradients). Units: none.");
     using Derivatives = ShapeDerivatives::Method;
     add_enum<Derivatives>(
       prm,

@@ -18,7 +18,7 @@ namespace retroforge
     for (const auto &cell : mesh.cells)
       for (const NodeIndex a : cell)
         for (const NodeIndex b : cell)
-          if (b < a)
+          if (b < a && std::find(below_[a].begin(), below_[a].end(), b) == below_[a].end())
             below_[a].push_back(b);
     for (const auto &cell : mesh.cells)
     {

@@ -4,7 +4,8 @@
 - the forging is the same with both values: its history to the last digit;
 - slopes by the offset of the die and the radius differ by more than 1 %, and what is left out is `follow`;
 - with `follow` adjoint and direct method agree to 1e-6, and a finished record, resumed, has the slope of the value it is resumed with;
-- where meshes are made anew at prescribed strokes, both values give the same slope;
+- where meshes are made anew at prescribed strokes, these are held, and with `follow` meshes follow the shape all the same: slopes
+  of their own, which the direct method has, too;
 - `check` with `follow` says which slope the adjoint is, and that with `hold` does not.
 Usage: increments.py RETROFORGE"""
 import os
@@ -52,7 +53,10 @@ def increments():
     at_strokes = ("Remeshing/when=increments", "Remeshing/every=3")
     for value in ("hold", "follow"):
         forged("gradient", "every " + value, f"Adjoint/remeshings={value}", *at_strokes)
-    judge("prescribed strokes", slopes("every hold") == slopes("every follow"))
+    forged("gradient", "every direct", "Adjoint/method=direct", *at_strokes)
+    judge("prescribed strokes, the same forging", text_of("every hold", "history.csv") == text_of("every follow", "history.csv"))
+    judge("their slopes", apart(slopes("every hold"), slopes("every follow")) > 1e-3, (slopes("every hold"), slopes("every follow")))
+    judge("direct method at prescribed strokes", apart(slopes("every follow"), slopes("every direct")) < 1e-6)
 
 
 def said_by_check():

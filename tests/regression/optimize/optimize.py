@@ -320,7 +320,7 @@ def far_away():
         judge("it is told", f"{mesh['objective']:.7g}" in printed and mesh["values"]["barrel"] == float(after["barrel [mm^2]"]), mesh)
     judge("so is what it changed", "start and best are forged on meshes of their own" in printed)
     journal = [json.loads(line) for line in text_of("far", "journal.jsonl").splitlines()]
-    judge("its line in the journal", [line["made at"] for line in journal if "new mesh" in line] == [mesh["meshed_at"] for mesh in made])
+    judge("its line in the journal", [line["made at"] for line in journal if '"new mesh"' in line] == [mesh["meshed_at"] for mesh in made])
     scatter = sum(abs(a - b) for a, b in zip(best_of(found), best_of(found_in("whole"))))
     judge("the optimum of a start near it, but for the meshes", scatter < 0.5, f"{best_of(found)} {best_of(found_in('whole'))}")
     judge("the side is straight", found["objective"]["best"] < 0.01 * found["objective"]["start"], found["objective"])
@@ -386,14 +386,14 @@ def resumed_through_meshes():
     reference = rows_of("far")
     settings = FROM_FAR
     lines = text_of("far", "journal.jsonl").splitlines()
-    new = next(i for i, line in enumerate(lines) if "new mesh" in line)
+    new = next(i for i, line in enumerate(lines) if '"new mesh"' in line)
     for n in (new, new + 1, new + 2, len(lines) - 1):
         shutil.copytree("far", f"cut{n}", ignore=shutil.ignore_patterns("best.prm", "confirmation.jsonl"))
         write(f"cut{n}/journal.jsonl", "".join(line + "\n" for line in lines[:n]))
         found, _ = optimize(f"cut{n}", "--resume", *settings)
         judge(f"resumed after {n} lines", rows_of(f"cut{n}") == reference and found["new_meshes"] == found_in("far")["new_meshes"])
-        same = [line for line in text_of(f"cut{n}", "journal.jsonl").splitlines() if "new mesh" in line]
-        judge("the same line of the mesh", same == [line for line in lines if "new mesh" in line])
+        same = [line for line in text_of(f"cut{n}", "journal.jsonl").splitlines() if '"new mesh"' in line]
+        judge("the same line of the mesh", same == [line for line in lines if '"new mesh"' in line])
 
 
 def gradient_on_a_new_mesh():
