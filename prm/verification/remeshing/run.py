@@ -48,7 +48,7 @@ BALL = {"Billet/shape": "cylinder", "Billet/radius": 16, "Billet/height": 24, "B
         "Die upper/rotation angle": 2.3, "Die upper/velocity": "0, 0, -100", "Die upper/friction": 0.3,
         "Material/consistency": 10, "Material/strain rate sensitivity": 0.15, "Press/stroke": 4.5, "Press/increments": 9,
         "Remeshing/when": "increments", "Remeshing/every": 4,
-        "Design/parameters": "billet/radius, die upper/offset, die upper/friction", "Check/steps": "1e-4, 1e-5, 1e-6",
+        "Design/parameters": "billet/radius, die upper/offset, die upper/friction", "Adjoint/remeshings": "hold", "Check/steps": "1e-4, 1e-5, 1e-6",
         "Check/taylor halvings": 2, "Output/fields every": 0, "Output/record": "false"}
 
 
