@@ -6,9 +6,9 @@
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/sparse_matrix.h>
-#include <deal.II/lac/vector.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace retroforge
@@ -33,6 +33,12 @@ namespace retroforge
       return std::includes(all.begin(), all.end(), some.begin(), some.end());
     }
 
+    void add(const NodalVectors<double> &x, NodalVectors<double> &to)
+    {
+      for (std::size_t k = 0; k < to.size(); ++k)
+        to[k] += x[k];
+    }
+
     Vec3 derivative(const Vector3<Dual> &x)
     {
       return Vec3({x[0].dx(0), x[1].dx(0), x[2].dx(0)});
@@ -40,12 +46,10 @@ namespace retroforge
   } // namespace
 
   ShapeMotion::ShapeMotion(const TetMesh &mesh)
-      : normals_(mesh.n_nodes())
-      , planes_(mesh.n_nodes())
-      , on_surface_(mesh.n_nodes(), false)
-      , across_(mesh.n_nodes())
+      : normals_(mesh.n_nodes()), planes_(mesh.n_nodes()), on_surface_(mesh.n_nodes(), false)
   {
     make_surface(mesh);
+    make_sliding(mesh);
     make_levels(mesh);
   }
 
@@ -80,22 +84,97 @@ namespace retroforge
       }
     // Where a surface turns by 40 degrees along an edge, the second eigenvalue is the square of tan(20 degrees) of the first.
     constexpr double sharp = 0.13;
+    constexpr double least = 0.3; // that is left of a direction
+    sliding_.directions.resize(mesh.n_nodes());
     for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
     {
       if (!on_surface_[k])
         continue;
       const auto pairs =
         dealii::eigenvectors(normal_squares[k], dealii::SymmetricTensorEigenvectorMethod::jacobi);
-      dealii::Tensor<2, 3> along;
+      std::vector<Vec3> held = normals_[k];
+      held.push_back(area[k] / area[k].norm());
       for (const auto &[value, direction] : pairs)
-        if (value < sharp * pairs[0].first)
-          along += dealii::outer_product(direction, direction);
-      const Vec3           u = area[k] / area[k].norm();
-      dealii::Tensor<2, 3> one;
-      for (unsigned int i = 0; i < 3; ++i)
-        one[i][i] = 1.;
-      across_[k] = one - (one - dealii::outer_product(u, u)) * along;
+        if (const Vec3 t = without(direction, held); value < sharp * pairs[0].first && t.norm() > least)
+        {
+          sliding_.directions[k].push_back(t / t.norm());
+          held.push_back(sliding_.directions[k].back());
+        }
     }
+  }
+
+  void ShapeMotion::make_sliding(const TetMesh &mesh)
+  {
+    const auto                              &directions = sliding_.directions;
+    std::vector<std::map<NodeIndex, double>> beside(mesh.n_nodes());
+    for (const BoundaryFace &face : mesh.faces)
+      if (mesh.is_surface(face))
+        for (const NodeIndex a : face.nodes)
+          for (const NodeIndex b : face.nodes)
+            if (a != b)
+              beside[a][b] += 1.;
+    for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
+    {
+      sliding_.beside.emplace_back(beside[k].begin(), beside[k].end());
+      sliding_.first.push_back(sliding_.n);
+      sliding_.n += directions[k].size();
+    }
+    if (sliding_.n == 0)
+      return;
+    const auto for_each_entry = [&](const auto &add) {
+      for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
+        for (unsigned int i = 0; i < directions[k].size(); ++i)
+          for (const auto &[b, faces] : sliding_.beside[k])
+          {
+            const unsigned int row = sliding_.first[k] + i;
+            add(row, row, faces);
+            for (unsigned int j = 0; j < directions[b].size(); ++j)
+              add(row, sliding_.first[b] + j, -faces * (directions[k][i] * directions[b][j]));
+          }
+    };
+    dealii::DynamicSparsityPattern rows(sliding_.n, sliding_.n);
+    for_each_entry([&](const unsigned int r, const unsigned int c, const double) { rows.add(r, c); });
+    dealii::SparsityPattern pattern;
+    pattern.copy_from(rows);
+    dealii::SparseMatrix<double> A(pattern);
+    for_each_entry([&](const unsigned int r, const unsigned int c, const double x) { A.add(r, c, x); });
+    sliding_.inverse.initialize(A);
+  }
+
+  dealii::Vector<double> ShapeMotion::Sliding::solve(const NodalVectors<double> &y) const
+  {
+    dealii::Vector<double> b(n), x(n);
+    for (std::size_t k = 0; k < y.size(); ++k)
+      for (unsigned int i = 0; i < directions[k].size(); ++i)
+        b(first[k] + i) = directions[k][i] * y[k];
+    if (n > 0)
+      inverse.vmult(x, b);
+    return x;
+  }
+
+  NodalVectors<double> ShapeMotion::Sliding::along(const dealii::Vector<double> &x) const
+  {
+    NodalVectors<double> y(directions.size());
+    for (std::size_t k = 0; k < y.size(); ++k)
+      for (unsigned int i = 0; i < directions[k].size(); ++i)
+        y[k] += x(first[k] + i) * directions[k][i];
+    return y;
+  }
+
+  NodalVectors<double> ShapeMotion::Sliding::around(const NodalVectors<double> &y) const
+  {
+    NodalVectors<double> sums(y.size());
+    for (std::size_t k = 0; k < y.size(); ++k)
+      for (const auto &[b, faces] : beside[k])
+        sums[k] += faces * y[b];
+    return sums;
+  }
+
+  NodalVectors<double> ShapeMotion::Sliding::held(NodalVectors<double> y) const
+  {
+    for (std::size_t k = 0; k < y.size(); ++k)
+      y[k] = without(y[k], directions[k]);
+    return y;
   }
 
   void ShapeMotion::make_levels(const TetMesh &mesh)
@@ -183,10 +262,12 @@ namespace retroforge
   NodalVectors<double> ShapeMotion::of(const NodalVectors<double> &d) const
   {
     AssertDimension(d.size(), on_surface_.size());
-    NodalVectors<double> r(d.size());
-    for (std::size_t k = 0; k < d.size(); ++k)
-      if (on_surface_[k])
-        r[k] = across_[k] * d[k];
+    NodalVectors<double> r = d;
+    for (std::size_t k = 0; k < r.size(); ++k)
+      if (!on_surface_[k])
+        r[k] = Vec3();
+    r = sliding_.held(std::move(r));
+    add(sliding_.along(sliding_.solve(sliding_.around(r))), r);
     return continued(std::move(r));
   }
 
@@ -226,9 +307,7 @@ namespace retroforge
           y[k] += x[i];
       }
     }
-    for (std::size_t k = 0; k < y.size(); ++k)
-      if (on_surface_[k])
-        y[k] = dealii::transpose(across_[k]) * y[k];
-    return y;
+    add(sliding_.around(sliding_.along(sliding_.solve(y))), y);
+    return sliding_.held(std::move(y));
   }
 } // namespace retroforge

@@ -5,14 +5,17 @@
 #include <retroforge/mesh/tet_mesh.h>
 
 #include <deal.II/lac/sparse_direct.h>
+#include <deal.II/lac/vector.h>
 
 #include <memory>
 
 namespace retroforge
 {
   /// P, the part of a motion d of a mesh's nodes that changes its shape. A linear map, of the mesh where it was made:
-  /// - on the surface what goes across it, at sharp edges in the plane across them, all at corners. How many directions that
-  ///   are tell the eigenvalues of  sum_f A_f n_f n_f^T  over the faces around. The volume changes as by d.
+  /// - on the surface it is d but in the directions t in which a node may slide: those of the eigenvectors of
+  ///   sum_f A_f n_f n_f^T  over the faces around that have small eigenvalues, perpendicular to the sum of their area vectors,
+  ///   so that the volume changes as by d. Two on faces, one along a sharp edge, none at a corner. Along them nodes slide so
+  ///   that neighbours on the surface move as alike as can be:  sum over faces of |P d_a - P d_b|^2 of their edges  is least.
   /// - inside the mean of the neighbours', and on a plane of symmetry that of the neighbours on it.
   class ShapeMotion
   {
@@ -39,7 +42,29 @@ namespace retroforge
       std::vector<Vec3> solve(const std::vector<Vec3> &b) const;
     };
 
+    /// Directions in which the nodes of the surface slide. Their motions along them follow from
+    ///   A x = T^T S K d,    P d = K d + T x,
+    /// T the directions, K = 1 - T T^T, S sums over the neighbours, each as often as there are faces.
+    struct Sliding
+    {
+      std::vector<std::vector<Vec3>>                         directions; ///< of each node, orthonormal
+      std::vector<unsigned int>                              first;      ///< unknown of each node
+      std::vector<std::vector<std::pair<NodeIndex, double>>> beside;     ///< neighbours, number of faces
+      unsigned int                                           n = 0;      ///< unknowns
+      dealii::SparseDirectUMFPACK                            inverse;    ///< of A
+
+      /// Returns A^-1 T^T y.
+      dealii::Vector<double> solve(const NodalVectors<double> &y) const;
+      /// Returns T x.
+      NodalVectors<double> along(const dealii::Vector<double> &x) const;
+      /// Returns S y.
+      NodalVectors<double> around(const NodalVectors<double> &y) const;
+      /// Returns K y.
+      NodalVectors<double> held(NodalVectors<double> y) const;
+    };
+
     void make_surface(const TetMesh &mesh);
+    void make_sliding(const TetMesh &mesh);
     void make_levels(const TetMesh &mesh);
 
     NodalVectors<double> continued(NodalVectors<double> r) const;
@@ -47,7 +72,7 @@ namespace retroforge
     std::vector<std::vector<Vec3>>         normals_; ///< of the planes of symmetry at each node, orthonormal
     std::vector<std::vector<unsigned int>> planes_;  ///< their patches
     std::vector<char>                      on_surface_;
-    std::vector<dealii::Tensor<2, 3>>      across_; ///< what P is at nodes of the surface
+    Sliding                                sliding_;
     std::vector<std::unique_ptr<Level>>    levels_; ///< those on most planes first
   };
 } // namespace retroforge
