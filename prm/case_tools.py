@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
 """What the verification cases share: run the program on a parameter file, read its summary, print figures."""
+import csv
 import json
+import math
 import os
+import statistics
 import subprocess
 import sys
 
@@ -51,6 +54,32 @@ def gradient(summary):
 
 def figure(name, value):
     print(f"FIGURE {name} {value:.6g}", flush=True)
+
+
+class Trend:
+    """What a scan found of one objective: its slopes beside those of the polynomial through its values."""
+
+    def __init__(self, folder, objective):
+        with open(os.path.join(folder, "scan.csv"), encoding="utf-8", newline="") as table:
+            rows = [row for row in csv.DictReader(table) if not row["failure"]]
+        column = next(name for name in rows[0] if name.startswith(f"{objective} [") or name == objective)
+        columns = ("value", column, f"{objective}: gradient", f"{objective}: fit", f"{objective}: slope of the fit")
+        self.at, self.values, self.slopes, fit, fitted = ([float(row[name]) for row in rows] for name in columns)
+        self.mean, self.slope = statistics.mean(self.slopes), statistics.mean(fitted)  # of a parabola: its slope at the middle
+        middle = statistics.mean(self.at)
+        # Of the values about the parabola, and of its slope.
+        self.scatter = math.sqrt(sum((y - on_it) ** 2 for y, on_it in zip(self.values, fit)) / (len(rows) - 3))
+        self.uncertainty = self.scatter / math.sqrt(sum((x - middle) ** 2 for x in self.at))
+        self.bias = self.mean / self.slope - 1
+        self.rms = math.sqrt(statistics.mean((s - f) ** 2 for s, f in zip(self.slopes, fitted))) / abs(self.slope)
+
+
+def scan_of_trend(build, case, parameter, points, part, settings, output):
+    """Scans a parameter by a part of it to both sides, everything decided anew, in one process."""
+    _, text = run(build, "scan", case, {"Scan/parameter": parameter, "Scan/range": part, "Scan/points": points, "Scan/fit degree": 2, "Design/parameters": parameter,
+                                        "Scan/processes": 1, "Output/fields every": 0, **settings}, output, may_fail=True)
+    if not os.path.exists(os.path.join(output, "scan.csv")):
+        sys.exit(text)
 
 
 def judge_check(build, case, settings, label):

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <set>
 #include <sstream>
 
 namespace retroforge
@@ -114,6 +115,22 @@ namespace retroforge
       return lines;
     }
 
+    /// Leaves out settings that are not declared and would change nothing of the forging.
+    std::vector<ParameterLine> without_outdated(std::vector<ParameterLine>      lines,
+                                                const dealii::ParameterHandler &prm)
+    {
+      std::set<std::string> known;
+      for (const ParameterEntry &entry : declared_parameters(prm))
+        known.insert(entry.path());
+      const auto is_outdated = [&](const ParameterLine &line) {
+        const SettingRole role = Parameters::tags().role(line.path).value_or(SettingRole::scene);
+        return line.value && known.count(line.path) == 0 && role != SettingRole::scene &&
+               role != SettingRole::numerics;
+      };
+      lines.erase(std::remove_if(lines.begin(), lines.end(), is_outdated), lines.end());
+      return lines;
+    }
+
     /// A relative name of a file that stands beside the case's parameter file is that file, wherever the
     /// program is started; others are left as they are.
     std::string beside(const std::string &case_file, const std::filesystem::path &name)
@@ -192,10 +209,11 @@ namespace retroforge
   Parameters Parameters::of_record(const std::string &text)
   {
     std::string ignored;
-    return of_lines("", parameter_lines_of(text, "parameters of the record"), ignored);
+    return of_lines("", parameter_lines_of(text, "parameters of the record"), ignored, Origin::record);
   }
 
-  void Parameters::assign(std::vector<ParameterLine> lines, dealii::ParameterHandler &prm)
+  void
+  Parameters::assign(std::vector<ParameterLine> lines, dealii::ParameterHandler &prm, const Origin origin)
   {
     const auto                 values = parameter_values(lines);
     std::vector<NamedSections> named;
@@ -211,15 +229,19 @@ namespace retroforge
         lines = without_section(std::move(lines), section);
         without_effect.push_back("section `" + section + "' is not read, as " + list + " does not name it");
       }
+    if (origin == Origin::record)
+      lines = without_outdated(std::move(lines), prm);
     set_parameters(prm, lines);
   }
 
-  Parameters
-  Parameters::of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo)
+  Parameters Parameters::of_lines(const std::string         &file,
+                                  std::vector<ParameterLine> lines,
+                                  std::string               &echo,
+                                  const Origin               origin)
   {
     Parameters               parameters;
     dealii::ParameterHandler prm;
-    parameters.assign(std::move(lines), prm);
+    parameters.assign(std::move(lines), prm, origin);
     rename_files(prm, [&](const std::string &name) { return beside(file, name); });
     parameters.check_all();
     parameters.find_without_effect(declared_parameters(prm));

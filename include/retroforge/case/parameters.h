@@ -71,7 +71,8 @@ namespace retroforge
     /// Reads a command's case, with its settings.
     static Parameters read(const CommandLine &command, std::string &echo);
 
-    /// Reads the complete input of an earlier run, as its record has it.  @throws Error
+    /// Reads the complete input of an earlier run, as its record has it. Settings that are not known any more are left out
+    /// where they change nothing of the forging.  @throws Error
     static Parameters of_record(const std::string &text);
 
     /// Returns what the rooms say of their settings; of dies and objectives by the name `*`.
@@ -116,10 +117,20 @@ namespace retroforge
                                  const std::vector<std::pair<std::string, std::string>> &changes = {});
 
   private:
+    enum class Origin
+    {
+      user,
+      record ///< written by a program that may have been an earlier one
+    };
+
     /// @param file  of the case, beside which other files are looked for
-    static Parameters of_lines(const std::string &file, std::vector<ParameterLine> lines, std::string &echo);
+    static Parameters of_lines(const std::string         &file,
+                               std::vector<ParameterLine> lines,
+                               std::string               &echo,
+                               Origin                     origin = Origin::user);
     /// Declares what the lines name, and takes their values.
-    void assign(std::vector<ParameterLine> lines, dealii::ParameterHandler &prm);
+    void
+    assign(std::vector<ParameterLine> lines, dealii::ParameterHandler &prm, Origin origin = Origin::user);
 
     // Once defaults are resolved:
     double edge_stiffness_ = 1.; ///< penalty of edges over that of nodes

@@ -151,25 +151,16 @@ def trend():
     """The hot hub by the exponent of hardening, twelve designs within 20 %, meshes decided anew: the mean of their gradients against the slope of a parabola
     through their energies, and the standard deviation of that. Narrow intervals mislead: slopes through neighbours are printed, too."""
     settings = {"Material/law": "power", "Material/consistency": 32, "Material/strain rate sensitivity": 0.15,
-                "Material/further numbers": "n: 0.15, q0: 0.05, beta: 0.0025, T0: 1100", "Objectives/names": "energy", "Design/parameters": "material/n",
+                "Material/further numbers": "n: 0.15, q0: 0.05, beta: 0.0025, T0: 1100", "Objectives/names": "energy",
                 "Optimisation/objective": "", "Optimisation/at most": "", "Optimisation/lower bounds": "", "Optimisation/upper bounds": "",
-                "Optimisation/scales": "", "Scan/points": 12, "Scan/range": 0.2, "Scan/fit degree": 2, "Output/fields every": 0}
-    _, text = case_tools.run(BUILD, "scan", HOT_HUB, settings, "trend", may_fail=True)
-    if not os.path.exists(os.path.join("trend", "scan.csv")):
-        sys.exit(text)
-    with open(os.path.join("trend", "scan.csv"), encoding="utf-8") as table:
-        rows = [[float(row[name]) for name in ("value", "energy [mJ]", "energy: gradient", "energy: fit", "energy: slope of the fit")]
-                for row in csv.DictReader(table) if not row["failure"]]
-    n, energies, gradients, fit, slopes = zip(*rows)
-    mean, slope = statistics.mean(gradients), statistics.mean(slopes)  # of a parabola, at the middle
-    off = [energy - on_it for energy, on_it in zip(energies, fit)]
-    squares = sum((x - statistics.mean(n)) ** 2 for x in n)
-    scatter = math.sqrt(sum(x * x for x in off) / (len(off) - 3))
-    print(f"{len(n)} designs: gradients {mean:.0f}, standard deviation {statistics.stdev(gradients):.0f}; trend {slope:.0f} +- {scatter / math.sqrt(squares):.0f}; "
-          f"energies scatter by {scatter / statistics.mean(energies):.1e}")
-    fours = [chord(n[i:i + 4], energies[i:i + 4]) for i in range(len(n) - 3)]
+                "Optimisation/scales": ""}
+    case_tools.scan_of_trend(BUILD, HOT_HUB, "material/n", 12, 0.2, settings, "trend")
+    of = case_tools.Trend("trend", "energy")
+    print(f"{len(of.at)} designs: gradients {of.mean:.0f}, standard deviation {statistics.stdev(of.slopes):.0f}; trend {of.slope:.0f} +- {of.uncertainty:.0f}; "
+          f"energies scatter by {of.scatter / statistics.mean(of.values):.1e}")
+    fours = [chord(of.at[i:i + 4], of.values[i:i + 4]) for i in range(len(of.at) - 3)]
     print(f"slopes through four neighbours: {min(fours):.0f} to {max(fours):.0f}")
-    case_tools.figure("trend_by_n", abs(mean / slope - 1))
+    case_tools.figure("trend_by_n", abs(of.bias))
 
 
 def chord(x, y):

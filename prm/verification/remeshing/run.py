@@ -3,7 +3,7 @@
 # Copyright (C) 2026 The Retroforge authors
 """Remeshing again and again a cylinder and a gear-like star that are upset to a third: angles, nodes kept, volume, and what
 becomes of a Gaussian, by local remeshing and by rebuilding; and slopes of runs that are remeshed, everything decided anew:
-run.py BUILD quick | many | tripod | diffusion | diffusion_10k | slopes
+run.py BUILD quick | many | tripod | diffusion | diffusion_10k | slopes | trends
 
 The Gaussian has a standard deviation of two mean edge lengths, so that when the workpiece is upset it is left with less than one
 along the axis, on any mesh; the last row of diffusion_10k has the Gaussian of the coarse mesh on the fine one."""
@@ -96,10 +96,31 @@ def slopes(build):
                                                 if "random" not in row["parameter"]))
 
 
+PRM = os.path.join(HERE, "..", "..")
+HOT_HUB = {"Heat/heating": "none", "Heat/transfer time": 0, "Heat/dwell time": 0, "Die upper/friction": 0, "Die lower/friction": 0,
+           "Billet/volume held by": "", "Objectives/names": "energy, unfilled", "Press/stroke": 20, "Optimisation/objective": "", "Optimisation/at most": "",
+           "Optimisation/lower bounds": "", "Optimisation/upper bounds": "", "Optimisation/scales": ""}
+
+
+def trends(build):
+    """Seven radii within 2 %, meshes decided anew some ten times: the mean of the slopes beside that of a parabola through the values. The tutorial's hub, whose
+    metal sticks to the dies, and one that hardens without friction, with two sizes of elements."""
+    hub, hot = os.path.join(PRM, "tutorial", "hub", "hub.prm"), os.path.join(PRM, "verification", "optimisation", "hot_hub.prm")
+    scenes = {"hub": (hub, {}), "hardening": (hot, HOT_HUB), "hardening_fine": (hot, {**HOT_HUB, "Billet/element size": 2.8})}
+    print("| scene | objective | mean slope | trend | beside it | single ones, rms | values off, rms |\n" + "| --- " * 7 + "|")
+    for name, (case, settings) in scenes.items():
+        case_tools.scan_of_trend(build, case, "billet/radius", 7, 0.02, settings, f"trend_{name}")
+        for objective in ("energy", "force", "unfilled") if name == "hub" else ("energy", "unfilled"):
+            of = case_tools.Trend(f"trend_{name}", objective)
+            print(f"| {name} | {objective} | {of.mean:.6g} | {of.slope:.6g} +- {of.uncertainty:.2g} | {of.bias:+.2%} | {of.rms:.2%} | {of.scatter:.3g} |", flush=True)
+            if objective == "energy":
+                case_tools.figure(f"trend_{name}", abs(of.bias))
+
+
 def main():
     build, what = sys.argv[1:3]
-    if what == "slopes":
-        return slopes(build)
+    if what in ("slopes", "trends"):
+        return {"slopes": slopes, "trends": trends}[what](build)
     print("| shape | method | nodes | remeshings | L2 error | least angle | nodes kept | volume per remeshing | drift of the side | us per tet |\n" + "| --- " * 10 + "|")
     if what == "tripod":
         tripod(build)
