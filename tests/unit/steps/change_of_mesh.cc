@@ -8,7 +8,7 @@
 // - Volumes change as they did.
 // - A mesh that follows the shape: its volume changes as by the operations; along the flat ends of the cylinder nodes go as
 //   their neighbours do, what goes across stays, and a motion along the ends leaves nothing; no node goes farther than those of the surface; nodes stay in planes of symmetry; constant
-//   fields stay, equal values of nodes beside each other stay equal, and linear ones are inside what they are at the new places; the dot product as above, for each member of the
+//   fields stay, equal values of nodes beside each other stay equal, those that are 0 stay so, and linear ones are inside what they are at the new places; the dot product as above, for each member of the
 //   state alone and for all, and a member of which the motion is left out is told.
 // - No derivatives in a field: none arrive, and none are computed.
 
@@ -261,6 +261,13 @@ namespace
     following.move_nodes(w, with_equals);
     const bool equal =
       with_equals[cell[1]] == with_equals[cell[0]] && with_equals[cell[2]] == with_equals[cell[0]];
+    // Where no die has touched there is no skin and no flux.
+    std::vector<double> with_nothing = linear;
+    for (const NodeIndex k : cell)
+      with_nothing[k] = 0.;
+    following.move_nodes(w, with_nothing);
+    const bool nothing =
+      std::all_of(cell.begin(), cell.end(), [&](const NodeIndex k) { return with_nothing[k] == 0.; });
     following.move_nodes(w, linear);
     following.move_nodes(w, constant);
     following.move_cells(w, in_cells);
@@ -274,7 +281,8 @@ namespace
     for (const double q : in_cells)
       of_constants = std::max(of_constants, std::abs(q - 3.));
     std::cout << "fields: linear ones inside " << yes(of_linear < 1e-12) << ", constants "
-              << yes(of_constants < 1e-12) << ", equal values stay equal " << yes(equal) << "\n";
+              << yes(of_constants < 1e-12) << ", equal values stay equal " << yes(equal)
+              << ", of nothing nothing " << yes(nothing) << "\n";
   }
 
   /// Of a mesh that follows the shape.
