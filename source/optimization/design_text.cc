@@ -13,6 +13,11 @@ namespace retroforge
     return text;
   }
 
+  std::string after_number(const std::string &unit)
+  {
+    return unit.empty() || unit == "none" ? "" : " " + unit;
+  }
+
   std::string values_by_name(const std::vector<DesignParameter> &parameters, const std::vector<double> &mu)
   {
     std::string text;

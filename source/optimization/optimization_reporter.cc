@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 #include <set>
 
 namespace retroforge
@@ -187,6 +188,25 @@ namespace retroforge
     if (value != 0. && problem_.criteria.data.empty())
       std::printf(", %.2g of the value", results_.noise.objective / std::abs(value));
     std::printf("\n");
+    // Of a limit in it, steps that bring it nearer cannot be told from those that do not.
+    const Evaluation &start = results_.start;
+    for (const Limit &limit : problem_.criteria.limits)
+    {
+      const std::vector<double> slope = problem_.space.pull_back(start.gradients[limit.objective]);
+      const double change = std::sqrt(std::inner_product(slope.begin(), slope.end(), slope.begin(), 0.)) *
+                            problem_.parameters().first_step;
+      const double      noise = results_.noise.values[limit.objective];
+      const std::string unit  = after_number(results_.units[limit.objective]);
+      if (noise > change && limit.excess(start.values) * limit.size > -noise)
+        std::printf(
+          "  noise of %s: %.3g%s, more than a first step changes it by (%.2g%s): finer elements have less, "
+          "and a longer Optimisation/first step sees more\n",
+          results_.objectives[limit.objective].c_str(),
+          noise,
+          unit.c_str(),
+          change,
+          unit.c_str());
+    }
   }
 
   void OptimizationReporter::print_line(const std::string &line) const

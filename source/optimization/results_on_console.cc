@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/text.h>
+#include <retroforge/optimization/design_text.h>
 #include <retroforge/optimization/optimization_results.h>
 
 #include <algorithm>
@@ -12,11 +13,6 @@ namespace retroforge
 {
   namespace
   {
-    std::string after_number(const std::string &unit)
-    {
-      return unit.empty() || unit == "none" ? "" : " " + unit;
-    }
-
     void print_confidence(const OptimizationResults &results, std::ostream &out)
     {
       const Confidence &confidence = *results.confidence;

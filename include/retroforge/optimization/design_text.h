@@ -5,11 +5,14 @@
 #include <retroforge/design/design.h>
 
 /// @file
-/// Designs as text of a parameter file, read back to the same bits.
+/// Designs as text of a parameter file, read back to the same bits, and numbers with units for a reader.
 namespace retroforge
 {
   /// Returns a number with all its digits.
   std::string exact(double x);
+
+  /// Returns what follows a number: ` UNIT`, or nothing where it has none.
+  std::string after_number(const std::string &unit);
 
   /// Returns `NAME: VALUE, NAME: VALUE`, as Design/at has it.
   std::string values_by_name(const std::vector<DesignParameter> &parameters, const std::vector<double> &mu);

@@ -283,6 +283,7 @@ def limits_that_do_not_press():
     judge("the noise of a limit on the objective is that of the objective", found["limits"][0]["noise"] == noise > 0, found["limits"])
     judge("and not told far from the limit", "noise of barrel: " not in printed, printed)
     found, printed = optimize("close", f"Optimisation/at most=barrel: {found['objective']['best'] + 0.5 * noise!r}", *there, *shortest)
+    judge("what hides a limit from the search is told", "more than a first step changes it by (" in printed, printed)
     judge("near it, it is", "noise of barrel: " in printed and "nearer to the limit" in printed, [noise, printed])
 
 
