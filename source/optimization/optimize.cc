@@ -183,7 +183,7 @@ namespace retroforge
   bool Optimize::search()
   {
     results_.goes_on   = results_.confirmation.has_value();
-    const bool settled = search_.run(results_.noise.objective);
+    const bool settled = search_.run(results_.noise.objective, results_.noise.values);
     const bool is_cut  = search_.stop() == Stop::iterations || search_.stop() == Stop::simulations;
     if (std::exchange(results_.goes_on, false) && is_cut)
       return false;

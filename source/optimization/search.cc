@@ -116,9 +116,21 @@ namespace retroforge
     return check_derivative(asked, direction, steps);
   }
 
-  bool Search::run(const double noise)
+  double Search::noise() const
   {
-    noise_ = noise / merit_.size;
+    double square = noise_ * noise_;
+    for (std::size_t i = 0; i < criteria_.limits.size() && !value_noise_.empty(); ++i)
+    {
+      const Limit &limit = criteria_.limits[i];
+      square += std::pow(merit_.pressed(i, now_.values) * limit.slope() * value_noise_[limit.objective], 2);
+    }
+    return std::sqrt(square);
+  }
+
+  bool Search::run(const double noise, std::vector<double> of_values)
+  {
+    noise_       = noise / merit_.size;
+    value_noise_ = std::move(of_values);
     if (criteria_.limits.empty())
     {
       minimize_merit();
@@ -201,7 +213,7 @@ namespace retroforge
     // where the largest step can. A round before may have ended with steps as short as its noise.
     constexpr double several = 4.;
     const double     slope   = space_.projected_length(now_.mu, merit_.gradient(now_.values, now_.gradients));
-    const double     seen    = slope > 0. ? several * noise_ / slope : 0.;
+    const double     seen    = slope > 0. ? several * noise() / slope : 0.;
     const double     radius =
       std::clamp(std::max(radius_, seen), 0.25 * parameters_.first_step, parameters_.largest_step);
     begun_with_ = slope;
@@ -244,8 +256,8 @@ namespace retroforge
     else if (is_long ||
              state.gradient <= std::max(enough, parameters_.gradient_tolerance * parameters_.first_step))
       stop_ = SearchStop::gradient;
-    else if (n_repeated_ > most_repeated || state.gradient * state.radius <= noise_ ||
-             (state.promised <= seen_part * noise_ &&
+    else if (n_repeated_ > most_repeated || state.gradient * state.radius <= noise() ||
+             (state.promised <= seen_part * noise() &&
               criteria_.largest_excess(now_.values) <= parameters_.limit_tolerance))
       stop_ = SearchStop::noise;
     else if (state.radius < shortest * parameters_.first_step)
@@ -266,7 +278,7 @@ namespace retroforge
       return row;
     };
     Linearization known;
-    known.noise = noise_;
+    known.noise = noise();
     known.gradient.assign(x_.size(), 0.);
     for (unsigned int o = 0; o < now_.gradients.size(); ++o)
       if (criteria_.objective.weights[o] != 0.)

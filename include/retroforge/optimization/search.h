@@ -63,9 +63,10 @@ namespace retroforge
     /// The merit's gradient along a direction that is free both ways, against central differences.
     std::vector<DifferenceCheck> check();
 
-    /// @param noise  of the objective, in its unit
+    /// @param noise      of the objective, in its unit
+    /// @param of_values  that of each value; empty: 0. That of a limit counts as far as the limit presses.
     /// @return whether limits are kept by the design accepted last, and no multiplier would change it
-    bool run(double noise);
+    bool run(double noise, std::vector<double> of_values = {});
 
     SearchStop        stop() const { return stop_; }
     const Evaluation &now() const { return now_; } ///< the design accepted last, with gradients
@@ -99,6 +100,8 @@ namespace retroforge
     bool go_on(const MinimizerState &state);
     /// The merit at the present design, over scaled variables: data and limits are its terms.
     Linearization linearization() const;
+    /// The noise of the merit at the present design.
+    double noise() const;
     /// Limits whose penalty is felt at the present design.
     std::vector<unsigned int> pressing() const;
     /// Multipliers that fit the gradients at the present design.
@@ -115,7 +118,8 @@ namespace retroforge
     Evaluation now_;
     /// Variables of the present design, as it was tried: its values come back bit for bit.
     BoundedProblem::Vector x_;
-    double                 noise_      = 0.; ///< noise of the merit
+    double                 noise_ = 0.;  ///< of the objective, in units of the merit
+    std::vector<double>    value_noise_; ///< of each value, or empty
     double                 radius_     = 0.;
     double                 begun_with_ = 0.; ///< the merit's gradient where the present round began
     unsigned int           iterations_ = 0;  ///< designs tried, without those known before
