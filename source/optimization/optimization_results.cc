@@ -123,6 +123,14 @@ namespace retroforge
     return of.at_least ? of.bound - value : value - of.bound;
   }
 
+  bool OptimizationResults::missed_only_by_noise() const
+  {
+    for (std::size_t i = 0; i < criteria.limits.size(); ++i)
+      if (missed_by(i) > noise_of(criteria.limits[i]))
+        return false;
+    return !limits_are_kept();
+  }
+
   bool OptimizationResults::misses_there(const Limit &limit) const
   {
     return confirmation && !confirmation->best.failed() &&

@@ -207,9 +207,11 @@ namespace retroforge
 
   std::string Optimize::why_not_corrected(const unsigned int n_corrections) const
   {
-    if (!results_.has_converged())
+    // What misses limits by their noise only is as near to them as a search comes.
+    const bool is_there = results_.missed_only_by_noise() && results_.stop == Stop::limits;
+    if (!results_.has_converged() && !is_there)
       return "it had not come to its end, " + in_words(results_.stop) + "; --resume with more goes on";
-    if (!results_.limits_are_kept())
+    if (!results_.limits_are_kept() && !is_there)
       return "it did not keep its limits itself";
     if (n_corrections == problem_.parameters().corrections)
       return "Optimisation/corrections is " + std::to_string(n_corrections);
@@ -223,9 +225,10 @@ namespace retroforge
       if (results_.misses_there(limit))
       {
         const unsigned int o = limit.objective;
-        // Its tolerance is kept for what the correction of another design differs by.
-        const double reserve = (limit.at_least ? -1. : 1.) * results_.limit_tolerance * limit.size;
-        limit.correction     = results_.confirmation->best.values[o] - results_.best.values[o] + reserve;
+        // Its tolerance, or its noise, is kept for what the correction of another design differs by.
+        const double kept = std::max(results_.limit_tolerance * limit.size, results_.noise_of(limit));
+        limit.correction =
+          results_.confirmation->best.values[o] - results_.best.values[o] + (limit.at_least ? -kept : kept);
         char text[32];
         std::snprintf(text, sizeof text, " %+.4g ", limit.correction);
         told += (told.empty() ? "" : ", ") + results_.objectives[o] + text + results_.units[o];

@@ -87,7 +87,9 @@ namespace retroforge
     /// Returns the amount by which the best design misses a limit, in its unit; 0 where it keeps it, to the
     /// tolerance.
     double missed_by(std::size_t limit) const;
-    bool   limits_are_kept() const { return criteria.largest_excess(best.values) <= limit_tolerance; }
+    /// Returns whether limits are missed, each by no more than its noise.
+    bool missed_only_by_noise() const;
+    bool limits_are_kept() const { return criteria.largest_excess(best.values) <= limit_tolerance; }
     /// Returns the noise of what a limit is set on, in its unit.
     double noise_of(const Limit &limit) const
     {
