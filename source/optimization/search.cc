@@ -116,15 +116,20 @@ namespace retroforge
     return check_derivative(asked, direction, steps);
   }
 
-  double Search::noise() const
+  double Search::noise_of_limits() const
   {
-    double square = noise_ * noise_;
+    double square = 0.;
     for (std::size_t i = 0; i < criteria_.limits.size() && !value_noise_.empty(); ++i)
     {
       const Limit &limit = criteria_.limits[i];
       square += std::pow(merit_.pressed(i, now_.values) * limit.slope() * value_noise_[limit.objective], 2);
     }
     return std::sqrt(square);
+  }
+
+  double Search::noise() const
+  {
+    return std::hypot(noise_, noise_of_limits());
   }
 
   bool Search::run(const double noise, std::vector<double> of_values)
@@ -256,7 +261,8 @@ namespace retroforge
     else if (is_long ||
              state.gradient <= std::max(enough, parameters_.gradient_tolerance * parameters_.first_step))
       stop_ = SearchStop::gradient;
-    else if (n_repeated_ > most_repeated || state.gradient * state.radius <= noise() ||
+    else if (n_repeated_ > most_repeated || state.gradient * state.radius <= noise_ ||
+             state.promised <= seen_part * noise_of_limits() ||
              (state.promised <= seen_part * noise() &&
               criteria_.largest_excess(now_.values) <= parameters_.limit_tolerance))
       stop_ = SearchStop::noise;

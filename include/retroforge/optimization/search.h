@@ -100,8 +100,9 @@ namespace retroforge
     bool go_on(const MinimizerState &state);
     /// The merit at the present design, over scaled variables: data and limits are its terms.
     Linearization linearization() const;
-    /// The noise of the merit at the present design.
+    /// The noise of the merit at the present design, and what of it comes by limits.
     double noise() const;
+    double noise_of_limits() const;
     /// Limits whose penalty is felt at the present design.
     std::vector<unsigned int> pressing() const;
     /// Multipliers that fit the gradients at the present design.

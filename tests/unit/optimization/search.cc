@@ -252,8 +252,8 @@ int main()
         }
     const double by_noise = 0.1 / (2. * std::sqrt(3.)); // of the disk's edge
     std::cout << "a rough limit, from 40 starts: nearer to the optimum than its noise "
-              << answer(left[true] < by_noise) << ", and by less than 0.7 of what is left without knowing it "
-              << answer(left[true] < 0.7 * left[false]) << ", with fewer designs "
+              << answer(left[true] < by_noise) << ", and by less than 0.8 of what is left without knowing it "
+              << answer(left[true] < 0.8 * left[false]) << ", with fewer designs "
               << answer(designs[true] < designs[false]) << "\n";
   }
   {
