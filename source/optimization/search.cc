@@ -132,6 +132,19 @@ namespace retroforge
     return std::hypot(noise_, noise_of_limits());
   }
 
+  double Search::descent() const
+  {
+    std::vector<double> by_x = space_.pull_back(merit_.gradient(now_.values, now_.gradients));
+    for (std::size_t j = 0; j < by_x.size(); ++j)
+    {
+      const auto at = space_.at(now_.mu, j);
+      if (at == DesignSpace::At::fixed || (at == DesignSpace::At::lower && by_x[j] > 0.) ||
+          (at == DesignSpace::At::upper && by_x[j] < 0.))
+        by_x[j] = 0.;
+    }
+    return length(by_x);
+  }
+
   bool Search::run(const double noise, std::vector<double> of_values)
   {
     noise_       = noise / merit_.size;
@@ -218,8 +231,10 @@ namespace retroforge
     // where the largest step can. A round before may have ended with steps as short as its noise.
     constexpr double several = 4.;
     const double     slope   = space_.projected_length(now_.mu, merit_.gradient(now_.values, now_.gradients));
-    const double     seen    = slope > 0. ? several * noise() / slope : 0.;
-    const double     radius =
+    double           seen    = slope > 0. ? several * noise_ / slope : 0.;
+    if (const double steepest = descent(); noise_of_limits() > 0. && steepest > 0.)
+      seen = std::max(seen, several * noise() / steepest);
+    const double radius =
       std::clamp(std::max(radius_, seen), 0.25 * parameters_.first_step, parameters_.largest_step);
     begun_with_ = slope;
     begun_at_   = iterations_;
@@ -262,7 +277,7 @@ namespace retroforge
              state.gradient <= std::max(enough, parameters_.gradient_tolerance * parameters_.first_step))
       stop_ = SearchStop::gradient;
     else if (n_repeated_ > most_repeated || state.gradient * state.radius <= noise_ ||
-             state.promised <= seen_part * noise_of_limits() ||
+             (noise_of_limits() > 0. && descent() * state.radius <= noise()) ||
              (state.promised <= seen_part * noise() &&
               criteria_.largest_excess(now_.values) <= parameters_.limit_tolerance))
       stop_ = SearchStop::noise;

@@ -103,6 +103,9 @@ namespace retroforge
     /// The noise of the merit at the present design, and what of it comes by limits.
     double noise() const;
     double noise_of_limits() const;
+    /// What the merit falls by along its gradient, per length, where no bound is in the way: of limits that press hard
+    /// the projected gradient says only how far bounds are.
+    double descent() const;
     /// Limits whose penalty is felt at the present design.
     std::vector<unsigned int> pressing() const;
     /// Multipliers that fit the gradients at the present design.
