@@ -96,7 +96,7 @@ namespace retroforge
                       corrections,
                       "How often the search may go on where the confirmation says that a limit is not kept "
                       "there, within iterations and simulations: the limit then counts what the finer mesh "
-                      "added to the value. Units: none.",
+                      "added to the value, and its noise. Units: none.",
                       Integer(0, 100));
     prm.add_parameter(
       "keep records",

@@ -144,6 +144,13 @@ namespace retroforge
     });
   }
 
+  double OptimizationResults::correction_there(const Limit &limit) const
+  {
+    const double kept  = std::max(limit_tolerance * limit.size, noise_of(limit));
+    const double added = confirmation->best.values[limit.objective] - best.values[limit.objective];
+    return added + (limit.at_least ? -kept : kept);
+  }
+
   std::size_t OptimizationResults::n_failed_at_the_end() const
   {
     std::size_t n = 0;

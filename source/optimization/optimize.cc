@@ -225,10 +225,7 @@ namespace retroforge
       if (results_.misses_there(limit))
       {
         const unsigned int o = limit.objective;
-        // Its tolerance, or its noise, is kept for what the correction of another design differs by.
-        const double kept = std::max(results_.limit_tolerance * limit.size, results_.noise_of(limit));
-        limit.correction =
-          results_.confirmation->best.values[o] - results_.best.values[o] + (limit.at_least ? -kept : kept);
+        limit.correction     = results_.correction_there(limit);
         char text[32];
         std::snprintf(text, sizeof text, " %+.4g ", limit.correction);
         told += (told.empty() ? "" : ", ") + results_.objectives[o] + text + results_.units[o];

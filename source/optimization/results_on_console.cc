@@ -120,7 +120,7 @@ namespace retroforge
       if (limit.correction != 0.)
         out << "  " << objectives[limit.objective] << " counts with " << std::setprecision(4) << std::showpos
             << limit.correction << std::noshowpos << after_number(units[limit.objective])
-            << ", which a finer mesh added to it\n";
+            << ", which a finer mesh and the noise add to it\n";
     for (const Limit &limit : criteria.limits)
       if (noise_of(limit) > std::abs(limit.excess(best.values)) * limit.size)
         out << "  noise of " << objectives[limit.objective] << ": " << std::setprecision(3) << noise_of(limit)

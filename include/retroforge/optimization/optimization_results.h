@@ -98,6 +98,9 @@ namespace retroforge
     /// Returns whether the best design, forged for the confirmation, misses a limit, or any.
     bool misses_there(const Limit &limit) const;
     bool misses_there() const;
+    /// Returns what such a limit counts from then on: what the finer mesh adds to the value, and for what that of another
+    /// design differs by its tolerance or its noise, the larger of the two.
+    double correction_there(const Limit &limit) const;
     /// Returns the number of designs tried since the last accepted one, if all of them failed.
     std::size_t n_failed_at_the_end() const;
     /// Returns whether steps became too short because designs around the last one failed.
