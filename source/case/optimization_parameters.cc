@@ -75,11 +75,13 @@ namespace retroforge
       "Part of a limit by which it may be exceeded at the optimum: 1e-4 of 1185 C is 0.12 K. Of a limit "
       "of 0, part of the value at the start. Units: none.",
       Double(1e-8, 0.1));
-    prm.add_parameter("noise runs",
-                      noise_runs,
-                      "Forgings around the start, 0.001 scales away, that measure how rough the objective "
-                      "is: steps that promise less than this are not taken. 0 for no noise. Units: none.",
-                      Integer(0, 100));
+    prm.add_parameter(
+      "noise runs",
+      noise_runs,
+      "Forgings around the start, 0.001 scales away, that measure how rough the objective "
+      "is: steps that promise less than this are not taken. As many again where the search ends "
+      "for it. 0 for no noise. Units: none.",
+      Integer(0, 100));
     prm.add_parameter(
       "mesh quality",
       mesh_quality,

@@ -128,11 +128,18 @@ namespace retroforge
     return std::max(multipliers[limit] + penalties[limit] * criteria->limits[limit].excess(values), 0.);
   }
 
+  double Merit::term(const std::size_t limit, const double excess) const
+  {
+    const double rho = penalties[limit], lambda = multipliers[limit];
+    const double pressed = std::max(lambda + rho * excess, 0.);
+    return (pressed * pressed - lambda * lambda) / (2. * rho);
+  }
+
   double Merit::value(const std::vector<double> &values) const
   {
     double merit = (criteria->value(values) - origin) / size;
     for (std::size_t i = 0; i < multipliers.size(); ++i)
-      merit += (std::pow(pressed(i, values), 2) - multipliers[i] * multipliers[i]) / (2. * penalties[i]);
+      merit += term(i, criteria->limits[i].excess(values));
     return merit;
   }
 

@@ -9,50 +9,51 @@ namespace retroforge
 {
   namespace
   {
-    /// Values at a design as the gradients at the start predict them.
-    std::vector<double> predicted_values(const Evaluation &start, const std::vector<double> &mu)
+    /// Values at a design as the gradients at another predict them.
+    std::vector<double> predicted_values(const Evaluation &from, const std::vector<double> &mu)
     {
-      std::vector<double> values = start.values;
-      for (std::size_t o = 0; o < start.gradients.size(); ++o)
+      std::vector<double> values = from.values;
+      for (std::size_t o = 0; o < from.gradients.size(); ++o)
         for (std::size_t j = 0; j < mu.size(); ++j)
-          values[o] += start.gradients[o][j] * (mu[j] - start.mu[j]);
+          values[o] += from.gradients[o][j] * (mu[j] - from.mu[j]);
       return values;
     }
   } // namespace
 
   Noise measure_noise(OptimizationProblem                                             &problem,
-                      const Evaluation                                                &start,
+                      const Evaluation                                                &at,
                       const std::function<void(const Evaluation &evaluation, double)> &tell)
   {
     constexpr double              part       = 1e-3; // of the scales: what bends over it is no noise
     const OptimizationParameters &parameters = problem.parameters();
     const Criteria               &criteria   = problem.criteria;
     std::mt19937                  generator(1);
-    Noise                         noise{0., std::vector<double>(start.values.size(), 0.)}; // squares first
-    unsigned int                  n_forged = 0;
+    const std::vector<double>     middle = problem.space.scaled(at.mu);
+    Noise                         noise{0., std::vector<double>(at.values.size(), 0.)}; // squares first
     for (unsigned int i = 0;
          i < parameters.noise_runs && problem.evaluator.n_asked() < parameters.simulations;
          ++i)
     {
-      std::vector<double> x(problem.space.size());
+      std::vector<double> x = middle;
       for (double &entry : x)
-        entry = part * (2. * (generator() / 4294967295.) - 1.);
+        entry += part * (2. * (generator() / 4294967295.) - 1.);
       const std::vector<double> mu         = problem.space.values(problem.space.projected(x));
       const Evaluation          evaluation = problem.evaluate(mu);
       tell(evaluation, part);
       if (evaluation.failed())
         continue;
       // Values are linear over so short a step; their misfit against data need not be.
-      const std::vector<double> predicted = predicted_values(start, mu);
+      const std::vector<double> predicted = predicted_values(at, mu);
       noise.objective += std::pow(criteria.value(evaluation.values) - criteria.value(predicted), 2);
       for (std::size_t o = 0; o < predicted.size(); ++o)
         noise.values[o] += std::pow(evaluation.values[o] - predicted[o], 2);
-      ++n_forged;
+      ++noise.n_designs;
     }
-    const auto mean = [&](const double sum) { return n_forged > 0 ? std::sqrt(sum / n_forged) : 0.; };
-    noise.objective = mean(noise.objective);
+    if (noise.n_designs == 0)
+      return noise;
+    noise.objective = std::sqrt(noise.objective / noise.n_designs);
     for (double &value : noise.values)
-      value = mean(value);
+      value = std::sqrt(value / noise.n_designs);
     return noise;
   }
 } // namespace retroforge

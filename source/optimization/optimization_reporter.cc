@@ -14,6 +14,7 @@
 #include <retroforge/output/safe_file.h>
 #include <retroforge/run/run_messages.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -175,11 +176,11 @@ namespace retroforge
     std::fflush(stdout);
   }
 
-  void OptimizationReporter::print_noise() const
+  void OptimizationReporter::print_noise(const Evaluation &at) const
   {
     if (!problem_.is_root())
       return;
-    const double value = problem_.criteria.value(results_.start.values);
+    const double value = problem_.criteria.value(at.values);
     std::printf("  noise: %.3g%s%s",
                 results_.noise.objective,
                 problem_.criteria.objective.unit.empty() ? "" : " ",
@@ -189,15 +190,14 @@ namespace retroforge
       std::printf(", %.2g of the value", results_.noise.objective / std::abs(value));
     std::printf("\n");
     // Of a limit in it, steps that bring it nearer cannot be told from those that do not.
-    const Evaluation &start = results_.start;
     for (const Limit &limit : problem_.criteria.limits)
     {
-      const std::vector<double> slope = problem_.space.pull_back(start.gradients[limit.objective]);
+      const std::vector<double> slope = problem_.space.pull_back(at.gradients[limit.objective]);
       const double change = std::sqrt(std::inner_product(slope.begin(), slope.end(), slope.begin(), 0.)) *
                             problem_.parameters().first_step;
       const double      noise = results_.noise.values[limit.objective];
       const std::string unit  = after_number(results_.units[limit.objective]);
-      if (noise > change && limit.excess(start.values) * limit.size > -noise)
+      if (noise > change && limit.excess(at.values) * limit.size > -noise)
         std::printf(
           "  noise of %s: %.3g%s, more than a first step changes it by (%.2g%s): finer elements have less, "
           "and a longer Optimisation/first step sees more\n",
@@ -259,8 +259,13 @@ namespace retroforge
       return most > done ? most - done : 0;
     };
     const OptimizationParameters &most = problem_.parameters();
+    const auto n_noisy = std::count_if(results_.rows.begin(), results_.rows.end(), [](const TrialRow &row) {
+      return row.decision == TrialRow::Decision::noise;
+    });
+    // At the start, and where the search ends.
+    const unsigned int designs = left(most.iterations, n_iterations) + left(2 * most.noise_runs, n_noisy);
     return std::min(left(most.simulations, problem_.evaluator.n_asked()),
-                    left(most.iterations, n_iterations) * problem_.evaluator.n_forgings(problem_.main.mu));
+                    designs * problem_.evaluator.n_forgings(problem_.main.mu));
   }
 
   void OptimizationReporter::write_shapes(const Evaluation &evaluation, const std::string &name)

@@ -154,12 +154,13 @@ namespace retroforge
   std::size_t OptimizationResults::n_failed_at_the_end() const
   {
     std::size_t n = 0;
-    for (auto row = rows.rbegin(); row != rows.rend() && row->decision == TrialRow::Decision::refused; ++row)
-    {
-      if (!row->evaluation.failed())
-        return 0;
-      ++n;
-    }
+    for (auto row = rows.rbegin(); row != rows.rend() && !row->becomes_the_next(); ++row)
+      if (row->decision == TrialRow::Decision::refused)
+      {
+        if (!row->evaluation.failed())
+          return 0;
+        ++n;
+      }
     return n;
   }
 

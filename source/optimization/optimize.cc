@@ -157,11 +157,27 @@ namespace retroforge
   {
     if (problem_.parameters().noise_runs == 0)
       return;
-    results_.noise = retroforge::measure_noise(
-      problem_, results_.start, [&](const Evaluation &evaluation, const double radius) {
+    const Evaluation &at = search_.now();
+    const Noise       noise =
+      retroforge::measure_noise(problem_, at, [&](const Evaluation &evaluation, const double radius) {
         add_row(Decision::noise, evaluation, radius);
       });
-    reporter_.print_noise();
+    if (noise.n_designs == 0)
+      return;
+    results_.noise = noise;
+    search_.set_noise(noise.objective, noise.values);
+    reporter_.print_noise(at);
+  }
+
+  bool Optimize::finds_less_noise()
+  {
+    // The noise of a sum of squares falls with it, and at the start a decision of the program may have been near.
+    constexpr double much_less = 0.5;
+    const double     before    = search_.noise();
+    if (search_.stop() != Stop::noise || search_.now().mu == results_.start.mu)
+      return false;
+    measure_noise();
+    return search_.noise() < much_less * before;
   }
 
   Evaluation Optimize::best_so_far() const
@@ -182,9 +198,11 @@ namespace retroforge
 
   bool Optimize::search()
   {
-    results_.goes_on   = results_.confirmation.has_value();
-    const bool settled = search_.run(results_.noise.objective, results_.noise.values);
-    const bool is_cut  = search_.stop() == Stop::iterations || search_.stop() == Stop::simulations;
+    results_.goes_on = results_.confirmation.has_value();
+    bool settled     = search_.run();
+    if (!results_.goes_on && finds_less_noise())
+      settled = search_.run();
+    const bool is_cut = search_.stop() == Stop::iterations || search_.stop() == Stop::simulations;
     if (std::exchange(results_.goes_on, false) && is_cut)
       return false;
     results_.confirmation.reset();

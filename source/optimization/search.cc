@@ -121,8 +121,11 @@ namespace retroforge
     double square = 0.;
     for (std::size_t i = 0; i < criteria_.limits.size() && !value_noise_.empty(); ++i)
     {
-      const Limit &limit = criteria_.limits[i];
-      square += std::pow(merit_.pressed(i, now_.values) * limit.slope() * value_noise_[limit.objective], 2);
+      // A limit that a lucky design keeps by less than its noise presses at the next.
+      const Limit &limit  = criteria_.limits[i];
+      const double excess = limit.excess(now_.values);
+      const double noise  = std::abs(limit.slope()) * value_noise_[limit.objective];
+      square += std::pow(merit_.term(i, excess + noise) - merit_.term(i, excess), 2);
     }
     return std::sqrt(square);
   }
@@ -145,10 +148,14 @@ namespace retroforge
     return length(by_x);
   }
 
-  bool Search::run(const double noise, std::vector<double> of_values)
+  void Search::set_noise(const double noise, std::vector<double> of_values)
   {
     noise_       = noise / merit_.size;
     value_noise_ = std::move(of_values);
+  }
+
+  bool Search::run()
+  {
     if (criteria_.limits.empty())
     {
       minimize_merit();
@@ -166,7 +173,6 @@ namespace retroforge
       std::vector<double> before;
       for (const Limit &limit : criteria_.limits)
         before.push_back(std::max(limit.excess(now_.values), 0.));
-      stop_                         = SearchStop::running;
       const unsigned int iterations = iterations_;
       minimize_merit();
       if (stop_ == SearchStop::iterations || stop_ == SearchStop::simulations)
@@ -216,10 +222,10 @@ namespace retroforge
   {
     for (;;)
     {
+      stop_ = SearchStop::running;
       minimize_on_one_mesh();
       if (stop_ != SearchStop::mesh)
         return;
-      stop_ = SearchStop::running;
       if (const std::optional<Evaluation> again = task_.renew_mesh(now_))
         now_ = *again;
     }

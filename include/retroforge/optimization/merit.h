@@ -72,6 +72,8 @@ namespace retroforge
 
     /// Returns  [lambda_i + rho_i c_i]_+.
     double pressed(std::size_t limit, const std::vector<double> &values) const;
+    /// Returns what limit i adds where it is exceeded by c:  ([lambda_i + rho_i c]_+^2 - lambda_i^2) / (2 rho_i).
+    double term(std::size_t limit, double excess) const;
     double value(const std::vector<double> &values) const;
     /// Derivative of the merit by a parameter, from those of all objectives.
     /// @param gradients  of each objective

@@ -12,16 +12,16 @@ namespace retroforge
   {
     double              objective = 0.; ///< in its unit
     std::vector<double> values;         ///< of each value of the problem, in its unit
+    unsigned int        n_designs = 0;  ///< that it is the mean of
   };
 
-  /// Measures the noise of the objective and of all values: forges a few designs around the start (Optimisation/noise runs),
+  /// Measures the noise of the objective and of all values: forges a few designs around another (Optimisation/noise runs),
   /// over steps so short that all they add to what the gradient predicts is what decisions of the program
   /// change,
   ///   noise = sqrt(mean (phi(mu) - phi_linear(mu))^2).
-  /// @param start  with gradients
-  /// @param tell   gets each design that was forged, and its largest distance from the start, in scales
-  /// @return 0 where no design was forged
+  /// @param at    that design, with gradients
+  /// @param tell  gets each design that was forged, and its largest distance from there, in scales
   Noise measure_noise(OptimizationProblem                                             &problem,
-                      const Evaluation                                                &start,
+                      const Evaluation                                                &at,
                       const std::function<void(const Evaluation &evaluation, double)> &tell);
 } // namespace retroforge

@@ -23,7 +23,7 @@ namespace retroforge
     /// Notes where no parameter changes the objective at the start.
     void note_flat_start() const;
     void print(const std::vector<DifferenceCheck> &rows) const;
-    void print_noise() const;
+    void print_noise(const Evaluation &at) const;
     /// Prints a line, and flushes it.
     void print_line(const std::string &line) const;
     /// Prints the last design tried, and writes the tables.

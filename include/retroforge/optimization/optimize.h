@@ -29,7 +29,11 @@ namespace retroforge
     std::optional<Evaluation> renew_mesh(const Evaluation &now);
 
     void begin();
+    /// Around the design accepted last.
     void measure_noise();
+    /// Measures the noise again where the search has ended in that of the start.
+    /// @return whether it is much less here, so that there is more to be found
+    bool finds_less_noise();
     /// Goes on from the design accepted last, to the end of the search and what is told of it.
     /// @return whether it came there: of one that is cut off after a confirmation nothing is taken
     bool search();

@@ -31,6 +31,29 @@ def whole():
     judge("it says so", "gradient has vanished" in printed and "results in whole" in printed)
 
 
+def noise_at_the_end():
+    """Where the search ends for its noise, that is measured again, by the values around the design accepted last and its gradient."""
+    found, printed = optimize("noisy", "Optimisation/gradient tolerance=1e-12")
+    rows = rows_of("noisy")
+    decisions = [row["decision"] for row in rows]
+    again = [i for i, decision in enumerate(decisions) if decision == "noise" and i > 2]
+    judge("it ends for its noise", "more than the noise" in found["stop"], found["stop"])
+    judge("measured at the start and there", decisions[1:3] == ["noise"] * 2 and len(again) == 2 and again[1] == again[0] + 1, decisions)
+    there = max(i for i in range(again[0]) if decisions[i] in ("start", "accepted"))
+    names = [parameter["name"] for parameter in found["parameters"]][:2]
+    done = run("gradient", "there", *((name, float(rows[there][f"{name} [mm]"])) for name in names), case="noisy/best.prm")
+    judge("that design", done.returncode == 0, done.stderr)
+    gradient = [parameter["gradient"]["barrel"] for parameter in summary_of("there")["parameters"]]
+    value = float(rows[there]["barrel [mm^2]"])
+    off = [float(rows[i]["barrel [mm^2]"]) - value - sum(slope * (float(rows[i][f"{name} [mm]"]) - float(rows[there][f"{name} [mm]"]))
+                                                         for slope, name in zip(gradient, names)) for i in again]
+    noise = np.sqrt(np.mean(np.square(off)))
+    judge("as large as it says", abs(found["objective"]["noise"] / noise - 1) < 1e-3, [found["objective"]["noise"], noise])
+    told = [float(line.split()[1]) for line in printed.splitlines() if line.startswith("  noise: ")]
+    went_on = len(decisions) > again[1] + 1
+    judge("it goes on only where it is less than half", len(told) == 2 and (not went_on or told[1] < 0.501 * told[0]), [told, decisions])
+
+
 def by_hand():
     """The best design forged as any other, from its parameters and from its mesh."""
     found = found_in("whole")
@@ -580,4 +603,4 @@ def refused():
     judge("resumed with another tolerance", "taken from the journal" in printed and found["simulations"] >= len(before.splitlines()) // 3)
 
 
-main({"case.prm": prm(SCENE)}, (whole, by_hand, killed, limited, infeasible, limits_that_do_not_press, beset, checked, free_form, die_free_form, bounded, related, held, recorded, failing, far_away, meshes_within_limits, resumed_through_meshes, gradient_on_a_new_mesh, free_form_far_away, from_elsewhere, identified, scattered, confirmed, corrected, on_two_ranks, reported, refused))
+main({"case.prm": prm(SCENE)}, (whole, noise_at_the_end, by_hand, killed, limited, infeasible, limits_that_do_not_press, beset, checked, free_form, die_free_form, bounded, related, held, recorded, failing, far_away, meshes_within_limits, resumed_through_meshes, gradient_on_a_new_mesh, free_form_far_away, from_elsewhere, identified, scattered, confirmed, corrected, on_two_ranks, reported, refused))

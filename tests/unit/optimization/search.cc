@@ -84,8 +84,9 @@ namespace
     void run(const Vector &start)
     {
       with_search(start, [&](Search &search) {
-        settled =
-          search.run(functions.noise, {functions.noise, knows_noise_of_g ? functions.noise_of_g : 0., 0.});
+        search.set_noise(functions.noise,
+                         {functions.noise, knows_noise_of_g ? functions.noise_of_g : 0., 0.});
+        settled     = search.run();
         end         = search.now();
         multipliers = search.multipliers();
         stop        = search.stop();
@@ -309,6 +310,25 @@ int main()
               << answer(problem.end.values[0] < 10. * 1e-3) << "\n";
   }
   {
+    // Where it has ended for a noise that is not there, it goes on when told so.
+    Problem problem;
+    bool    ended = false;
+    Vector  there;
+    problem.with_search({0.2, 0.3}, [&](Search &search) {
+      search.set_noise(0.5);
+      search.run();
+      ended = search.stop() == SearchStop::noise;
+      there = search.now().mu;
+      search.set_noise(0.);
+      search.run();
+      problem.end  = search.now();
+      problem.stop = search.stop();
+    });
+    std::cout << "less noise than told: ended for it "
+              << answer(ended && std::hypot(there[0] - 1., there[1] - 2.) > 1e-2) << ", then optimum to 1e-6 "
+              << answer(problem.distance({1., 2.}) < 1e-6 && problem.stop == SearchStop::gradient) << "\n";
+  }
+  {
     // A noise of more than all that the objective changes by between the bounds, where it is the same: to and fro.
     Problem problem;
     problem.varied            = {"a"};
@@ -316,7 +336,8 @@ int main()
     problem.parameters.lower  = {{"a", 0.5}};
     problem.parameters.upper  = {{"a", 1.5}};
     problem.with_search({0.5, 2.}, [&](Search &search) {
-      search.run(2.);
+      search.set_noise(2.);
+      search.run();
       problem.stop = search.stop();
     });
     std::cout << "nothing but noise: ends " << answer(problem.stop == SearchStop::noise)
