@@ -153,7 +153,7 @@ def trend():
     settings = {"Material/law": "power", "Material/consistency": 32, "Material/strain rate sensitivity": 0.15,
                 "Material/further numbers": "n: 0.15, q0: 0.05, beta: 0.0025, T0: 1100", "Objectives/names": "energy",
                 "Optimisation/objective": "", "Optimisation/at most": "", "Optimisation/lower bounds": "", "Optimisation/upper bounds": "",
-                "Optimisation/scales": ""}
+                "Optimisation/scales": "", "Press/stroke": 27}
     case_tools.scan_of_trend(BUILD, HOT_HUB, "material/n", 12, 0.2, settings, "trend")
     of = case_tools.Trend("trend", "energy")
     print(f"{len(of.at)} designs: gradients {of.mean:.0f}, standard deviation {statistics.stdev(of.slopes):.0f}; trend {of.slope:.0f} +- {of.uncertainty:.0f}; "

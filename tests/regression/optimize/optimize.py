@@ -33,15 +33,15 @@ def whole():
 
 def noise_at_the_end():
     """Where the search ends for its noise, that is measured again, by the values around the design accepted last and its gradient."""
-    found, printed = optimize("noisy", "Optimisation/gradient tolerance=1e-12")
-    rows = rows_of("noisy")
+    found, printed = optimize("measured", "Optimisation/gradient tolerance=1e-12")
+    rows = rows_of("measured")
     decisions = [row["decision"] for row in rows]
     again = [i for i, decision in enumerate(decisions) if decision == "noise" and i > 2]
     judge("it ends for its noise", "more than the noise" in found["stop"], found["stop"])
     judge("measured at the start and there", decisions[1:3] == ["noise"] * 2 and len(again) == 2 and again[1] == again[0] + 1, decisions)
     there = max(i for i in range(again[0]) if decisions[i] in ("start", "accepted"))
     names = [parameter["name"] for parameter in found["parameters"]][:2]
-    done = run("gradient", "there", *((name, float(rows[there][f"{name} [mm]"])) for name in names), case="noisy/best.prm")
+    done = run("gradient", "there", *((name, float(rows[there][f"{name} [mm]"])) for name in names), case="measured/best.prm")
     judge("that design", done.returncode == 0, done.stderr)
     gradient = [parameter["gradient"]["barrel"] for parameter in summary_of("there")["parameters"]]
     value = float(rows[there]["barrel [mm^2]"])
