@@ -64,11 +64,13 @@ namespace retroforge
                       "Forgings that may be run, confirmation not counted: no design is begun beyond. "
                       "Units: none.",
                       Integer(1, 100000));
-    prm.add_parameter("gradient tolerance",
-                      gradient_tolerance,
-                      "The optimum is reached when the gradient, without what bounds hold, is this part of "
-                      "that at the start. Units: none.",
-                      Double(0., 1.));
+    prm.add_parameter(
+      "gradient tolerance",
+      gradient_tolerance,
+      "The optimum is reached when the gradient, without what bounds hold, is this part of "
+      "that at the start; with data, and a step promises to bring them nearer by less than a tenth of "
+      "their deviations. Units: none.",
+      Double(0., 1.));
     prm.add_parameter(
       "limit tolerance",
       limit_tolerance,

@@ -242,7 +242,7 @@ namespace retroforge
                     limit.bound - limit.correction);
     }
     if (row.decision == Decision::accepted || row.decision == Decision::refused)
-      std::printf("  step %.3g", row.radius);
+      std::printf("  radius %.3g", row.radius);
     if (!evaluation.steps.empty())
       std::printf("  %u increments, which others repeat", evaluation.increments);
     std::printf("  %.1f s", evaluation.seconds);

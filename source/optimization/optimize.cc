@@ -153,31 +153,39 @@ namespace retroforge
     reporter_.write_shapes(results_.start, "start");
   }
 
-  void Optimize::measure_noise()
+  bool Optimize::measure_noise()
   {
-    if (problem_.parameters().noise_runs == 0)
-      return;
-    const Evaluation &at = search_.now();
+    const std::size_t n_rows = results_.rows.size();
+    const Evaluation &at     = search_.now();
     const Noise       noise =
       retroforge::measure_noise(problem_, at, [&](const Evaluation &evaluation, const double radius) {
         add_row(Decision::noise, evaluation, radius);
       });
-    if (noise.n_designs == 0)
-      return;
-    results_.noise = noise;
-    search_.set_noise(noise.objective, noise.values);
-    reporter_.print_noise(at);
+    if (noise.n_designs > 0)
+    {
+      results_.noise = noise;
+      search_.set_noise(noise.objective, noise.values);
+      reporter_.print_noise(at);
+    }
+    return results_.rows.size() - n_rows == problem_.parameters().noise_runs;
   }
 
-  bool Optimize::finds_less_noise()
+  Optimize::SearchEnd Optimize::run_search()
   {
+    const SearchEnd end{search_.run(), search_.stop()};
+    if (results_.goes_on || end.stop != Stop::noise || problem_.parameters().noise_runs == 0 ||
+        search_.now().mu == results_.start.mu)
+      return end;
     // The noise of a sum of squares falls with it, and at the start a decision of the program may have been near.
     constexpr double much_less = 0.5;
     const double     before    = search_.noise();
-    if (search_.stop() != Stop::noise || search_.now().mu == results_.start.mu)
-      return false;
-    measure_noise();
-    return search_.noise() < much_less * before;
+    reporter_.print_line("no step promises more than the noise of the start; it is measured again here");
+    if (!measure_noise())
+      return {false, Stop::simulations}; // what hides the way is not known
+    if (search_.noise() >= much_less * before)
+      return end;
+    reporter_.print_line("that is less than half as much as at the start: the search goes on");
+    return {search_.run(), search_.stop()};
   }
 
   Evaluation Optimize::best_so_far() const
@@ -198,17 +206,15 @@ namespace retroforge
 
   bool Optimize::search()
   {
-    results_.goes_on = results_.confirmation.has_value();
-    bool settled     = search_.run();
-    if (!results_.goes_on && finds_less_noise())
-      settled = search_.run();
-    const bool is_cut = search_.stop() == Stop::iterations || search_.stop() == Stop::simulations;
+    results_.goes_on       = results_.confirmation.has_value();
+    const SearchEnd end    = run_search();
+    const bool      is_cut = end.stop == Stop::iterations || end.stop == Stop::simulations;
     if (std::exchange(results_.goes_on, false) && is_cut)
       return false;
     results_.confirmation.reset();
-    results_.stop = search_.stop();
+    results_.stop = end.stop;
     // A limit's optimum is the last design, not the least one within its tolerance.
-    results_.best = settled ? search_.now() : best_so_far();
+    results_.best = end.settled ? search_.now() : best_so_far();
     report_best();
     if (problem_.is_root())
       reporter_.write_results(); // the confirmation is the longest forging, and may be stopped

@@ -270,6 +270,8 @@ namespace retroforge
     const double           enough        = presses ? part * begun_with_ : 0.;
     constexpr double       far_off       = 0.01; // of the limit
     constexpr double       seen_part     = 0.1;  // of the noise
+    // Of data the misfit is in squares of deviations: a start far off says nothing of how near its least one is.
+    constexpr double within_deviations = 0.005; // a tenth of a deviation
     // Where noise hides all, from one corner between bounds to another and back.
     constexpr unsigned int most_repeated = 50;
     const bool             is_long =
@@ -280,7 +282,8 @@ namespace retroforge
     if (may_go_on && task_.mesh_is_bad && task_.mesh_is_bad(now_))
       stop_ = SearchStop::mesh;
     else if (is_long ||
-             state.gradient <= std::max(enough, parameters_.gradient_tolerance * parameters_.first_step))
+             (state.gradient <= std::max(enough, parameters_.gradient_tolerance * parameters_.first_step) &&
+              (criteria_.data.empty() || state.promised * merit_.size <= within_deviations)))
       stop_ = SearchStop::gradient;
     else if (n_repeated_ > most_repeated || state.gradient * state.radius <= noise_ ||
              (noise_of_limits() > 0. && descent() * state.radius <= noise()) ||

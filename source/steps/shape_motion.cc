@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/numbers.h>
+#include <retroforge/remeshing/surface_features.h>
 #include <retroforge/steps/shape_motion.h>
 
 #include <deal.II/base/symmetric_tensor.h>
@@ -37,6 +38,34 @@ namespace retroforge
     {
       for (std::size_t k = 0; k < to.size(); ++k)
         to[k] += x[k];
+    }
+
+    /// The neighbours of each node along edges where patches of the surface meet.
+    std::vector<std::vector<NodeIndex>> along_borders(const TetMesh &mesh)
+    {
+      std::vector<std::vector<NodeIndex>> beside(mesh.n_nodes());
+      for (const SurfaceEdge &edge : surface_edges(mesh.faces))
+      {
+        const BoundaryFace &first = mesh.faces[edge.faces[0]], &second = mesh.faces[edge.faces[1]];
+        if (first.patch == second.patch || !mesh.is_surface(first) || !mesh.is_surface(second))
+          continue;
+        beside[edge.nodes[0]].push_back(edge.nodes[1]);
+        beside[edge.nodes[1]].push_back(edge.nodes[0]);
+      }
+      return beside;
+    }
+
+    /// The direction of a border at a node; none at its ends and corners.
+    std::vector<Vec3>
+    direction_of(const NodalVectors<double> &X, const NodeIndex k, const std::vector<NodeIndex> &beside)
+    {
+      constexpr double corner = 0.7; // cosine of the turn
+      if (beside.size() != 2)
+        return {};
+      const Vec3 to = X[k] - X[beside[0]], from = X[beside[1]] - X[k], chord = to + from;
+      if (to * from < corner * to.norm() * from.norm())
+        return {};
+      return {chord / chord.norm()};
     }
 
     Vec3 derivative(const Vector3<Dual> &x)
@@ -86,16 +115,22 @@ namespace retroforge
     constexpr double sharp = 0.13;
     constexpr double least = 0.3; // that is left of a direction
     sliding_.directions.resize(mesh.n_nodes());
+    const auto borders = along_borders(mesh);
     for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
     {
       if (!on_surface_[k])
         continue;
       const auto pairs =
         dealii::eigenvectors(normal_squares[k], dealii::SymmetricTensorEigenvectorMethod::jacobi);
+      std::vector<Vec3> smooth;
+      for (const auto &[value, direction] : pairs)
+        if (value < sharp * pairs[0].first)
+          smooth.push_back(direction);
       std::vector<Vec3> held = normals_[k];
       held.push_back(area[k] / area[k].norm());
-      for (const auto &[value, direction] : pairs)
-        if (const Vec3 t = without(direction, held); value < sharp * pairs[0].first && t.norm() > least)
+      // A border is laid into the old one, even where both patches lie flat on a die.
+      for (const Vec3 &direction : borders[k].empty() ? smooth : direction_of(mesh.X, k, borders[k]))
+        if (const Vec3 t = without(direction, held); t.norm() > least)
         {
           sliding_.directions[k].push_back(t / t.norm());
           held.push_back(sliding_.directions[k].back());

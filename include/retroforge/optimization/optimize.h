@@ -29,11 +29,16 @@ namespace retroforge
     std::optional<Evaluation> renew_mesh(const Evaluation &now);
 
     void begin();
-    /// Around the design accepted last.
-    void measure_noise();
-    /// Measures the noise again where the search has ended in that of the start.
-    /// @return whether it is much less here, so that there is more to be found
-    bool finds_less_noise();
+    /// Around the design accepted last. @return whether all designs were forged that it asks for
+    bool measure_noise();
+    /// How a search ended, and whether limits are kept there and no multiplier would change it.
+    struct SearchEnd
+    {
+      bool       settled;
+      SearchStop stop;
+    };
+    /// Where the noise of the start ends the first search elsewhere, it is measured again, and the search goes on if it is much less.
+    SearchEnd run_search();
     /// Goes on from the design accepted last, to the end of the search and what is told of it.
     /// @return whether it came there: of one that is cut off after a confirmation nothing is taken
     bool search();

@@ -14,7 +14,8 @@ namespace retroforge
   /// P, the part of a motion d of a mesh's nodes that changes its shape. A linear map, of the mesh where it was made:
   /// - on the surface it is d but in the directions t in which a node may slide: those of the eigenvectors of
   ///   sum_f A_f n_f n_f^T  over the faces around that have small eigenvalues, perpendicular to the sum of their area vectors,
-  ///   so that the volume changes as by d. Two on faces, one along a sharp edge, none at a corner. Along them nodes slide so
+  ///   so that the volume changes as by d. Two on faces, one along a sharp edge, none at a corner;
+  ///   where patches meet, only the one along their border, and none at its ends and corners. Along them nodes slide so
   ///   that neighbours on the surface move as alike as can be:  sum over faces of |P d_a - P d_b|^2 of their edges  is least.
   /// - inside the mean of the neighbours', and on a plane of symmetry that of the neighbours on it.
   class ShapeMotion

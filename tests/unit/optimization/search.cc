@@ -299,7 +299,14 @@ int main()
     problem.parameters.uncertainties = {{"f", 0.01}, {"g", 0.01}};
     problem.run({0.5, 0.8});
     std::cout << "data: found to 1e-6 " << answer(problem.distance({0.8, 1.1}) < 1e-6)
-              << ", at most 10 designs " << answer(problem.evaluated.size() <= 10) << "\n";
+              << ", at most 10 designs " << answer(problem.evaluated.size() <= 10);
+    // From far off the gradient has fallen by any part of it long before the misfit is less than deviations.
+    problem.parameters.gradient_tolerance = 0.5;
+    problem.run({-4., 6.});
+    const double misfit = 0.5 * (std::pow((problem.end.values[0] - values[0]) / 0.01, 2) +
+                                 std::pow((problem.end.values[1] - values[1]) / 0.01, 2));
+    std::cout << ", by a loose tolerance from far off to a tenth of their deviations "
+              << answer(misfit < 0.01) << "\n";
   }
   {
     Problem problem;

@@ -7,7 +7,7 @@
 //   members, positions, one number or vector per node, one number per cell, for each kind alone and all together.
 // - Volumes change as they did.
 // - A mesh that follows the shape: its volume changes as by the operations; along the flat ends of the cylinder nodes go as
-//   their neighbours do, what goes across stays, and a motion along the ends leaves nothing; no node goes farther than those of the surface; nodes stay in planes of symmetry; constant
+//   their neighbours do, what goes across stays, and a motion along the ends leaves nothing; where two patches meet on an end they go along the border alone; no node goes farther than those of the surface; nodes stay in planes of symmetry; constant
 //   fields stay, equal values of nodes beside each other stay equal, those that are 0 stay so, and linear ones are inside what they are at the new places; the dot product as above, for each member of the
 //   state alone and for all, and a member of which the motion is left out is told.
 // - No derivatives in a field: none arrive, and none are computed.
@@ -238,6 +238,59 @@ namespace
               << yes(farthest <= of_surface * (1. + 1e-13)) << "\n";
   }
 
+  /// The upper end in two patches: where they meet nodes keep to their border, which slides along itself alone.
+  void check_borders(TetMesh mesh)
+  {
+    constexpr double height = 30., small = 1e-6;
+    const auto       is_inside_end = [&](const NodeIndex k) {
+      return mesh.X[k][2] > height - small && std::hypot(mesh.X[k][0], mesh.X[k][1]) < 19.9;
+    };
+    const unsigned int                                              half = mesh.patches.size();
+    std::map<std::array<NodeIndex, 2>, std::array<unsigned int, 2>> faces; // of each edge, in each half
+    for (BoundaryFace &face : mesh.faces)
+    {
+      const Vec3 sum = mesh.X[face.nodes[0]] + mesh.X[face.nodes[1]] + mesh.X[face.nodes[2]];
+      if (!mesh.is_surface(face) || sum[2] < 3. * (height - small))
+        continue;
+      const bool other = sum[0] + 0.3 * sum[1] < 6.;
+      if (other)
+      {
+        if (mesh.patches.size() == half)
+          mesh.patches.push_back(mesh.patches[face.patch]);
+        face.patch = half;
+      }
+      for (unsigned int i = 0; i < 3; ++i)
+      {
+        const auto [a, b] = std::minmax(face.nodes[i], face.nodes[(i + 1) % 3]);
+        ++faces[{{a, b}}][other];
+      }
+    }
+    std::map<NodeIndex, std::vector<NodeIndex>> border;
+    for (const auto &[edge, of_half] : faces)
+      if (of_half[0] == 1 && of_half[1] == 1)
+        for (const unsigned int i : {0, 1})
+          border[edge[i]].push_back(edge[1 - i]);
+    NodalVectors<double> d;
+    for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
+      d.push_back(numbers.vector());
+    const NodalVectors<double> r       = ShapeMotion(mesh).of(d);
+    unsigned int               n_slide = 0, n_stay = 0;
+    double                     beside = 0.;
+    for (const auto &[k, neighbours] : border)
+      if (is_inside_end(k) && neighbours.size() == 2)
+      {
+        const Vec3 to = mesh.X[k] - mesh.X[neighbours[0]], from = mesh.X[neighbours[1]] - mesh.X[k];
+        const Vec3 slid  = r[k] - d[k];
+        const bool turns = to * from < 0.7 * to.norm() * from.norm();
+        const Vec3 along = (to + from) / (to + from).norm();
+        beside           = std::max(beside, turns ? slid.norm() : (slid - (slid * along) * along).norm());
+        n_stay += turns;
+        n_slide += !turns && slid.norm() > 1e-3;
+      }
+    std::cout << "where patches meet: along the border alone " << yes(beside < 1e-13 && n_slide > 0)
+              << ", at its corners not at all " << yes(n_stay > 0) << "\n";
+  }
+
   void check_moved_fields(const TetMesh &mesh)
   {
     const FollowingMesh  following(mesh);
@@ -421,5 +474,6 @@ int main(int argc, char **argv)
     check_shape_motion(mesh);
     check_moved_fields(mesh);
   }
+  check_borders(old_mesh);
   check_following(meshes);
 }
