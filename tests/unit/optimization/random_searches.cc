@@ -242,7 +242,8 @@ namespace
     criteria.set_sizes(start.values);
     Search searching(space, criteria, parameters, task);
     searching.begin(start);
-    const bool settled = searching.run(is_rough ? problem.noise[0] : 0.);
+    searching.set_noise(is_rough ? problem.noise[0] : 0.);
+    const bool settled = searching.run();
     Evaluation best    = searching.now();
     // As `optimize` does.
     const auto excess = [&](const Evaluation &evaluation) {
