@@ -135,8 +135,9 @@ end
     if (!objectives.combined)
       for (const ParameterEntry &entry : entries)
         if (entry.name == "weight" && entry.value != entry.default_value)
-          without_effect.push_back(entry.path() + " = " + entry.value +
-                                   " has no effect: Objectives/gradients = each makes no weighted sum");
+          without_effect.push_back(
+            entry.path() + " = " + entry.value +
+            " has no effect but in `optimize': Objectives/gradients = each makes no weighted sum");
   }
 
   void Parameters::check_all()

@@ -292,6 +292,14 @@ namespace retroforge
     if (forged == nullptr)
       return;
     const ForwardRun &run = *forged;
+    if (name == "best")
+    {
+      if (scenario == 0)
+        results_.doubts.clear();
+      const std::string of = scenario == 0 ? "" : problem_.scenarios.name(scenario) + ": ";
+      for (const std::string &doubt : run.check())
+        results_.doubts.push_back(of + doubt);
+    }
     if (name == "best" && scenario == 0)
     {
       results_.details.clear();

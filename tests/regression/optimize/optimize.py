@@ -54,6 +54,19 @@ def noise_at_the_end():
     judge("it goes on only where it is less than half", len(told) == 2 and (not went_on or told[1] < 0.501 * told[0]), [told, decisions])
 
 
+def begins_in_a_die():
+    """What `simulate' warns of before the best design is forged, the optimisation tells, too."""
+    scene = changed(SCENE, {"Objectives": {"names": "energy"}, "Objective energy": {"weight": -1}, "Design": {"parameters": "die upper/offset"}})
+    scene["Optimisation"] = {"noise runs": 0, "confirmation": 0, "lower bounds": "die upper/offset: -0.3", "upper bounds": "die upper/offset: 0.3"}
+    del scene["Objective barrel"]
+    write("inwards.prm", prm(scene))
+    found, printed = optimize("inwards", case="inwards.prm")
+    done = run("simulate", "from_inside", case="inwards/best.prm")
+    warnings = [line.removeprefix("  warning: ") for line in done.stdout.splitlines() if "mm inside it" in line]
+    judge("it ends where the die stands in the billet", abs(best_of(found)[0]) == 0.3 and len(warnings) == 1, [best_of(found), done.stdout])
+    judge("and says so", all(f"warning: the best design: {warning}\n" in printed for warning in warnings), printed)
+
+
 def by_hand():
     """The best design forged as any other, from its parameters and from its mesh."""
     found = found_in("whole")
@@ -603,4 +616,4 @@ def refused():
     judge("resumed with another tolerance", "taken from the journal" in printed and found["simulations"] >= len(before.splitlines()) // 3)
 
 
-main({"case.prm": prm(SCENE)}, (whole, noise_at_the_end, by_hand, killed, limited, infeasible, limits_that_do_not_press, beset, checked, free_form, die_free_form, bounded, related, held, recorded, failing, far_away, meshes_within_limits, resumed_through_meshes, gradient_on_a_new_mesh, free_form_far_away, from_elsewhere, identified, scattered, confirmed, corrected, on_two_ranks, reported, refused))
+main({"case.prm": prm(SCENE)}, (whole, noise_at_the_end, begins_in_a_die, by_hand, killed, limited, infeasible, limits_that_do_not_press, beset, checked, free_form, die_free_form, bounded, related, held, recorded, failing, far_away, meshes_within_limits, resumed_through_meshes, gradient_on_a_new_mesh, free_form_far_away, from_elsewhere, identified, scattered, confirmed, corrected, on_two_ranks, reported, refused))
