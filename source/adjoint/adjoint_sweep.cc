@@ -4,8 +4,6 @@
 #include <retroforge/steps/change_of_mesh.h>
 #include <retroforge/steps/moved_ends.h>
 
-#include <deal.II/base/mpi.h>
-
 #include <numeric>
 #include <optional>
 

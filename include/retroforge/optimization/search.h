@@ -67,9 +67,8 @@ namespace retroforge
     /// @param of_values  that of each value; empty: 0. That of a limit counts as far as the limit presses.
     void set_noise(double noise, std::vector<double> of_values = {});
 
-    /// The noise of the merit at the design accepted last, and what of it comes by limits.
+    /// The noise of the merit at the design accepted last.
     double noise() const;
-    double noise_of_limits() const;
 
     /// Goes on from the design accepted last.
     /// @return whether limits are kept by the last one, and no multiplier would change it
@@ -107,6 +106,8 @@ namespace retroforge
     bool go_on(const MinimizerState &state);
     /// The merit at the present design, over scaled variables: data and limits are its terms.
     Linearization linearization() const;
+    /// What of the noise of the merit comes by limits.
+    double noise_of_limits() const;
     /// What the merit falls by along its gradient, per length, where no bound is in the way: of limits that press hard
     /// the projected gradient says only how far bounds are.
     double descent() const;
