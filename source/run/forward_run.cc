@@ -4,6 +4,7 @@
 #include <retroforge/case/scene_checks.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/version.h>
+#include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/run/forward_run.h>
@@ -88,12 +89,29 @@ namespace retroforge
       segment.parameters.press.steps = {strokes, 1.};
   }
 
+  namespace
+  {
+    // Growth is told in as many parts: rounding of positions must not change what is wanted.
+    constexpr double parts_of_growth = 1e9;
+
+    /// Returns the wanted length of the edges [mm]. A design is forged on the first mesh of the nominal one, moved to it: elements made on
+    /// the way keep their proportion to those of that mesh, so that designs are compared with as many elements, and new meshes that follow
+    /// the shape in derivatives grow as those of runs that decide anew.
+    double edge_length(const ForgingProblem &problem, const std::size_t segment)
+    {
+      const TetMesh &billet = *problem.billet;
+      const double   growth = std::cbrt(volume(billet.cells, problem.X_0) / volume(billet.cells, billet.X));
+      return problem.segments[segment].parameters.edge_length(*problem.nominal_billet) *
+             (std::round(parts_of_growth * growth) / parts_of_growth);
+    }
+  } // namespace
+
   ForwardRun::SegmentRun::SegmentRun(const ForgingProblem &problem,
                                      const std::size_t     segment,
                                      Timings              &timings)
       : press(problem.segments[segment].parameters.press)
       , remesher(problem.segments[segment].parameters.remeshing,
-                 problem.segments[segment].parameters.edge_length(*problem.nominal_billet),
+                 edge_length(problem, segment),
                  problem.model.dies,
                  problem.billet->patches,
                  problem.model.comm)

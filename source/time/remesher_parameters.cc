@@ -26,10 +26,12 @@ namespace retroforge
                      {{"local", Method::local}, {"rebuild", Method::rebuild}},
                      "local changes the mesh only where it is bad, and rebuilds it when cells are inverted; "
                      "rebuild makes the whole inside anew each time. Units: none.");
-    prm.add_parameter("element size",
-                      element_size,
-                      "Wanted length of the edges; 0 for that of the billet. Units: mm.",
-                      Double(0.));
+    prm.add_parameter(
+      "element size",
+      element_size,
+      "Wanted length of the edges; 0 for that of the billet. Designs of other volumes on the same first mesh "
+      "have it in proportion to the cube root of theirs. Units: mm.",
+      Double(0.));
     add_enum<Sizes>(
       prm,
       "sizes",

@@ -51,14 +51,8 @@ namespace retroforge
 
     BilletSize size() const { return parameters.size_of(nominal_billet); }
 
-    /// Returns the wanted length of the edges [mm].
+    /// Returns the wanted length of the edges of the nominal design [mm].
     double edge_length() const { return parameters.edge_length(nominal_billet); }
-
-    /// Returns the remesher for dies of a shape, which must live as long.
-    Remesher remesher(const Parameters &numerics, const std::vector<Die> &dies) const
-    {
-      return {numerics.remeshing, numerics.edge_length(nominal_billet), dies, billet.patches, comm};
-    }
 
     /// Returns the combinations of objectives that are differentiated, at given values of the objectives.
     template <typename Number>

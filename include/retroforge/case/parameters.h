@@ -30,7 +30,7 @@ namespace retroforge
   {
     double side;   ///< cube root of the mesh's volume [mm]
     double height; ///< height of the whole billet; for one from a file, along the way of the leading die [mm]
-    double extent; ///< of the mesh along the way of the leading die [mm]
+    double extent = 0.; ///< of the mesh along the way of the leading die [mm]
   };
 
   /// All settings of a parameter file.

@@ -2,10 +2,11 @@
 # Copyright (C) 2026 The Retroforge authors
 """A design changed by --at: at the nominal values it is the nominal run to the last bit; differences of changed runs are
 the free differences of `check`, of billet, process and the shape of a die; penalty and slip follow the material and the speed; a die that follows the billet starts on it and ends at the
-same gap; a run is not resumed with another design.
+same gap; elements of new meshes keep their proportion to the billet; a run is not resumed with another design.
 Usage: changed_design.py RETROFORGE"""
 import os
 import pathlib
+import re
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
@@ -122,6 +123,25 @@ def die_follows_billet():
     judge("adjoint, tangent and replayed differences agree", done.returncode == 0, done.stderr + done.stdout[-1500:] if done.returncode else "")
 
 
+def elements_keep_their_proportion():
+    """A radius larger by 40 % makes almost twice the volume: meshes that are made on the way have as many elements, as the first one has, also where it is
+    meshed at another design. A wanted length that is set is that of the nominal design, too."""
+    anew = ("Remeshing/when=increments", "Remeshing/every=3", "Remeshing/method=rebuild")
+
+    def cells(*settings):
+        found = re.findall(r"remeshed: \d+ nodes, (\d+) tetrahedra", run("simulate", "cylinder.prm", "grown", *anew, *settings).stdout)
+        judge(f"remeshed once: {settings}", len(found) == 1, found)
+        return int(found[0])
+
+    for size in (("Remeshing/element size=2.5",), ("Billet/element size=3",)):
+        nominal = cells(*size)
+        for name, settings in (("grown", (("billet/radius", 14.0),)), ("shrunk", (("billet/radius", 7.0),))):
+            found = cells(*size, *settings)
+            judge(f"{name} {size}: as many elements", abs(found / nominal - 1) < 0.1, f"{found} of {nominal}")
+    there = cells("Billet/element size=3", ("billet/radius", 14.0), "Design/meshed at=billet/radius: 14")
+    judge("on a first mesh of that design as many as are wanted there", there > 1.5 * nominal, there)
+
+
 def another_design_is_refused():
     done = run("simulate", "cylinder.prm", "plain", ("billet/radius", 10.1), "--resume")
     judge("resumed with another design", done.returncode != 0 and "Design/at" in done.stderr, done.stderr.strip())
@@ -143,4 +163,5 @@ def differences():
 
 
 main({"cylinder.prm": prm(CYLINDER), "followed.prm": prm(FOLLOWED), "bell.prm": prm(BELL), "dome.prm": prm(DOME)},
-     (nominal_is_nominal, contact_follows_the_design, differences, die_follows_billet, another_design_is_refused, mistakes))
+     (nominal_is_nominal, contact_follows_the_design, differences, die_follows_billet, elements_keep_their_proportion, another_design_is_refused,
+      mistakes))
