@@ -191,9 +191,12 @@ class Page:
     def judged(entry):
         """A row of the table."""
         verdict = entry.get("verdict")
+        shown = verdict if verdict in SOUND else bad(verdict)
+        if entry.get("free", {}).get("doubtful"):
+            shown = bad(f"{verdict}, doubtful: decided anew, the slope is {number(entry['free']['slope'], 3)}; scan tells which holds")
         return (entry["parameter"], number(entry["adjoint"], 10), number(entry.get("tangent"), 10),
                 ", ".join(number(order, 3) for order in entry.get("taylor_orders", [])),
-                verdict if verdict in SOUND else bad(verdict))
+                shown)
 
     def conduct(self):
         self.to.heading("How the run went")

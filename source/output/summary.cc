@@ -104,7 +104,8 @@ namespace retroforge
       if (std::isfinite(check.free_slope))
         json["free"] = {{"slope", json_number(check.free_slope)},
                         {"uncertainty", json_number(check.free_uncertainty)},
-                        {"jumps", json_number(check.free_jumps)}};
+                        {"jumps", json_number(check.free_jumps)},
+                        {"doubtful", check.is_doubtful}};
       json["verdict"] = check.verdict;
       return json;
     }

@@ -201,6 +201,16 @@ namespace retroforge
     return fit_of(*this, &DifferenceRow::replayed_central);
   }
 
+  bool CheckRow::is_doubtful() const
+  {
+    constexpr double    doubtful = 0.5;
+    const DifferenceFit free     = free_fit();
+    return !std::isnan(free.slope) &&
+           std::abs(free.slope - adjoint) >
+             std::max(doubtful * std::max({std::abs(adjoint), std::abs(free.slope), magnitude}),
+                      3. * free.uncertainty);
+  }
+
   namespace
   {
     NodalVectors<double> random_vectors(const std::size_t n, std::mt19937 &generator)
@@ -364,7 +374,7 @@ namespace retroforge
       out << "    decided anew: slope " << std::showpos << 100. * (free.slope / row.adjoint - 1.)
           << std::noshowpos << " % beside the adjoint (+- " << 100. * std::abs(free.uncertainty / row.adjoint)
           << " %), " << (free.jump > rounding ? "jumps of " : "no jumps above rounding, ") << free.jump
-          << " of the value\n";
+          << " of the value" << (row.is_doubtful() ? ": DOUBTFUL, scan tells which slope holds" : "") << '\n';
     }
   } // namespace
 

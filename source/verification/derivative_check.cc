@@ -27,6 +27,7 @@ namespace retroforge
       check.free_slope         = free.slope;
       check.free_uncertainty   = free.uncertainty;
       check.free_jumps         = free.jump;
+      check.is_doubtful        = row.is_doubtful();
       for (const DifferenceRow &d : row.steps)
         check.steps.push_back(
           {d.step, d.replayed_central, d.replayed_forward, d.replayed_backward, d.free_central});

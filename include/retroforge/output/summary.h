@@ -70,6 +70,7 @@ namespace retroforge
       std::string            verdict; ///< "passed", "failed", or "zero" where there is no dependence
       /// What the free differences have in common: a slope, and jumps over the value of the objective.
       double free_slope = unknown, free_uncertainty = unknown, free_jumps = unknown;
+      bool   is_doubtful = false; ///< that slope is more than half beside the adjoint
     };
 
     std::string command, version, commit, blas;
