@@ -72,6 +72,12 @@ namespace retroforge
       "their deviations. Units: none.",
       Double(0., 1.));
     prm.add_parameter(
+      "least gain",
+      least_gain,
+      "A search ends where eight designs in a row have gained less than this part of the objective together, "
+      "as along a kink of it; 0: it goes on. Not with data. Units: none.",
+      Double(0., 1.));
+    prm.add_parameter(
       "limit tolerance",
       limit_tolerance,
       "Part of a limit by which it may be exceeded at the optimum: 1e-4 of 1185 C is 0.12 K. Of a limit "

@@ -51,7 +51,9 @@ namespace retroforge
       "Design parameters and values they have instead of the nominal ones, `NAME: VALUE, NAME: VALUE'; any "
       "that "
       "the scene offers. The mesh stays that of the nominal design, its nodes moved, and so do increments "
-      "and sizes that follow from the nominal billet; the penalty and the regularisation of slip follow the "
+      "and lengths that follow from the nominal billet, but for elements of new meshes, which grow with the "
+      "cube root of the "
+      "volume; the penalty and the regularisation of slip follow the "
       "material and the speed at which the dies close. Their gradients are computed, too. Units: those of "
       "the "
       "parameters.");

@@ -78,6 +78,8 @@ namespace retroforge
         return "no step promises more than the noise";
       case SearchStop::step:
         return "steps have become too short to matter";
+      case SearchStop::gains:
+        return "eight designs have gained less than Optimisation/least gain";
       case SearchStop::limits:
         return "limits are not met, and no design near by comes closer to them";
       case SearchStop::iterations:
@@ -166,12 +168,14 @@ namespace retroforge
 
   bool OptimizationResults::ended_among_failures() const
   {
-    return (stop == SearchStop::noise || stop == SearchStop::step) && n_failed_at_the_end() > 0;
+    return (stop == SearchStop::noise || stop == SearchStop::step || stop == SearchStop::gains) &&
+           n_failed_at_the_end() > 0;
   }
 
   bool OptimizationResults::has_converged() const
   {
-    return (stop == SearchStop::gradient || stop == SearchStop::noise || stop == SearchStop::step) &&
+    return (stop == SearchStop::gradient || stop == SearchStop::noise || stop == SearchStop::step ||
+            stop == SearchStop::gains) &&
            !ended_among_failures();
   }
 

@@ -246,6 +246,7 @@ namespace retroforge
     begun_at_   = iterations_;
     n_designs_  = task_.n_evaluated();
     n_repeated_ = 0;
+    merits_.clear();
     minimizer_.minimize(problem(), {radius, parameters_.largest_step, [&](const MinimizerState &state) {
                                       return go_on(state);
                                     }});
@@ -258,8 +259,10 @@ namespace retroforge
     // steps ask for again.
     const bool is_new = task_.n_evaluated() != n_designs_;
     iterations_ += is_new ? 1 : 0;
-    n_repeated_               = is_new ? 0 : n_repeated_ + 1;
-    n_designs_                = task_.n_evaluated();
+    n_repeated_ = is_new ? 0 : n_repeated_ + 1;
+    n_designs_  = task_.n_evaluated();
+    if (is_new)
+      merits_.push_back(state.value);
     constexpr double shortest = 1e-5;
     // While a limit presses, multipliers are renewed as soon as most of what the last ones changed is done;
     // and where the merit is rough, that does not come and the limit is far off, after some steps, so that
@@ -292,11 +295,24 @@ namespace retroforge
       stop_ = SearchStop::noise;
     else if (state.radius < shortest * parameters_.first_step)
       stop_ = SearchStop::step;
+    else if (gains_little())
+      // Else it is the round that ends, and the penalty of what is exceeded grows.
+      stop_ = criteria_.largest_excess(now_.values) <= parameters_.limit_tolerance ? SearchStop::gains
+                                                                                   : SearchStop::gradient;
     else if (iterations_ >= parameters_.iterations)
       stop_ = SearchStop::iterations;
     else if (task_.n_evaluated() >= parameters_.simulations)
       stop_ = SearchStop::simulations;
     return stop_ == SearchStop::running;
+  }
+
+  bool Search::gains_little() const
+  {
+    // Data are met to parts of their deviations, however little of the misfit that is.
+    constexpr std::size_t designs = 8;
+    return criteria_.data.empty() && merits_.size() > designs &&
+           merits_[merits_.size() - 1 - designs] - merits_.back() <
+             parameters_.least_gain * std::abs(criteria_.value(now_.values)) / merit_.size;
   }
 
   Linearization Search::linearization() const
@@ -380,7 +396,7 @@ namespace retroforge
         gradient[j] += multipliers[i] * limit.slope() * now_.gradients[limit.objective][j];
     }
     constexpr double looser = 10.; // than what each round is asked for
-    return stop_ == SearchStop::noise || stop_ == SearchStop::step ||
+    return stop_ == SearchStop::noise || stop_ == SearchStop::step || stop_ == SearchStop::gains ||
            space_.projected_length(now_.mu, gradient) <=
              looser * parameters_.gradient_tolerance * parameters_.first_step;
   }

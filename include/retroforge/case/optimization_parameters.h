@@ -29,6 +29,7 @@ namespace retroforge
     unsigned int             iterations         = 30;
     unsigned int             simulations        = 100;
     double                   gradient_tolerance = 1e-3;
+    double                   least_gain         = 1e-3;
     double                   limit_tolerance    = 1e-4;
     unsigned int             noise_runs         = 3;
     double                   mesh_quality = 0.2; ///< least, of the billet's cells before forging; 0: any

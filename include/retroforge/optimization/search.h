@@ -19,6 +19,7 @@ namespace retroforge
     gradient,
     noise,
     step,
+    gains,  ///< of the last designs are little, as along a kink
     limits, ///< which are not met, and no penalty makes the design meet them
     iterations,
     simulations,
@@ -104,6 +105,8 @@ namespace retroforge
     void minimize_merit();
     void minimize_on_one_mesh();
     bool go_on(const MinimizerState &state);
+    /// Returns whether the last eight designs have gained less than is asked for.
+    bool gains_little() const;
     /// The merit at the present design, over scaled variables: data and limits are its terms.
     Linearization linearization() const;
     /// What of the noise of the merit comes by limits.
@@ -135,6 +138,7 @@ namespace retroforge
     unsigned int           begun_at_   = 0;  ///< how many there were then
     unsigned int           n_designs_  = 0;  ///< evaluated, as of the last iteration
     unsigned int           n_repeated_ = 0;  ///< iterations in a row whose design was known before
-    SearchStop             stop_       = SearchStop::running;
+    std::vector<double>    merits_; ///< of the present round, of the design accepted last before each new one
+    SearchStop             stop_ = SearchStop::running;
   };
 } // namespace retroforge

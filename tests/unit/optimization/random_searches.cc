@@ -183,6 +183,7 @@ namespace
     parameters.iterations         = is_rough ? 60 : 3000;
     parameters.simulations        = 100000;
     parameters.gradient_tolerance = is_rough ? 1e-3 : 1e-8;
+    parameters.least_gain         = is_rough ? parameters.least_gain : 0.;
     parameters.limit_tolerance    = is_rough ? 1e-4 : 1e-7;
     std::vector<DesignParameter> all;
     std::vector<std::string>     varied;

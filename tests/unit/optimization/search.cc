@@ -32,6 +32,7 @@ namespace
     double by_mesh           = 0.;             ///< added to f
     double noise_of_gradient = 0.;             ///< of f's
     double noise_of_g        = 0.;
+    double kink              = 0.; ///< of f, times the distance of a and b
 
     Evaluation operator()(const Vector &mu, const bool with_gradients) const
     {
@@ -45,11 +46,16 @@ namespace
       }
       const double rough = noise * std::sin(1e7 * (a + 3. * b));
       const double of_g  = noise_of_g * std::sin(3e7 * (2. * a + b));
-      evaluation.values  = {
-         std::pow(a - 1., 2) + 2. * std::pow(b - 2., 2) + rough + by_mesh, a * a + b * b + of_g, 1000. + a};
+      evaluation.values  = {std::pow(a - 1., 2) + 2. * std::pow(b - 2., 2) + rough + by_mesh +
+                              kink * std::abs(a - b),
+                            a * a + b * b + of_g,
+                            1000. + a};
       if (with_gradients)
         evaluation.gradients = {
-          {2. * (a - 1.) + noise_of_gradient * std::cos(1e7 * b), 4. * (b - 2.)}, {2. * a, 2. * b}, {1., 0.}};
+          {2. * (a - 1.) + noise_of_gradient * std::cos(1e7 * b) + (a > b ? kink : -kink),
+           4. * (b - 2.) - (a > b ? kink : -kink)},
+          {2. * a, 2. * b},
+          {1., 0.}};
       return evaluation;
     }
   };
@@ -349,6 +355,23 @@ int main()
     });
     std::cout << "nothing but noise: ends " << answer(problem.stop == SearchStop::noise)
               << ", after few designs " << answer(problem.evaluated.size() <= 5) << "\n";
+  }
+  {
+    // Along a kink each step gains a little.
+    Problem problem, goes_on;
+    for (Problem *of : {&problem, &goes_on})
+    {
+      of->functions.by_mesh     = 100.;
+      of->functions.kink        = 2.;
+      of->parameters.least_gain = of == &problem ? 1e-3 : 0.;
+      of->run({0.2, -1.3});
+    }
+    constexpr double least = 100. + 2. / 3.;
+    std::cout << "along a kink: ends for gains " << answer(problem.stop == SearchStop::gains)
+              << ", within 1e-3 of the value " << answer(problem.end.values[0] < (1. + 1e-3) * least)
+              << ", after at most 14 designs " << answer(problem.evaluated.size() <= 14)
+              << "; goes on where told so "
+              << answer(goes_on.evaluated.size() > 20 && goes_on.end.values[0] < (1. + 1e-4) * least) << "\n";
   }
   {
     // Each mesh adds something of its own to the values: nothing of that is taken for a step's.
