@@ -3,7 +3,7 @@
 # Copyright (C) 2026 The Retroforge authors
 """Conduction in whole runs: the heat of a closed body, temperatures that stay within what they are made of on twenty
 random scenes, the order in time, derivatives, a ball that stands off nodes, metal that arrives at dies, slopes against the trend, and what heat costs.
-run.py BUILD balance | bounds | order | derivatives | ball | arrivals | trend | cost"""
+run.py BUILD balance | bounds | order | derivatives | ball | arrivals | trends | cost"""
 import csv
 import json
 import math
@@ -147,26 +147,49 @@ def arrivals():
     case_tools.figure("arrivals_hub_slope", abs(found["bias"]))
 
 
-def trend():
-    """The hot hub by the exponent of hardening, twelve designs within 20 %, meshes decided anew: the mean of their gradients against the slope of a parabola
-    through their energies, and the standard deviation of that. Narrow intervals mislead: slopes through neighbours are printed, too."""
-    settings = {"Material/law": "power", "Material/consistency": 32, "Material/strain rate sensitivity": 0.15,
-                "Material/further numbers": "n: 0.15, q0: 0.05, beta: 0.0025, T0: 1100", "Objectives/names": "energy",
-                "Optimisation/objective": "", "Optimisation/at most": "", "Optimisation/lower bounds": "", "Optimisation/upper bounds": "",
-                "Optimisation/scales": "", "Press/stroke": 27}
-    case_tools.scan_of_trend(BUILD, HOT_HUB, "material/n", 12, 0.2, settings, "trend")
-    of = case_tools.Trend("trend", "energy")
-    print(f"{len(of.at)} designs: gradients {of.mean:.0f}, standard deviation {statistics.stdev(of.slopes):.0f}; trend {of.slope:.0f} +- {of.uncertainty:.0f}; "
-          f"energies scatter by {of.scatter / statistics.mean(of.values):.1e}")
-    fours = [chord(of.at[i:i + 4], of.values[i:i + 4]) for i in range(len(of.at) - 3)]
-    print(f"slopes through four neighbours: {min(fours):.0f} to {max(fours):.0f}")
-    case_tools.figure("trend_by_n", abs(of.bias))
+HOT_UPSETTING = os.path.join(PRM, "tutorial", "hot_upsetting", "hot_upsetting.prm")
+FIRST_MESHES = (3.85, 3.9, 3.95, 4, 4.05, 4.1, 4.15, 4.2)  # elements of, mm
+VARIED = {"billet/temperature": 0.03, "heat/transfer time": 0.5, "material/n": 0.3, "material/beta": 0.4, "dies/friction": 0.3}  # parts of them, to both sides
+HARDENING = {"Material/law": "power", "Material/consistency": 32, "Material/strain rate sensitivity": 0.15,
+             "Material/further numbers": "n: 0.15, q0: 0.05, beta: 0.0025, T0: 1100", "Objectives/names": "energy, largest temperature",
+             "Optimisation/objective": "", "Optimisation/at most": "", "Optimisation/lower bounds": "", "Optimisation/upper bounds": "",
+             "Optimisation/scales": "", "Design/parameters": ", ".join(VARIED), "Output/fields every": 0, "Output/record": "false"}
 
 
-def chord(x, y):
-    """Slope of the line through some points."""
-    middle = statistics.mean(x)
-    return sum((a - middle) * b for a, b in zip(x, y)) / sum((a - middle) ** 2 for a in x)
+def trends():
+    """Whole forgings of metal that hardens, meshes made anew, decided anew at both ends of an interval of each parameter, from eight first meshes: the mean of the
+    gradients over the interval (Simpson's rule) beside the secant. Of one first mesh the secant has that mesh's scatter; of eight the mean and its error are printed."""
+    for scene, case in (("upsetting", HOT_UPSETTING), ("hub", HOT_HUB)):
+        beside = {name: {} for name in VARIED}
+        for size in FIRST_MESHES:
+            def forged(**at):
+                folder = "_".join(["trend", scene, str(size), *(f"{name}_{value:.4g}".replace("/", "_").replace(" ", "_") for name, value in at.items())])
+                settings = {**HARDENING, "Billet/element size": size, "Design/at": ", ".join(f"{name}: {value!r}" for name, value in at.items())}
+                return case_tools.run(BUILD, "gradient", case, settings, folder)[0]
+
+            middle = forged()
+            nominal = {parameter["name"]: parameter["value"] for parameter in middle["parameters"]}
+            for name, part in VARIED.items():
+                step = part * nominal[name]
+                low, high = (forged(**{name: nominal[name] + side * step}) for side in (-1, 1))
+                for objective in values(middle):
+                    secant = (values(high)[objective]["value"] - values(low)[objective]["value"]) / (2 * step)
+                    slopes = [next(p["gradient"][objective] for p in run["parameters"] if p["name"] == name) for run in (low, middle, high)]
+                    beside[name].setdefault(objective, []).append(((slopes[0] + 4 * slopes[1] + slopes[2]) / 6, secant))
+        print(f"| {scene} | " + " | ".join(next(iter(beside.values()))) + " |\n" + "| --- " * 3 + "|")
+        for name, of in beside.items():
+            told = [off_trend(pairs) for pairs in of.values()]
+            print(f"| {name} ± {VARIED[name]:.0%} | " + " | ".join(f"{mean:+.1%} ± {error:.1%}" for mean, error in told) + " |", flush=True)
+            mean, error = told[0]
+            case_tools.figure(f"trend_{scene}_{name.split('/')[1].replace(' ', '_')}", abs(mean))
+            case_tools.figure(f"error_{scene}_{name.split('/')[1].replace(' ', '_')}", error)
+
+
+def off_trend(pairs):
+    """Sum of gradients over that of secants, less one, and its standard error."""
+    mean = sum(gradient for gradient, _ in pairs) / sum(secant for _, secant in pairs) - 1
+    typical = statistics.mean(secant for _, secant in pairs)
+    return mean, statistics.stdev((gradient - (1 + mean) * secant) / typical for gradient, secant in pairs) / math.sqrt(len(pairs))
 
 
 def cost():
@@ -192,4 +215,4 @@ def cost():
 
 
 if __name__ == "__main__":
-    {"balance": balance, "bounds": bounds, "order": order, "derivatives": derivatives, "ball": ball, "arrivals": arrivals, "trend": trend, "cost": cost}[sys.argv[2]]()
+    {"balance": balance, "bounds": bounds, "order": order, "derivatives": derivatives, "ball": ball, "arrivals": arrivals, "trends": trends, "cost": cost}[sys.argv[2]]()
