@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright (C) 2026 The Retroforge authors
 """What the verification cases share: run the program on a parameter file, read its summary, print figures."""
-import csv
 import json
 import math
 import os
@@ -56,30 +55,45 @@ def figure(name, value):
     print(f"FIGURE {name} {value:.6g}", flush=True)
 
 
-class Trend:
-    """What a scan found of one objective: its slopes beside those of the polynomial through its values."""
+class Trends:
+    """Slopes of forgings that are remeshed, beside the trend of what is decided anew: of each parameter and objective the mean of the gradients over an interval, by
+    Simpson's rule, and the secant, from several first meshes. Of one first mesh a secant has that mesh's scatter."""
 
-    def __init__(self, folder, objective):
-        with open(os.path.join(folder, "scan.csv"), encoding="utf-8", newline="") as table:
-            rows = [row for row in csv.DictReader(table) if not row["failure"]]
-        column = next(name for name in rows[0] if name.startswith(f"{objective} [") or name == objective)
-        columns = ("value", column, f"{objective}: gradient", f"{objective}: fit", f"{objective}: slope of the fit")
-        self.at, self.values, self.slopes, fit, fitted = ([float(row[name]) for row in rows] for name in columns)
-        self.mean, self.slope = statistics.mean(self.slopes), statistics.mean(fitted)  # of a parabola: its slope at the middle
-        middle = statistics.mean(self.at)
-        # Of the values about the parabola, and of its slope.
-        self.scatter = math.sqrt(sum((y - on_it) ** 2 for y, on_it in zip(self.values, fit)) / (len(rows) - 3))
-        self.uncertainty = self.scatter / math.sqrt(sum((x - middle) ** 2 for x in self.at))
-        self.bias = self.mean / self.slope - 1
-        self.rms = math.sqrt(statistics.mean((s - f) ** 2 for s, f in zip(self.slopes, fitted))) / abs(self.slope)
+    def __init__(self, build, case, settings, parts, sizes, prefix):
+        """@param parts  {parameter: part of it, to both sides}  @param sizes  elements of the first meshes [mm]"""
+        self.pairs = {name: {} for name in parts}
+        for size in sizes:
+            def forged(at, word):
+                with_these = {**settings, "Billet/element size": size, "Design/parameters": ", ".join(parts), "Design/at": at, "Output/fields every": 0,
+                              "Output/record": "false"}
+                return run(build, "gradient", case, with_these, f"{prefix}_{size}_{word}")[0]
+
+            middle = forged("", "nominal")
+            nominal = {parameter["name"]: parameter["value"] for parameter in middle["parameters"]}
+            for name, part in parts.items():
+                ends = [(1 + side * part) * nominal[name] for side in (-1, 1)]
+                low, high = (forged(f"{name}: {value!r}", f"{name}_{value:.4g}".replace("/", "_").replace(" ", "_")) for value in ends)
+                for objective in gradient_of(middle, name):
+                    slopes = [gradient_of(summary, name)[objective] for summary in (low, middle, high)]
+                    rise = value_of(high, objective) - value_of(low, objective)
+                    self.pairs[name].setdefault(objective, []).append(((slopes[0] + 4 * slopes[1] + slopes[2]) / 6, rise / (ends[1] - ends[0]), slopes[1]))
+
+    def beside(self, parameter, objective):
+        """How far the mean gradient is beside the mean secant, its standard error, and single gradients in the middle beside it, rms."""
+        pairs = self.pairs[parameter][objective]
+        secant = statistics.mean(of for _, of, _ in pairs)
+        mean = statistics.mean(slope for slope, _, _ in pairs) / secant - 1
+        error = statistics.stdev((slope - (1 + mean) * of) / secant for slope, of, _ in pairs) / math.sqrt(len(pairs))
+        return mean, error, math.sqrt(statistics.mean((single / secant - 1) ** 2 for _, _, single in pairs))
 
 
-def scan_of_trend(build, case, parameter, points, part, settings, output):
-    """Scans a parameter by a part of it to both sides, everything decided anew, in one process."""
-    _, text = run(build, "scan", case, {"Scan/parameter": parameter, "Scan/range": part, "Scan/points": points, "Scan/fit degree": 2, "Design/parameters": parameter,
-                                        "Scan/processes": 1, "Output/fields every": 0, **settings}, output, may_fail=True)
-    if not os.path.exists(os.path.join(output, "scan.csv")):
-        sys.exit(text)
+def value_of(summary, objective):
+    return next(of["value"] for of in summary["objectives"] if of["name"] == objective)
+
+
+def gradient_of(summary, parameter):
+    """{objective: its derivative by the parameter}"""
+    return next(of["gradient"] for of in summary["parameters"] if of["name"] == parameter)
 
 
 def judge_check(build, case, settings, label):

@@ -148,48 +148,22 @@ def arrivals():
 
 
 HOT_UPSETTING = os.path.join(PRM, "tutorial", "hot_upsetting", "hot_upsetting.prm")
-FIRST_MESHES = (3.85, 3.9, 3.95, 4, 4.05, 4.1, 4.15, 4.2)  # elements of, mm
-VARIED = {"billet/temperature": 0.03, "heat/transfer time": 0.5, "material/n": 0.3, "material/beta": 0.4, "dies/friction": 0.3}  # parts of them, to both sides
+VARIED = {"billet/temperature": 0.03, "heat/transfer time": 0.5, "material/n": 0.3, "material/beta": 0.4, "dies/friction": 0.3}
 HARDENING = {"Material/law": "power", "Material/consistency": 32, "Material/strain rate sensitivity": 0.15,
              "Material/further numbers": "n: 0.15, q0: 0.05, beta: 0.0025, T0: 1100", "Objectives/names": "energy, largest temperature",
              "Optimisation/objective": "", "Optimisation/at most": "", "Optimisation/lower bounds": "", "Optimisation/upper bounds": "",
-             "Optimisation/scales": "", "Design/parameters": ", ".join(VARIED), "Output/fields every": 0, "Output/record": "false"}
+             "Optimisation/scales": ""}
 
 
 def trends():
-    """Whole forgings of metal that hardens, meshes made anew, decided anew at both ends of an interval of each parameter, from eight first meshes: the mean of the
-    gradients over the interval (Simpson's rule) beside the secant. Of one first mesh the secant has that mesh's scatter; of eight the mean and its error are printed."""
+    """Whole forgings of metal that hardens, meshes made anew."""
     for scene, case in (("upsetting", HOT_UPSETTING), ("hub", HOT_HUB)):
-        beside = {name: {} for name in VARIED}
-        for size in FIRST_MESHES:
-            def forged(**at):
-                folder = "_".join(["trend", scene, str(size), *(f"{name}_{value:.4g}".replace("/", "_").replace(" ", "_") for name, value in at.items())])
-                settings = {**HARDENING, "Billet/element size": size, "Design/at": ", ".join(f"{name}: {value!r}" for name, value in at.items())}
-                return case_tools.run(BUILD, "gradient", case, settings, folder)[0]
-
-            middle = forged()
-            nominal = {parameter["name"]: parameter["value"] for parameter in middle["parameters"]}
-            for name, part in VARIED.items():
-                step = part * nominal[name]
-                low, high = (forged(**{name: nominal[name] + side * step}) for side in (-1, 1))
-                for objective in values(middle):
-                    secant = (values(high)[objective]["value"] - values(low)[objective]["value"]) / (2 * step)
-                    slopes = [next(p["gradient"][objective] for p in run["parameters"] if p["name"] == name) for run in (low, middle, high)]
-                    beside[name].setdefault(objective, []).append(((slopes[0] + 4 * slopes[1] + slopes[2]) / 6, secant))
-        print(f"| {scene} | " + " | ".join(next(iter(beside.values()))) + " |\n" + "| --- " * 3 + "|")
-        for name, of in beside.items():
-            told = [off_trend(pairs) for pairs in of.values()]
-            print(f"| {name} ± {VARIED[name]:.0%} | " + " | ".join(f"{mean:+.1%} ± {error:.1%}" for mean, error in told) + " |", flush=True)
-            mean, error = told[0]
-            case_tools.figure(f"trend_{scene}_{name.split('/')[1].replace(' ', '_')}", abs(mean))
-            case_tools.figure(f"error_{scene}_{name.split('/')[1].replace(' ', '_')}", error)
-
-
-def off_trend(pairs):
-    """Sum of gradients over that of secants, less one, and its standard error."""
-    mean = sum(gradient for gradient, _ in pairs) / sum(secant for _, secant in pairs) - 1
-    typical = statistics.mean(secant for _, secant in pairs)
-    return mean, statistics.stdev((gradient - (1 + mean) * secant) / typical for gradient, secant in pairs) / math.sqrt(len(pairs))
+        found = case_tools.Trends(BUILD, case, HARDENING, VARIED, (3.85, 3.9, 3.95, 4, 4.05, 4.1, 4.15, 4.2), f"trend_{scene}")
+        print("| " + scene + " | energy | largest temperature |\n" + "| --- " * 3 + "|")
+        for name, part in VARIED.items():
+            told = [found.beside(name, objective) for objective in ("energy", "largest temperature")]
+            print(f"| {name} ± {part:.0%} | " + " | ".join(f"{mean:+.1%} ± {error:.1%}" for mean, error, _ in told) + " |", flush=True)
+            case_tools.figure(f"trend_{scene}_{name.split('/')[1].replace(' ', '_')}", abs(told[0][0]))
 
 
 def cost():
