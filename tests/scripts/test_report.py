@@ -275,6 +275,7 @@ class Report(ScratchTest):
         summary["parameters"][0]["value"] = summary["volume_final"] = None
         summary["parameters"][1]["gradient"]["energy"] = summary["wall_seconds"]["krylov"] = None
         summary["check"][0]["adjoint"] = summary["check"][1]["taylor_orders"][0] = None
+        summary["check"][0]["free"] = {"slope": 28.0, "uncertainty": 0.1, "jumps": 0.0, "doubtful": True}
         summary["check"][1]["steps"][0]["free_central"] = None
         del summary["check"][2]["steps"], summary["parameters"][2]["gradient"]
         for value in (summary["objectives"][0]["value"], None):
@@ -285,6 +286,7 @@ class Report(ScratchTest):
             page = (self.root / "run/report.html").read_text()
             self.assertNotIn("nan", page.split("base64")[0])
             self.assertNotIn("Drawn for the first", page)
+            self.assertIn("passed, doubtful: decided anew, the slope is 28; scan tells which holds", page)
             self.assertEqual((self.root / "run/pictures/gradients.png").is_file(), value is not None)
 
     def test_unfinished(self):
