@@ -94,9 +94,10 @@ namespace retroforge
     // Growth is told in as many parts: rounding of positions must not change what is wanted.
     constexpr double parts_of_growth = 1e9;
 
-    /// Returns the wanted length of the edges [mm]. A design is forged on the first mesh of the nominal one, moved to it: elements made on
-    /// the way keep their proportion to those of that mesh, so that designs are compared with as many elements, and new meshes that follow
-    /// the shape in derivatives grow as those of runs that decide anew.
+    /// Returns the wanted length of the edges [mm]. A design is forged on the first mesh of the nominal one, moved
+    /// to it: elements made on the way keep their proportion to those of that mesh, so that designs are compared
+    /// with as many elements, and new meshes that follow the shape in derivatives grow as those of runs that decide
+    /// anew.
     double edge_length(const ForgingProblem &problem, const std::size_t segment)
     {
       const TetMesh &billet = *problem.billet;

@@ -56,8 +56,9 @@ namespace retroforge
     /// value of the objective. Nothing is known of a derivative that is zero.
     DifferenceFit free_fit() const;
     DifferenceFit replayed_fit() const;
-    /// Returns whether the slope of the differences that decide anew is known and more than half beside the adjoint: which of them the trend
-    /// has is not known then. Where new meshes follow the shape, the adjoint is not theirs, and a check of it passes all the same.
+    /// Returns whether the slope of the differences that decide anew is known and more than half beside the
+    /// adjoint: which of them the trend has is not known then. Where new meshes follow the shape, the adjoint is
+    /// not theirs, and a check of it passes all the same.
     bool is_doubtful() const;
     /// Of the replayed central differences: no derivative is zero for which all of them are not.
     double smallest_difference() const;
