@@ -26,6 +26,7 @@ namespace
     }
     return row.best_replayed_error();
   }
+
   /// Whether a derivative is doubtful beside differences that decide anew, which have a slope and a jump from -h
   /// to h by turns of its sign.
   bool is_doubtful(const double adjoint, const double slope, const double jump)
