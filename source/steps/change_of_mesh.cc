@@ -101,16 +101,7 @@ namespace retroforge
   {
     to = q;
     if (!q.empty())
-      to = transfer_cells<Number>(old_mesh, X_old, J, new_mesh, q);
-  }
-
-  template <typename Number>
-  void MemberTransfer<Number>::operator()(const BoundedCellField<Number> &q,
-                                          BoundedCellField<Number>       &to) const
-  {
-    to = q;
-    if (!q.empty())
-      to = transfer_cells<Number>(old_mesh, X_old, J, new_mesh, q, CellRange::bounded);
+      to = transfer_cells<Number>({old_mesh, X_old, J, new_mesh, X_new}, q);
   }
 
   template struct MemberTransfer<double>;
@@ -210,29 +201,19 @@ namespace retroforge
       remesh_.transfer.add_weight_bar<Vec3>(v, v_bar, weight_bar_);
   }
 
-  void ReverseMemberTransfer::reverse_cells(const std::vector<double> &q,
-                                            const std::vector<double> &q_bar,
-                                            std::vector<double>       &to,
-                                            const CellRange            range)
-  {
-    to.assign(q_bar.empty() ? 0 : old_mesh_.n_cells(), 0.);
-    if (!is_zero(q_bar))
-      reverse_transfer_cells(
-        old_mesh_, X_, remesh_.transfer, remesh_.mesh, q, q_bar, to, X_old_bar_, weight_bar_, range);
-  }
-
   void ReverseMemberTransfer::operator()(const CellField<double> &q,
                                          const CellField<double> &q_bar,
                                          CellField<double>       &to)
   {
-    reverse_cells(q, q_bar, to, CellRange::free);
-  }
-
-  void ReverseMemberTransfer::operator()(const BoundedCellField<double> &q,
-                                         const BoundedCellField<double> &q_bar,
-                                         BoundedCellField<double>       &to)
-  {
-    reverse_cells(q, q_bar, to, CellRange::bounded);
+    to.assign(q_bar.empty() ? 0 : old_mesh_.n_cells(), 0.);
+    if (!is_zero(q_bar))
+      reverse_transfer_cells({old_mesh_, X_, remesh_.transfer, remesh_.mesh, remesh_.mesh.X},
+                             q,
+                             q_bar,
+                             to,
+                             X_old_bar_,
+                             weight_bar_,
+                             X_new_bar_);
   }
 
   void ReverseMemberTransfer::reverse_positions(const std::vector<Die>              &dies,

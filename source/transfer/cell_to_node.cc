@@ -19,16 +19,6 @@ namespace retroforge
              6.;
     }
 
-    template <typename Number>
-    std::vector<Number> cell_volumes(const TetMesh &mesh, const NodalVectors<Number> &X)
-    {
-      std::vector<Number> volumes;
-      volumes.reserve(mesh.n_cells());
-      for (const auto &cell : mesh.cells)
-        volumes.push_back(cell_volume(cell, X));
-      return volumes;
-    }
-
     // M_k, the volume of the cells at each node.
     template <typename Number>
     std::vector<Number> volumes_at_nodes(const TetMesh &mesh, const std::vector<Number> &volumes)
@@ -56,13 +46,34 @@ namespace retroforge
   } // namespace
 
   template <typename Number>
-  std::vector<Number>
-  cell_to_node(const TetMesh &mesh, const NodalVectors<Number> &X, const std::vector<Number> &q_T)
+  std::vector<Number> cell_volumes(const TetMesh &mesh, const NodalVectors<Number> &X)
   {
     AssertDimension(X.size(), mesh.n_nodes());
+    std::vector<Number> volumes;
+    volumes.reserve(mesh.n_cells());
+    for (const auto &cell : mesh.cells)
+      volumes.push_back(cell_volume(cell, X));
+    return volumes;
+  }
+
+  void reverse_cell_volumes(const TetMesh              &mesh,
+                            const NodalVectors<double> &X,
+                            const std::vector<double>  &volumes_bar,
+                            NodalVectors<double>       &X_bar)
+  {
+    AssertDimension(volumes_bar.size(), mesh.n_cells());
+    AssertDimension(X_bar.size(), mesh.n_nodes());
+    for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+      reverse_cell_volume(mesh.cells[c], X, volumes_bar[c], X_bar);
+  }
+
+  template <typename Number>
+  std::vector<Number>
+  cell_to_node(const TetMesh &mesh, const std::vector<Number> &volumes, const std::vector<Number> &q_T)
+  {
+    AssertDimension(volumes.size(), mesh.n_cells());
     AssertDimension(q_T.size(), mesh.n_cells());
-    const auto          volumes = cell_volumes(mesh, X);
-    const auto          M       = volumes_at_nodes(mesh, volumes);
+    const auto          M = volumes_at_nodes(mesh, volumes);
     std::vector<Number> q(mesh.n_nodes(), Number(0.));
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
       for (const NodeIndex node : mesh.cells[c])
@@ -72,30 +83,24 @@ namespace retroforge
     return q;
   }
 
-  void reverse_cell_to_node(const TetMesh              &mesh,
-                            const NodalVectors<double> &X,
-                            const std::vector<double>  &q_T,
-                            const std::vector<double>  &q_k_bar,
-                            std::vector<double>        &q_T_bar,
-                            NodalVectors<double>       &X_bar)
+  void reverse_cell_to_node(const TetMesh             &mesh,
+                            const std::vector<double> &volumes,
+                            const std::vector<double> &q_T,
+                            const std::vector<double> &q_k_bar,
+                            std::vector<double>       &q_T_bar,
+                            std::vector<double>       &volumes_bar)
   {
     AssertDimension(q_k_bar.size(), mesh.n_nodes());
     AssertDimension(q_T_bar.size(), mesh.n_cells());
-    AssertDimension(X_bar.size(), mesh.n_nodes());
-    const auto volumes = cell_volumes(mesh, X);
-    const auto M       = volumes_at_nodes(mesh, volumes);
-    const auto q_k     = cell_to_node(mesh, X, q_T);
+    AssertDimension(volumes_bar.size(), mesh.n_cells());
+    const auto M   = volumes_at_nodes(mesh, volumes);
+    const auto q_k = cell_to_node(mesh, volumes, q_T);
     for (CellIndex c = 0; c < mesh.n_cells(); ++c)
-    {
-      double share = 0, volume_bar = 0;
       for (const NodeIndex k : mesh.cells[c])
       {
-        share += q_k_bar[k] / M[k];
-        volume_bar += q_k_bar[k] / M[k] * (q_T[c] - q_k[k]);
+        q_T_bar[c] += volumes[c] * q_k_bar[k] / M[k];
+        volumes_bar[c] += q_k_bar[k] / M[k] * (q_T[c] - q_k[k]);
       }
-      q_T_bar[c] += volumes[c] * share;
-      reverse_cell_volume(mesh.cells[c], X, volume_bar, X_bar);
-    }
   }
 
   template <typename Number>
@@ -119,9 +124,10 @@ namespace retroforge
         q_k_bar[node] += 0.25 * q_T_bar[c];
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                           \
-  template std::vector<Number> cell_to_node(                                     \
-    const TetMesh &, const NodalVectors<Number> &, const std::vector<Number> &); \
+#define RETROFORGE_INSTANTIATE(Number)                                                      \
+  template std::vector<Number> cell_volumes(const TetMesh &, const NodalVectors<Number> &); \
+  template std::vector<Number> cell_to_node(                                                \
+    const TetMesh &, const std::vector<Number> &, const std::vector<Number> &);             \
   template std::vector<Number> node_to_cell(const TetMesh &, const std::vector<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)

@@ -5,6 +5,7 @@
 #include <retroforge/transfer/cell_transfer.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace retroforge
 {
@@ -59,61 +60,208 @@ namespace retroforge
     return old_cell;
   }
 
-  template <typename Number>
-  std::vector<Number> transfer_cells(const TetMesh               &old_mesh,
-                                     const NodalVectors<Number>  &X,
-                                     const BasicTransfer<Number> &J,
-                                     const TetMesh               &new_mesh,
-                                     const std::vector<Number>   &q_T,
-                                     const CellRange              range)
+  namespace
   {
-    const auto          at_node = cell_to_node(old_mesh, X, q_T);
-    std::vector<Number> q =
-      node_to_cell(new_mesh, range == CellRange::bounded ? J.apply_bounded(at_node) : J.apply(at_node));
-    const auto old_cell = kept_cells(old_mesh, J, new_mesh);
-    for (CellIndex c = 0; c < new_mesh.n_cells(); ++c)
-      if (old_cell[c] != invalid_index)
-        q[c] = q_T[old_cell[c]];
+    /// Kept cells count by so much of their volume at a node, so that they do where it has no others.
+    constexpr double weight_of_kept = 1e-9;
+
+    /// Cells of one mesh that a change replaces, or that it makes.
+    template <typename Number>
+    struct ChangedCells
+    {
+      std::vector<bool>   changed;
+      std::vector<Number> volumes; ///< of all cells
+
+      /// Sum of the volumes, and of the values by them.
+      std::pair<Number, Number> sums(const std::vector<Number> &q) const
+      {
+        Number volume(0.), sum(0.);
+        for (CellIndex c = 0; c < volumes.size(); ++c)
+          if (changed[c])
+          {
+            volume += volumes[c];
+            sum += volumes[c] * q[c];
+          }
+        return {volume, sum};
+      }
+
+      std::vector<Number> weights() const
+      {
+        std::vector<Number> weights = volumes;
+        for (CellIndex c = 0; c < volumes.size(); ++c)
+          if (!changed[c])
+            weights[c] *= weight_of_kept;
+        return weights;
+      }
+    };
+
+    /// L q at the nodes, and how it came about.
+    template <typename Number>
+    struct Lifted
+    {
+      std::vector<Number>    smooth, rest; ///< S q; q - C S q
+      std::vector<Number>    values;       ///< L q
+      std::vector<CellIndex> bound;        ///< the cell whose value a node has, or none
+    };
+
+    template <typename Number>
+    Lifted<Number> lift(const TetMesh &mesh, const std::vector<Number> &weights, const std::vector<Number> &q)
+    {
+      Lifted<Number> lifted;
+      lifted.smooth   = cell_to_node(mesh, weights, q);
+      lifted.rest     = q;
+      const auto back = node_to_cell(mesh, lifted.smooth);
+      for (CellIndex c = 0; c < q.size(); ++c)
+        lifted.rest[c] -= back[c];
+      lifted.values = cell_to_node(mesh, weights, lifted.rest);
+      std::vector<CellIndex> least(mesh.n_nodes(), invalid_index), largest = least;
+      for (CellIndex c = 0; c < q.size(); ++c)
+        for (const NodeIndex k : mesh.cells[c])
+        {
+          if (least[k] == invalid_index || value_of(q[c]) < value_of(q[least[k]]))
+            least[k] = c;
+          if (largest[k] == invalid_index || value_of(q[c]) > value_of(q[largest[k]]))
+            largest[k] = c;
+        }
+      lifted.bound.assign(mesh.n_nodes(), invalid_index);
+      for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
+      {
+        Number &value = lifted.values[k];
+        value += lifted.smooth[k];
+        if (value_of(value) < value_of(q[least[k]]))
+          lifted.bound[k] = least[k];
+        if (value_of(value) > value_of(q[largest[k]]))
+          lifted.bound[k] = largest[k];
+        if (lifted.bound[k] != invalid_index)
+          value = q[lifted.bound[k]];
+      }
+      return lifted;
+    }
+
+    void reverse_lift(const TetMesh             &mesh,
+                      const std::vector<double> &weights,
+                      const std::vector<double> &q,
+                      const Lifted<double>      &lifted,
+                      std::vector<double>        values_bar,
+                      std::vector<double>       &q_bar,
+                      std::vector<double>       &weights_bar)
+    {
+      for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
+        if (lifted.bound[k] != invalid_index)
+          q_bar[lifted.bound[k]] += std::exchange(values_bar[k], 0.);
+      std::vector<double> rest_bar(q.size(), 0.), minus_smooth_bar(mesh.n_nodes(), 0.);
+      reverse_cell_to_node(mesh, weights, lifted.rest, values_bar, rest_bar, weights_bar);
+      reverse_node_to_cell(mesh, rest_bar, minus_smooth_bar);
+      for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
+        values_bar[k] -= minus_smooth_bar[k];
+      for (CellIndex c = 0; c < q.size(); ++c)
+        q_bar[c] += rest_bar[c];
+      reverse_cell_to_node(mesh, weights, q, values_bar, q_bar, weights_bar);
+    }
+
+    /// What transfer_cells goes by.
+    template <typename Number>
+    struct CellPassage
+    {
+      std::vector<CellIndex> old_cell;
+      ChangedCells<Number>   replaced, made;
+      std::vector<Number>    weights;
+      Lifted<Number>         lifted;
+      std::vector<Number>    q; ///< C J L q
+      Number                 lambda;
+
+      CellPassage(const MeshChange<Number> &change, const std::vector<Number> &q_T)
+          : old_cell(kept_cells(change.old_mesh, change.J, change.new_mesh))
+          , replaced{std::vector<bool>(q_T.size(), true), cell_volumes(change.old_mesh, change.X)}
+          , made{{}, cell_volumes(change.new_mesh, change.X_new)}
+          , lambda(1.)
+      {
+        AssertDimension(q_T.size(), change.old_mesh.n_cells());
+        for (const CellIndex c : old_cell)
+        {
+          made.changed.push_back(c == invalid_index);
+          if (c != invalid_index)
+            replaced.changed[c] = false;
+        }
+        weights                  = replaced.weights();
+        lifted                   = lift(change.old_mesh, weights, q_T);
+        q                        = node_to_cell(change.new_mesh, change.J.apply_bounded(lifted.values));
+        const auto [volume, sum] = replaced.sums(q_T);
+        const auto [new_volume, new_sum] = made.sums(q);
+        if (value_of(sum) > 0. && value_of(new_sum) > 0.)
+          lambda = sum / volume * new_volume / new_sum;
+      }
+    };
+  } // namespace
+
+  template <typename Number>
+  std::vector<Number> transfer_cells(const MeshChange<Number> &change, const std::vector<Number> &q_T)
+  {
+    const CellPassage<Number> passage(change, q_T);
+    std::vector<Number>       q = passage.q;
+    for (CellIndex c = 0; c < q.size(); ++c)
+      if (passage.made.changed[c])
+        q[c] *= passage.lambda;
+      else
+        q[c] = q_T[passage.old_cell[c]];
     return q;
   }
 
-  void reverse_transfer_cells(const TetMesh              &old_mesh,
-                              const NodalVectors<double> &X,
-                              const TransferOperator     &J,
-                              const TetMesh              &new_mesh,
-                              const std::vector<double>  &q_T,
-                              std::vector<double>         q_bar,
-                              std::vector<double>        &q_T_bar,
-                              NodalVectors<double>       &X_bar,
-                              std::vector<double>        &weight_bar,
-                              const CellRange             range)
+  void reverse_transfer_cells(const MeshChange<double>  &change,
+                              const std::vector<double> &q_T,
+                              const std::vector<double> &q_bar,
+                              std::vector<double>       &q_T_bar,
+                              NodalVectors<double>      &X_bar,
+                              std::vector<double>       &weight_bar,
+                              NodalVectors<double>      &X_new_bar)
   {
-    AssertDimension(q_bar.size(), new_mesh.n_cells());
-    const auto old_cell = kept_cells(old_mesh, J, new_mesh);
-    for (CellIndex c = 0; c < new_mesh.n_cells(); ++c)
-      if (old_cell[c] != invalid_index)
+    AssertDimension(q_bar.size(), change.new_mesh.n_cells());
+    const CellPassage<double> passage(change, q_T);
+    std::vector<double> made_bar(q_bar.size(), 0.), volumes_bar(q_T.size(), 0.), new_volumes_bar = made_bar;
+    double              lambda_bar = 0.;
+    for (CellIndex c = 0; c < q_bar.size(); ++c)
+      if (passage.made.changed[c])
       {
-        q_T_bar[old_cell[c]] += q_bar[c];
-        q_bar[c] = 0.;
+        made_bar[c] = passage.lambda * q_bar[c];
+        lambda_bar += passage.q[c] * q_bar[c];
       }
-    std::vector<double> at_node(new_mesh.n_nodes(), 0.);
-    reverse_node_to_cell(new_mesh, q_bar, at_node);
-    const auto lifted = cell_to_node(old_mesh, X, q_T);
-    const auto old_bar =
-      range == CellRange::bounded ? J.reverse_apply_bounded(lifted, at_node) : J.apply_transpose(at_node);
-    J.add_weight_bar(lifted, at_node, weight_bar);
-    reverse_cell_to_node(old_mesh, X, q_T, old_bar, q_T_bar, X_bar);
+      else
+        q_T_bar[passage.old_cell[c]] += q_bar[c];
+
+    const auto [volume, sum]         = passage.replaced.sums(q_T);
+    const auto [new_volume, new_sum] = passage.made.sums(passage.q);
+    if (sum > 0. && new_sum > 0.)
+    {
+      const double log_bar = lambda_bar * passage.lambda; // in the logarithm of lambda
+      for (CellIndex c = 0; c < q_T.size(); ++c)
+        if (passage.replaced.changed[c])
+        {
+          q_T_bar[c] += log_bar * passage.replaced.volumes[c] / sum;
+          volumes_bar[c] += log_bar * (q_T[c] / sum - 1. / volume);
+        }
+      for (CellIndex c = 0; c < q_bar.size(); ++c)
+        if (passage.made.changed[c])
+        {
+          made_bar[c] -= log_bar * passage.made.volumes[c] / new_sum;
+          new_volumes_bar[c] = log_bar * (1. / new_volume - passage.q[c] / new_sum);
+        }
+    }
+
+    std::vector<double> at_node(change.new_mesh.n_nodes(), 0.), weights_bar(q_T.size(), 0.);
+    reverse_node_to_cell(change.new_mesh, made_bar, at_node);
+    const auto lifted_bar = change.J.reverse_apply_bounded(passage.lifted.values, at_node);
+    change.J.add_weight_bar(passage.lifted.values, at_node, weight_bar);
+    reverse_lift(change.old_mesh, passage.weights, q_T, passage.lifted, lifted_bar, q_T_bar, weights_bar);
+    for (CellIndex c = 0; c < q_T.size(); ++c)
+      volumes_bar[c] += (passage.replaced.changed[c] ? 1. : weight_of_kept) * weights_bar[c];
+    reverse_cell_volumes(change.old_mesh, change.X, volumes_bar, X_bar);
+    reverse_cell_volumes(change.new_mesh, change.X_new, new_volumes_bar, X_new_bar);
   }
 
-#define RETROFORGE_INSTANTIATE(Number)                                       \
-  template std::vector<CellIndex> kept_cells(                                \
-    const TetMesh &, const BasicTransfer<Number> &, const TetMesh &);        \
-  template std::vector<Number> transfer_cells(const TetMesh &,               \
-                                              const NodalVectors<Number> &,  \
-                                              const BasicTransfer<Number> &, \
-                                              const TetMesh &,               \
-                                              const std::vector<Number> &,   \
-                                              CellRange);
+#define RETROFORGE_INSTANTIATE(Number)                                \
+  template std::vector<CellIndex> kept_cells(                         \
+    const TetMesh &, const BasicTransfer<Number> &, const TetMesh &); \
+  template std::vector<Number> transfer_cells(const MeshChange<Number> &, const std::vector<Number> &);
   RETROFORGE_INSTANTIATE(double)
   RETROFORGE_INSTANTIATE(Dual)
 #undef RETROFORGE_INSTANTIATE

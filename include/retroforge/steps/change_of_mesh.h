@@ -12,8 +12,7 @@
 /// @file
 /// The step that takes the workpiece from one mesh to the next. What happens to a member of the state follows
 /// from its kind: positions by the tape of what remeshing did to them (PositionTape), one number or vector per
-/// node q' = J q, one number per cell transfer_cells(); fields of nodes and bounded ones of cells within the range of the
-/// values that a row of J takes. The weights of J follow positions (MovingTransfer). Where the new mesh follows the shape
+/// node q' = J q, numbers within the range of the values that a row of J takes, one number per cell transfer_cells(). The weights of J follow positions (MovingTransfer). Where the new mesh follows the shape
 /// (FollowingMesh), nodes and what they carry are then moved. Temperatures are at last corrected so that heat is kept
 /// (steps/kept_heat.h).
 namespace retroforge
@@ -49,7 +48,6 @@ namespace retroforge
     void operator()(const NodeSkins<Number> &skins, NodeSkins<Number> &to) const;
     void operator()(const NodeVectorField<3, Number> &v, NodeVectorField<3, Number> &to) const;
     void operator()(const CellField<Number> &q, CellField<Number> &to) const;
-    void operator()(const BoundedCellField<Number> &q, BoundedCellField<Number> &to) const;
   };
 
   /// Moves a member of the state with the nodes of a mesh that follows the shape, but for the positions themselves.
@@ -64,7 +62,6 @@ namespace retroforge
     void operator()(NodeSkins<Number> &skins) const;
     void operator()(NodeVectorField<3, Number> &v) const { mesh.move_nodes(w, v); }
     void operator()(CellField<Number> &q) const { mesh.move_cells(w, q); }
-    void operator()(BoundedCellField<Number> &q) const { mesh.move_cells(w, q); }
   };
 
   /// The reverse of it: derivatives in w, where that is 0. Those in the member stay what they are.
@@ -84,10 +81,6 @@ namespace retroforge
       mesh.reverse_nodes(v, v_bar, w_bar);
     }
     void operator()(const CellField<double> &q, const CellField<double> &q_bar) const
-    {
-      mesh.reverse_cells(q, q_bar, w_bar);
-    }
-    void operator()(const BoundedCellField<double> &q, const BoundedCellField<double> &q_bar) const
     {
       mesh.reverse_cells(q, q_bar, w_bar);
     }
@@ -120,9 +113,6 @@ namespace retroforge
                     const NodeVectorField<3, double> &v_bar,
                     NodeVectorField<3, double>       &to);
     void operator()(const CellField<double> &q, const CellField<double> &q_bar, CellField<double> &to);
-    void operator()(const BoundedCellField<double> &q,
-                    const BoundedCellField<double> &q_bar,
-                    BoundedCellField<double>       &to);
 
     /// After all members: what they took from positions, by the weights and by the new positions themselves.
     /// @param dies_bar  gets the derivatives in the dies added
@@ -131,11 +121,6 @@ namespace retroforge
                            std::vector<DieState<double>>       &dies_bar);
 
   private:
-    void reverse_cells(const std::vector<double> &q,
-                       const std::vector<double> &q_bar,
-                       std::vector<double>       &to,
-                       CellRange                  range);
-
     const TetMesh              &old_mesh_;
     const RemeshRecord         &remesh_;
     const NodalVectors<double> &X_;

@@ -35,20 +35,12 @@ namespace retroforge
     }
   };
 
-  /// One number per cell, or none at all where it is not followed. At a change of mesh it follows transfer_cells().
+  /// One number per cell, not negative, or none at all where it is not followed. At a change of mesh it follows transfer_cells().
   template <typename Number>
   struct CellField : std::vector<Number>
   {
     using std::vector<Number>::vector;
     CellField(std::vector<Number> values) : std::vector<Number>(std::move(values)) {}
-  };
-
-  /// The same, whose values stay within the range of those around at a change of mesh, as those of nodes do.
-  template <typename Number>
-  struct BoundedCellField : std::vector<Number>
-  {
-    using std::vector<Number>::vector;
-    BoundedCellField(std::vector<Number> values) : std::vector<Number>(std::move(values)) {}
   };
 
   /// What flows from increment to increment, and nothing else: complete on every rank. The derivatives of a
@@ -68,8 +60,8 @@ namespace retroforge
     NodeSkins<Number> skin;
     /// Heat that friction made in the increment before, per area and time [mW/mm^2]; none before the first increment of an
     /// operation, and none at all where heat does not flow.
-    NodeField<Number>        friction_flux;
-    BoundedCellField<Number> damage; ///< dimensionless; none where it is not followed
+    NodeField<Number> friction_flux;
+    CellField<Number> damage; ///< dimensionless; none where it is not followed
 
     template <typename Self>
     static auto members(Self &self)
@@ -104,7 +96,7 @@ namespace retroforge
             NodeField<double>(warms ? n_nodes : 0, 0.),
             std::move(skins),
             NodeField<double>(n_skins, 0.),
-            BoundedCellField<double>(damages ? n_cells : 0, 0.)};
+            CellField<double>(damages ? n_cells : 0, 0.)};
   }
 
   /// Returns what of a state does not follow from the velocities that are recorded: all but positions and

@@ -12,38 +12,37 @@ namespace retroforge
   std::vector<CellIndex>
   kept_cells(const TetMesh &old_mesh, const BasicTransfer<Number> &J, const TetMesh &new_mesh);
 
-  /// Whether values at nodes stay within the range of those that a row of J takes.
-  enum class CellRange
+  /// Where a change of mesh leads from and to.
+  template <typename Number>
+  struct MeshChange
   {
-    free,
-    bounded
+    const TetMesh               &old_mesh;
+    const NodalVectors<Number>  &X;
+    const BasicTransfer<Number> &J;
+    const TetMesh               &new_mesh;
+    const NodalVectors<Number>  &X_new;
   };
 
-  /// Takes a field of one value per cell, such as the accumulated strain, to a new mesh: kept cells keep
-  /// their values to the bit; the others get theirs through the nodes,
-  ///   node_to_cell( J cell_to_node(q_T) ),
-  /// so that only what was remeshed is smoothed. Constants pass unchanged. Linear in q_T but where it is bounded: no
-  /// value then leaves the range of those around; and of X it depends on the volumes by which cell_to_node() weighs.
-  /// @param X    positions on the old mesh
+  /// Takes a field of one value per cell that is not negative, such as the accumulated strain, to a new mesh. Kept cells
+  /// keep their values to the bit. The others get theirs from the cells that they replace, by way of the nodes,
+  ///   q' = lambda C J L q,   L q = S q + S (q - C S q),
+  /// S the lumped projection of these cells to their nodes, C the mean of the nodes of a cell. C S smooths, and L gives back
+  /// what it took once; at each node L q stays within the range of the cells around. lambda makes the mean over the new cells
+  /// that over those replaced: else each change takes from a peak what lies beside it does not get. Constants pass unchanged.
+  /// Without S over the replaced cells alone, L and lambda a hub of 22 changes of mesh lost 5 % of its mean strain and half
+  /// of its variance.
   /// @param q_T  one value per old cell
   template <typename Number>
-  std::vector<Number> transfer_cells(const TetMesh               &old_mesh,
-                                     const NodalVectors<Number>  &X,
-                                     const BasicTransfer<Number> &J,
-                                     const TetMesh               &new_mesh,
-                                     const std::vector<Number>   &q_T,
-                                     CellRange                    range = CellRange::free);
+  std::vector<Number> transfer_cells(const MeshChange<Number> &change, const std::vector<Number> &q_T);
 
-  /// Adds the pull-back of q_bar, one value per new cell, through transfer_cells to q_T_bar, X_bar and weight_bar.
+  /// Adds the pull-back of q_bar, one value per new cell, through transfer_cells to the derivatives in all that it is a
+  /// function of.
   /// @param weight_bar  derivatives in the weights of J
-  void reverse_transfer_cells(const TetMesh              &old_mesh,
-                              const NodalVectors<double> &X,
-                              const TransferOperator     &J,
-                              const TetMesh              &new_mesh,
-                              const std::vector<double>  &q_T,
-                              std::vector<double>         q_bar,
-                              std::vector<double>        &q_T_bar,
-                              NodalVectors<double>       &X_bar,
-                              std::vector<double>        &weight_bar,
-                              CellRange                   range = CellRange::free);
+  void reverse_transfer_cells(const MeshChange<double>  &change,
+                              const std::vector<double> &q_T,
+                              const std::vector<double> &q_bar,
+                              std::vector<double>       &q_T_bar,
+                              NodalVectors<double>      &X_bar,
+                              std::vector<double>       &weight_bar,
+                              NodalVectors<double>      &X_new_bar);
 } // namespace retroforge

@@ -416,9 +416,9 @@ int main(int argc, char **argv)
             << yes(after.strain.size() == new_mesh.n_cells() && largest < 1e-14) << "\n";
   before.strain = randomised(before.strain);
   std::cout << "strain by transfer_cells: "
-            << yes(
-                 change_mesh(old_mesh, meshes.remesh, before, no_dies, no_states).strain ==
-                 transfer_cells<double>(old_mesh, before.X, meshes.remesh.transfer, new_mesh, before.strain))
+            << yes(change_mesh(old_mesh, meshes.remesh, before, no_dies, no_states).strain ==
+                   transfer_cells<double>({old_mesh, before.X, meshes.remesh.transfer, new_mesh, new_mesh.X},
+                                          before.strain))
             << "\n";
 
   NodalVectors<double> moved = meshes.X;

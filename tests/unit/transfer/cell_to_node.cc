@@ -71,11 +71,12 @@ double lift_defect(const TetMesh &mesh, const double scale_X, const double scale
       X_dual[k][d].fastAccessDx(0) = X_dot[k][d];
     }
   std::vector<double> tangent;
-  for (const Dual &value : cell_to_node(mesh, X_dual, q_dual))
+  for (const Dual &value : cell_to_node(mesh, cell_volumes(mesh, X_dual), q_dual))
     tangent.push_back(value.dx(0));
-  std::vector<double>  q_bar(mesh.n_cells(), 0.);
+  std::vector<double>  q_bar(mesh.n_cells(), 0.), volumes_bar = q_bar;
   NodalVectors<double> X_bar(mesh.n_nodes());
-  reverse_cell_to_node(mesh, mesh.X, q, y, q_bar, X_bar);
+  reverse_cell_to_node(mesh, cell_volumes(mesh, mesh.X), q, y, q_bar, volumes_bar);
+  reverse_cell_volumes(mesh, mesh.X, volumes_bar, X_bar);
   const double reverse = dot(q_bar, q_dot) + dot(X_bar, X_dot);
   return std::abs(dot(tangent, y) - reverse) / std::sqrt(dot(tangent, tangent) * dot(y, y));
 }
@@ -103,14 +104,15 @@ int main(int argc, char **argv)
   TetMesh                                  two;
   two.X     = {Vec3({0, 0, 0}), Vec3({1, 0, 0}), Vec3({0, 1, 0}), Vec3({0, 0, 1}), Vec3({0, 0, -2})};
   two.cells = {{{0, 1, 2, 3}}, {{0, 2, 1, 4}}};
-  print_all("two cells, at nodes", cell_to_node(two, two.X, std::vector<double>{2, 5}));
-  print_all("back in cells", node_to_cell(two, cell_to_node(two, two.X, std::vector<double>{2, 5})));
+  print_all("two cells, at nodes", cell_to_node(two, cell_volumes(two, two.X), std::vector<double>{2, 5}));
+  print_all("back in cells",
+            node_to_cell(two, cell_to_node(two, cell_volumes(two, two.X), std::vector<double>{2, 5})));
 
   const TetMesh mesh = billet({{"shape", "cylinder"}, {"element size", "6"}});
   const auto    q_T  = numbers.scalars(mesh.n_cells());
-  const auto    q_k  = cell_to_node(mesh, mesh.X, q_T);
+  const auto    q_k  = cell_to_node(mesh, cell_volumes(mesh, mesh.X), q_T);
   const double  size = volume(mesh.cells, mesh.X);
-  const auto    ones = cell_to_node(mesh, mesh.X, std::vector<double>(mesh.n_cells(), 1.));
+  const auto ones = cell_to_node(mesh, cell_volumes(mesh, mesh.X), std::vector<double>(mesh.n_cells(), 1.));
   std::cout << "integral kept by lifting: "
             << yes(std::abs(integral_over_cells(mesh, q_T) - lumped_integral(mesh, q_k)) < 1e-12 * size)
             << "\nintegral kept by restriction: "
