@@ -95,25 +95,23 @@ namespace retroforge
       }
     };
 
+    /// S is applied to q, and as often again to what C S has taken.
+    constexpr unsigned int n_lifts = 3;
+
     /// L q at the nodes, and how it came about.
     template <typename Number>
     struct Lifted
     {
-      std::vector<Number>    smooth, rest; ///< S q; q - C S q
-      std::vector<Number>    values;       ///< L q
-      std::vector<CellIndex> bound;        ///< the cell whose value a node has, or none
+      std::vector<std::vector<Number>> rests;  ///< (1 - C S)^i q
+      std::vector<Number>              values; ///< L q
+      std::vector<CellIndex>           bound;  ///< the cell whose value a node has, or none
     };
 
+    /// Of each node the cells with the least and the largest value around it.
     template <typename Number>
-    Lifted<Number> lift(const TetMesh &mesh, const std::vector<Number> &weights, const std::vector<Number> &q)
+    std::pair<std::vector<CellIndex>, std::vector<CellIndex>> extremes(const TetMesh             &mesh,
+                                                                       const std::vector<Number> &q)
     {
-      Lifted<Number> lifted;
-      lifted.smooth   = cell_to_node(mesh, weights, q);
-      lifted.rest     = q;
-      const auto back = node_to_cell(mesh, lifted.smooth);
-      for (CellIndex c = 0; c < q.size(); ++c)
-        lifted.rest[c] -= back[c];
-      lifted.values = cell_to_node(mesh, weights, lifted.rest);
       std::vector<CellIndex> least(mesh.n_nodes(), invalid_index), largest = least;
       for (CellIndex c = 0; c < q.size(); ++c)
         for (const NodeIndex k : mesh.cells[c])
@@ -123,24 +121,43 @@ namespace retroforge
           if (largest[k] == invalid_index || value_of(q[c]) > value_of(q[largest[k]]))
             largest[k] = c;
         }
-      lifted.bound.assign(mesh.n_nodes(), invalid_index);
+      return {least, largest};
+    }
+
+    template <typename Number>
+    Lifted<Number> lift(const TetMesh &mesh, const std::vector<Number> &weights, const std::vector<Number> &q)
+    {
+      Lifted<Number> lifted{{q},
+                            std::vector<Number>(mesh.n_nodes(), Number(0.)),
+                            std::vector<CellIndex>(mesh.n_nodes(), invalid_index)};
+      while (true)
+      {
+        std::vector<Number> rest   = lifted.rests.back();
+        const auto          smooth = cell_to_node(mesh, weights, rest);
+        for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
+          lifted.values[k] += smooth[k];
+        if (lifted.rests.size() == n_lifts)
+          break;
+        const auto back = node_to_cell(mesh, smooth);
+        for (CellIndex c = 0; c < q.size(); ++c)
+          rest[c] -= back[c];
+        lifted.rests.push_back(std::move(rest));
+      }
+      const auto [least, largest] = extremes(mesh, q);
       for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
       {
-        Number &value = lifted.values[k];
-        value += lifted.smooth[k];
-        if (value_of(value) < value_of(q[least[k]]))
+        if (value_of(lifted.values[k]) < value_of(q[least[k]]))
           lifted.bound[k] = least[k];
-        if (value_of(value) > value_of(q[largest[k]]))
+        else if (value_of(lifted.values[k]) > value_of(q[largest[k]]))
           lifted.bound[k] = largest[k];
         if (lifted.bound[k] != invalid_index)
-          value = q[lifted.bound[k]];
+          lifted.values[k] = q[lifted.bound[k]];
       }
       return lifted;
     }
 
     void reverse_lift(const TetMesh             &mesh,
                       const std::vector<double> &weights,
-                      const std::vector<double> &q,
                       const Lifted<double>      &lifted,
                       std::vector<double>        values_bar,
                       std::vector<double>       &q_bar,
@@ -149,14 +166,17 @@ namespace retroforge
       for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
         if (lifted.bound[k] != invalid_index)
           q_bar[lifted.bound[k]] += std::exchange(values_bar[k], 0.);
-      std::vector<double> rest_bar(q.size(), 0.), minus_smooth_bar(mesh.n_nodes(), 0.);
-      reverse_cell_to_node(mesh, weights, lifted.rest, values_bar, rest_bar, weights_bar);
-      reverse_node_to_cell(mesh, rest_bar, minus_smooth_bar);
-      for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
-        values_bar[k] -= minus_smooth_bar[k];
-      for (CellIndex c = 0; c < q.size(); ++c)
+      std::vector<double> rest_bar(mesh.n_cells(), 0.);
+      for (unsigned int i = n_lifts; i-- > 0;)
+      {
+        std::vector<double> taken_bar(mesh.n_nodes(), 0.), smooth_bar = values_bar;
+        reverse_node_to_cell(mesh, rest_bar, taken_bar);
+        for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
+          smooth_bar[k] -= taken_bar[k];
+        reverse_cell_to_node(mesh, weights, lifted.rests[i], smooth_bar, rest_bar, weights_bar);
+      }
+      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
         q_bar[c] += rest_bar[c];
-      reverse_cell_to_node(mesh, weights, q, values_bar, q_bar, weights_bar);
     }
 
     /// What transfer_cells goes by.
@@ -251,7 +271,7 @@ namespace retroforge
     reverse_node_to_cell(change.new_mesh, made_bar, at_node);
     const auto lifted_bar = change.J.reverse_apply_bounded(passage.lifted.values, at_node);
     change.J.add_weight_bar(passage.lifted.values, at_node, weight_bar);
-    reverse_lift(change.old_mesh, passage.weights, q_T, passage.lifted, lifted_bar, q_T_bar, weights_bar);
+    reverse_lift(change.old_mesh, passage.weights, passage.lifted, lifted_bar, q_T_bar, weights_bar);
     for (CellIndex c = 0; c < q_T.size(); ++c)
       volumes_bar[c] += (passage.replaced.changed[c] ? 1. : weight_of_kept) * weights_bar[c];
     reverse_cell_volumes(change.old_mesh, change.X, volumes_bar, X_bar);

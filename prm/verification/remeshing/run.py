@@ -25,7 +25,7 @@ def study(build, shape, size, remeshings, method, width=()):
         sys.exit(f"{shape}, {method}: {done.stderr}")
     table = np.genfromtxt(done.stdout.splitlines(), delimiter=",", names=True, ndmin=1)
     for row in table:
-        print(f"| {shape} | {method} | {row['nodes']:.0f} | {row['remeshings']:.0f} | {row['L2']:.4f} | {row['angle']:.1f} "
+        print(f"| {shape} | {method} | {row['nodes']:.0f} | {row['remeshings']:.0f} | {row['L2']:.4f} | {row['cells_L2']:.4f} | {row['cells_integral']:+.1e} | {row['angle']:.1f} "
               f"| {row['kept']:.1%} | {row['volume']:.1e} | {row['drift']:.1e} | {row['microseconds']:.1f} |", flush=True)
     return table[-1]
 
@@ -121,7 +121,7 @@ def main():
     build, what = sys.argv[1:3]
     if what in ("slopes", "trends"):
         return {"slopes": slopes, "trends": trends}[what](build)
-    print("| shape | method | nodes | remeshings | L2 error | least angle | nodes kept | volume per remeshing | drift of the side | us per tet |\n" + "| --- " * 10 + "|")
+    print("| shape | method | nodes | remeshings | L2 error | in cells | its integral | least angle | nodes kept | volume per remeshing | drift of the side | us per tet |\n" + "| --- " * 12 + "|")
     if what == "tripod":
         tripod(build)
     elif what == "quick":
@@ -129,6 +129,8 @@ def main():
         case_tools.figure("angle_quick", last["angle"])
         case_tools.figure("kept_quick", last["kept"])
         case_tools.figure("volume_quick", last["volume"])
+        case_tools.figure("cells_quick", last["cells_L2"])
+        case_tools.figure("cells_integral_quick", abs(last["cells_integral"]))
     elif what == "many":
         rows = [study(build, shape, 4, 100, "local") for shape in ("cylinder", "star")]
         case_tools.figure("angle_100", min(row["angle"] for row in rows))
@@ -138,7 +140,9 @@ def main():
         case_tools.figure("drift_100", rows[0]["drift"])
     else:
         size = 4 if what == "diffusion" else 1.9
-        case_tools.figure(f"{what}_local", study(build, "cylinder", size, 60, "local")["L2"])
+        last = study(build, "cylinder", size, 60, "local")
+        case_tools.figure(f"{what}_local", last["L2"])
+        case_tools.figure(f"{what}_cells", last["cells_L2"])
         case_tools.figure(f"{what}_rebuilt", study(build, "cylinder", size, 60, "rebuild")["L2"])
         if what == "diffusion_10k":
             case_tools.figure("diffusion_10k_wide", study(build, "cylinder", size, 60, "local", [8])["L2"])

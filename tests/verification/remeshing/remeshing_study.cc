@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 //
-// Many remeshings of a workpiece that moves in a known way, and a nodal field carried through all of them:
+// Many remeshings of a workpiece that moves in a known way, and fields of nodes and of cells carried through all of them:
 //   remeshing_study cylinder|star ELEMENT_SIZE REMESHINGS local|rebuild [WIDTH]
 // A billet of height 60 is upset to 20, z -> f z, x, y -> f^(-1/2) x, y with a slight barrel, in equal
-// logarithmic steps, and remeshed after each. The star is a prism of eight teeth, like a gear. The field is a
+// logarithmic steps, and remeshed after each. The star is a prism of eight teeth, like a gear. The fields are a
 // Gaussian of standard deviation WIDTH, or twice the mean edge length h, in the material: at a node its exact
-// value is known from where the node was at the start. Drift is the farthest a node of the side is from where
+// value is known from where the node was at the start, and in a cell from its centre. Drift is the farthest a node of the side is from where
 // the side would be, over the width of the workpiece. One line of CSV at remeshings 10, 30, 60, 100 and the
 // last. Microseconds are those of the processor per cell of the new mesh, on the average: of a remeshing with
 // all that is part of it, and of finding J, which is part of that, and applying it to the seven fields of a
@@ -20,6 +20,7 @@
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/remeshing/trigger.h>
 #include <retroforge/time/remesher.h>
+#include <retroforge/transfer/cell_transfer.h>
 
 #include <ctime>
 #include <fstream>
@@ -130,7 +131,7 @@ namespace
       return farthest / width;
     }
 
-    /// Relative L2 error with lumped masses.
+    /// Relative L2 error of a field of nodes, with lumped masses.
     double error(const TetMesh              &mesh,
                  const NodalVectors<double> &X,
                  const std::vector<double>  &q,
@@ -145,6 +146,33 @@ namespace
           reference += V * exact * exact;
         }
       return std::sqrt(square / reference);
+    }
+
+    double
+    of_cell(const TetMesh &mesh, const NodalVectors<double> &X, const CellIndex c, const double width) const
+    {
+      Vec3 centre;
+      for (const NodeIndex k : mesh.cells[c])
+        centre += 0.25 * X[k];
+      return gaussian(material_point(centre), width);
+    }
+
+    /// Relative L2 error of a field of cells, and that of its integral.
+    std::pair<double, double> errors_in_cells(const TetMesh              &mesh,
+                                              const NodalVectors<double> &X,
+                                              const std::vector<double>  &q,
+                                              const double                width) const
+    {
+      double square = 0., reference = 0., sum = 0., exact_sum = 0.;
+      for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+      {
+        const double exact = of_cell(mesh, X, c, width), V = tet_volume(corners(mesh.cells[c], X));
+        square += V * (q[c] - exact) * (q[c] - exact);
+        reference += V * exact * exact;
+        sum += V * q[c];
+        exact_sum += V * exact;
+      }
+      return {std::sqrt(square / reference), sum / exact_sum - 1.};
     }
   };
 } // namespace
@@ -187,10 +215,13 @@ int main(int argc, char **argv)
   Study                study{1. * n};
   const double         V0 = volume(mesh.cells, mesh.X), width = argc == 6 ? std::stod(argv[5]) : 2. * h;
   NodalVectors<double> X = mesh.X;
-  std::vector<double>  q;
+  std::vector<double>  q, in_cells;
   for (const Vec3 &x : X)
     q.push_back(gaussian(x, width));
-  std::cout << "remeshings,nodes,cells,L2,angle,kept,volume,drift,microseconds,transfer\n";
+  for (CellIndex c = 0; c < mesh.n_cells(); ++c)
+    in_cells.push_back(study.of_cell(mesh, X, c, width));
+  std::cout
+    << "remeshings,nodes,cells,L2,cells_L2,cells_integral,angle,kept,volume,drift,microseconds,transfer\n";
   for (int step = 0; step < n; ++step)
   {
     const double z = study.before(step), f = study.before(step + 1) / z;
@@ -200,9 +231,10 @@ int main(int argc, char **argv)
     std::shared_ptr<const RemeshRecord> record;
     study.seconds += cpu_seconds([&]() { record = remesher.remesh(mesh, X, {}, {}, 0., timings); });
     study.transfer_seconds += cpu_seconds([&]() { transfer_again(mesh, X, *record, q); });
-    q                 = record->transfer.apply(q);
-    mesh              = record->mesh;
-    X                 = mesh.X;
+    q        = record->transfer.apply(q);
+    in_cells = transfer_cells<double>({mesh, X, record->transfer, record->mesh, record->mesh.X}, in_cells);
+    mesh     = record->mesh;
+    X        = mesh.X;
     unsigned int kept = 0;
     for (unsigned int k = 0; k < mesh.n_nodes(); ++k)
       kept += record->transfer.begin[k + 1] == record->transfer.begin[k] + 1;
@@ -211,11 +243,15 @@ int main(int argc, char **argv)
     study.worst_volume = std::max(study.worst_volume, std::abs(volume(mesh.cells, X) / before - 1.));
     study.n_cells += mesh.n_cells();
     if (const int done = step + 1; done == 10 || done == 30 || done == 60 || done == n)
+    {
+      const auto [of_cells, of_integral] = study.errors_in_cells(mesh, X, in_cells, width);
       std::cout << done << ',' << mesh.n_nodes() << ',' << mesh.n_cells() << ','
-                << study.error(mesh, X, q, width) << ',' << study.worst_angle << ',' << study.worst_kept
-                << ',' << study.worst_volume << ',' << study.drift(mesh, X, shape == "star", billet.radius)
-                << ',' << 1e6 * study.seconds / study.n_cells << ','
-                << 1e6 * study.transfer_seconds / study.n_cells << std::endl;
+                << study.error(mesh, X, q, width) << ',' << of_cells << ',' << of_integral << ','
+                << study.worst_angle << ',' << study.worst_kept << ',' << study.worst_volume << ','
+                << study.drift(mesh, X, shape == "star", billet.radius) << ','
+                << 1e6 * study.seconds / study.n_cells << ',' << 1e6 * study.transfer_seconds / study.n_cells
+                << std::endl;
+    }
   }
   std::cerr << "volume from first to last " << volume(mesh.cells, X) / V0 - 1. << "\n";
 }
