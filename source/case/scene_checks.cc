@@ -125,14 +125,6 @@ namespace retroforge
       return true;
     }
 
-    /// What of a die stands in the billet, or the billet in it, and how deep.
-    std::string standing_inside(const Overlap &overlap)
-    {
-      return (overlap.is_of_die ? "a part of it stands " + as_text(overlap.depth) + " mm inside the billet"
-                                : "the billet stands " + as_text(overlap.depth) + " mm inside it") +
-             ", deepest at " + in_brackets(overlap.place);
-    }
-
     /// Up to `inside` of the billet's size contact pushes out what is in a die, in the first increment: that
     /// is how a neighbour of a sound design, or a die drawn anew, begins. It pushes nodes; a part of a die
     /// that is deeper in the billet than twice what nodes are in it would stay there.
@@ -143,7 +135,7 @@ namespace retroforge
                        const std::vector<DieApproach> &approaches,
                        std::vector<std::string>       &warnings)
     {
-      const double near = touching_distance(scene, X), most = near / touching * inside;
+      const double near = touching_distance(scene.mesh, X), most = deepest_start(scene.mesh, X);
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
       {
         const Overlap &overlap = approaches[d].overlap;
@@ -183,7 +175,7 @@ namespace retroforge
                       in_brackets(approach.gap_place),
                     rule,
                     "turn its velocity round");
-      if (!approach.meeting && approach.gap <= touching_distance(scene, X))
+      if (!approach.meeting && approach.gap <= touching_distance(scene.mesh, X))
         throw Error(where + "/velocity",
                     in_brackets(process.dies[lead].velocity) +
                       " mm/s moves the die along the billet, which it touches at " +
@@ -230,7 +222,7 @@ namespace retroforge
                        const bool                  must_close,
                        const NodalVectors<double> &X)
     {
-      const double       near    = touching_distance(scene, X);
+      const double       near    = touching_distance(scene.mesh, X);
       const double       least   = (must_close ? -1e-6 : 1e-9) * near;
       const double       wanted  = scene.dies[d].surface() ? std::ceil(path.norm() / (50. * near)) : 1.;
       const unsigned int n_steps = std::clamp(wanted, 1., 200.);
@@ -284,7 +276,7 @@ namespace retroforge
                      const NodalVectors<double>     &X,
                      const std::vector<DieApproach> &approaches)
     {
-      const double near = touching_distance(scene, X);
+      const double near = touching_distance(scene.mesh, X);
       for (unsigned int d = 0; d < scene.dies.size(); ++d)
         if (approaches[d].meeting &&
             approaches[d].meeting->travel <= path(parameters, process, d).norm() + near)
@@ -364,7 +356,7 @@ namespace retroforge
     {
       const auto   faces_billet = beside(X, process.leading_velocity());
       const auto   first = process.at_stroke(0.).dies, dies = process.at_stroke(parameters.press.stroke).dies;
-      const double allowed = touching_distance(scene, X);
+      const double allowed = touching_distance(scene.mesh, X);
       for (const unsigned int a : process.operations.front().dies)
         for (const unsigned int b : process.operations.front().dies)
           if (const TriangleSurface *surface = scene.dies[a].surface();
@@ -385,10 +377,31 @@ namespace retroforge
     }
   } // namespace
 
-  double touching_distance(const Scene &scene, const NodalVectors<double> &X)
+  namespace
   {
-    const double copies = n_copies(symmetry_planes(scene.mesh));
-    return touching * std::cbrt((std::isfinite(copies) ? copies : 1.) * volume(scene.mesh.cells, X));
+    /// Cube root of the whole part's volume, whatever symmetry leaves of it.
+    double size_of_whole(const TetMesh &billet, const NodalVectors<double> &X)
+    {
+      const double copies = n_copies(symmetry_planes(billet));
+      return std::cbrt((std::isfinite(copies) ? copies : 1.) * volume(billet.cells, X));
+    }
+  } // namespace
+
+  double touching_distance(const TetMesh &billet, const NodalVectors<double> &X)
+  {
+    return touching * size_of_whole(billet, X);
+  }
+
+  double deepest_start(const TetMesh &billet, const NodalVectors<double> &X)
+  {
+    return inside * size_of_whole(billet, X);
+  }
+
+  std::string standing_inside(const Overlap &overlap)
+  {
+    return (overlap.is_of_die ? "a part of it stands " + as_text(overlap.depth) + " mm inside the billet"
+                              : "the billet stands " + as_text(overlap.depth) + " mm inside it") +
+           ", deepest at " + in_brackets(overlap.place);
   }
 
   Vec3 path(const Parameters &parameters, const Process<double> &process, const unsigned int d)
@@ -406,7 +419,7 @@ namespace retroforge
                                            const Process<double>      &process,
                                            const NodalVectors<double> &X)
   {
-    const double             near  = touching_distance(scene, X);
+    const double             near  = touching_distance(scene.mesh, X);
     const MetalSurface       metal = billet_surface(parameters.billet, scene.mesh, X, 0.2 * near);
     std::vector<DieApproach> approaches(scene.dies.size());
     for (const unsigned int d : process.operations.front().dies)

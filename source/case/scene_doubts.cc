@@ -32,7 +32,7 @@ namespace retroforge
                      const NodalVectors<double> &X,
                      std::vector<std::string>   &warnings)
     {
-      const double near = touching_distance(scene, X);
+      const double near = touching_distance(scene.mesh, X);
       for (const unsigned int d : process.operations.front().dies)
       {
         const Vec3 &displacement = process.dies[d].displacement;
@@ -175,7 +175,7 @@ namespace retroforge
                      std::vector<std::string>       &warnings)
     {
       const MetalSurface metal = metal_surface(scene.mesh, X);
-      const double       edge = parameters.edge_length(scene.mesh), near = touching_distance(scene, X);
+      const double       edge = parameters.edge_length(scene.mesh), near = touching_distance(scene.mesh, X);
       const Vec3        &lead = process.leading_velocity();
       for (const unsigned int d : process.operations.front().dies)
       {

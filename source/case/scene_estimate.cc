@@ -109,7 +109,7 @@ namespace retroforge
     double gaps_of(const View &view)
     {
       const MetalSurface metal    = metal_surface(view.scene.mesh, view.X);
-      const double       touching = touching_distance(view.scene, view.X);
+      const double       touching = touching_distance(view.scene.mesh, view.X);
       const auto         gap      = [&](const unsigned int d, const Vec3 &way) {
         const auto met =
           first_meeting(view.scene.dies[d], view.process.dies[d].displacement, way, metal, touching);

@@ -221,7 +221,7 @@ namespace retroforge
     double
     contact_area(const Scene &scene, const Die &die, const Vec3 &displacement, const NodalVectors<double> &X)
     {
-      const double touching = touching_distance(scene, X);
+      const double touching = touching_distance(scene.mesh, X);
       return area_of(scene.mesh, X, [&](const BoundaryFace &face) {
         return !scene.mesh.patches[face.patch].symmetry &&
                std::all_of(face.nodes.begin(), face.nodes.end(), [&](const NodeIndex k) {
@@ -330,7 +330,7 @@ namespace retroforge
 
   void SceneView::describe_approaches(const Scene &scene)
   {
-    const double       touching   = touching_distance(scene, parts_->X);
+    const double       touching   = touching_distance(scene.mesh, parts_->X);
     const double       seconds    = parts_->seconds;
     const auto         approaches = find_approaches(parts_->parameters, scene, parts_->process, parts_->X);
     const MetalSurface metal      = metal_surface(scene.mesh, parts_->X);

@@ -59,9 +59,11 @@ namespace retroforge
       , X_0(std::move(initial))
       , model(with_dies(forging_case.model, at_process))
       , process(std::move(at_process))
+      , earlier(earlier_start(parameters, *billet, model.dies, process, X_0))
       , segments(forging_case.segments)
       , objectives(parameters.make_objectives(model.dies, *billet))
   {
+    earlier.apply(process);
     set_numerics(segments.front().parameters, model);
   }
 
@@ -159,7 +161,10 @@ namespace retroforge
 
   std::vector<std::string> ForwardRun::check() const
   {
-    return check_scene(problem_.parameters, first_epoch_->scene, problem_.process, problem_.X_0);
+    std::vector<std::string> warnings = problem_.earlier.remarks;
+    const auto found = check_scene(problem_.parameters, first_epoch_->scene, problem_.process, problem_.X_0);
+    warnings.insert(warnings.end(), found.begin(), found.end());
+    return warnings;
   }
 
   void ForwardRun::restore(const unsigned int           n,
@@ -280,14 +285,15 @@ namespace retroforge
 
   std::vector<Dual> ForwardRun::tangent(const Process<Dual> &process, NodalVectors<Dual> X_0) const
   {
-    return tangent_sweep(recorded(), process, std::move(X_0));
+    return tangent_sweep(recorded(), begun(process), std::move(X_0));
   }
 
-  ForgingState ForwardRun::replay(const Process<double>      &process,
+  ForgingState ForwardRun::replay(const Process<double>      &at_process,
                                   const NodalVectors<double> &X_0,
                                   const Forging::Observer    &observer) const
   {
-    ForgingState                    state = Forging::start(first_epoch_, process, X_0);
+    const Process<double>           process = begun(at_process);
+    ForgingState                    state   = Forging::start(first_epoch_, process, X_0);
     std::optional<Forging::Nominal> nominal;
     if (follows_trend())
       nominal.emplace(Forging::Nominal{problem_.process, problem_.X_0, following_rules()});
@@ -299,7 +305,7 @@ namespace retroforge
   std::vector<double> ForwardRun::replayed_values(const Process<double>      &process,
                                                   const NodalVectors<double> &X_0) const
   {
-    ObjectiveTrace     trace(problem_.objectives, process, trace_.recorded().decisions);
+    ObjectiveTrace     trace(problem_.objectives, begun(process), trace_.recorded().decisions);
     const ForgingState state = replay(process, X_0, [&](const IncrementEvent &event) { trace.add(event); });
     return trace.values(state);
   }

@@ -27,19 +27,21 @@ namespace retroforge
     }
   } // namespace
 
-  RunOutput::RunOutput(const Case           &forging_case,
-                       const WholePart      &whole,
-                       const ObjectiveTrace &trace,
-                       Timings              &timings)
+  RunOutput::RunOutput(const Case            &forging_case,
+                       const Process<double> &process,
+                       const WholePart       &whole,
+                       const ObjectiveTrace  &trace,
+                       Timings               &timings)
       : case_(forging_case)
+      , process_(process)
       , whole_(whole)
       , trace_(trace)
       , timings_(timings)
-      , time_left_(whole_stroke(forging_case.process, forging_case.process.end()))
+      , time_left_(whole_stroke(process, process.end()))
       , fields_(forging_case.comm,
                 forging_case.command.output_directory,
                 forging_case.model,
-                forging_case.process,
+                process,
                 forging_case.billet,
                 forging_case.X_0)
   {
@@ -63,8 +65,8 @@ namespace retroforge
 
   bool RunOutput::is_due(const ForgingState &state, const unsigned int every) const
   {
-    const bool at_end = whole_stroke(case_.process, place(state)) >=
-                        whole_stroke(case_.process, case_.process.end()) * (1. - 1e-9);
+    const bool at_end =
+      whole_stroke(process_, place(state)) >= whole_stroke(process_, process_.end()) * (1. - 1e-9);
     return every > 0 && (state.increments % every == 0 || at_end);
   }
 
@@ -74,8 +76,7 @@ namespace retroforge
       return is_due(event.state, *case_.parameters.output.every);
     constexpr double n_pictures = 20.;
     const auto       interval   = [&](const StrokeStep &at) {
-      return std::floor(n_pictures * whole_stroke(case_.process, at) /
-                          whole_stroke(case_.process, case_.process.end()) +
+      return std::floor(n_pictures * whole_stroke(process_, at) / whole_stroke(process_, process_.end()) +
                         1e-6);
     };
     return interval(place(event.state)) > interval(retroforge::place(event.record));
@@ -87,8 +88,8 @@ namespace retroforge
       if (event.record.solves.back().active[p])
         touched_.insert(event.record.pairs[p].die);
     watch_edges(event);
-    decisions_.push_back({whole_stroke(case_.process, retroforge::place(event.record)),
-                          whole_stroke(case_.process, place(event.state)),
+    decisions_.push_back({whole_stroke(process_, retroforge::place(event.record)),
+                          whole_stroke(process_, place(event.state)),
                           event.record.remesh != nullptr,
                           event.record.cuts});
     if (is_due(event.state, case_.parameters.objectives.every))
@@ -120,7 +121,7 @@ namespace retroforge
           columns.emplace_back(objectives[j].name + ": " + name + (name.back() == ']' ? "" : unit), value);
     }
     if (objectives_)
-      objectives_->add(whole_stroke(case_.process, place(state)), columns);
+      objectives_->add(whole_stroke(process_, place(state)), columns);
   }
 
   void RunOutput::watch_edges(const IncrementEvent &event)
@@ -143,7 +144,7 @@ namespace retroforge
     const ReplicatedEntries &cells  = scene.discretization.cells();
     const std::vector<Die>  &dies   = case_.model.dies;
     const double             size   = volume(scene.mesh, state.workpiece.X, cells);
-    const auto               states = case_.process.at_stroke(state.stroke, state.operation).dies;
+    const auto               states = process_.at_stroke(state.stroke, state.operation).dies;
     const Penetration        deepest =
       deepest_point(scene.mesh, scene.topology, dies, states, state.workpiece.X, case_.comm);
     if (!(deepest.depth <= deepest_.depth))
@@ -158,7 +159,7 @@ namespace retroforge
     const double       energy   = state.energy.total();
     return {state.increments,
             event.time,
-            whole_stroke(case_.process, place(state)),
+            whole_stroke(process_, place(state)),
             force,
             energy,
             size,
@@ -191,7 +192,7 @@ namespace retroforge
   {
     const TetMesh &mesh = event.state.epoch->scene.mesh;
     if (event.record.stroke == 0.)
-      if (const std::string text = waits(case_.process, event.record.operation, case_); !text.empty())
+      if (const std::string text = waits(process_, event.record.operation, case_); !text.empty())
         std::printf("      before the stroke: %s\n", text.c_str());
     if (event.record.remesh)
       std::printf("      remeshed: %u nodes, %u tetrahedra\n", mesh.n_nodes(), mesh.n_cells());

@@ -94,7 +94,10 @@ namespace retroforge
            volume(made.cells, made.X) * volume(made.cells, forging_case.X_0);
   }
 
-  void summarise_run(const Case &forging_case, const ForgingState &forged, Summary &summary)
+  void summarise_run(const Case            &forging_case,
+                     const Process<double> &process,
+                     const ForgingState    &forged,
+                     Summary               &summary)
   {
     summary.command               = word_of(forging_case.command.command.value());
     summary.version               = version;
@@ -112,7 +115,7 @@ namespace retroforge
     summary.volume_initial        = volume(forging_case.billet.cells, forging_case.X_0);
     summary.volume_final          = volume(forged.epoch->scene.mesh.cells, forged.workpiece.X);
     summary.volume_repaired       = forged.removed_volume;
-    summary.heat                  = summarise_heat(forging_case.process,
+    summary.heat                  = summarise_heat(process,
                                   forged,
                                   summary.volume_final,
                                   forging_case.parameters.edge_length(forging_case.nominal_billet));

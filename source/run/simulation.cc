@@ -88,7 +88,7 @@ namespace retroforge
       print_begin(case_);
       print_warnings(warnings_);
       print_warnings(
-        estimate_scene(case_.parameters, run_.first_epoch().scene, case_.process, case_.X_0).warnings);
+        estimate_scene(case_.parameters, run_.first_epoch().scene, run_.process(), case_.X_0).warnings);
       summary_.volume_of_shape = shape_volume(case_);
       print_chords(case_, summary_.volume_of_shape);
     }
@@ -167,7 +167,7 @@ namespace retroforge
       forging_seconds_ = timings_.seconds("total") - begin;
     if (case_.command.command != Command::simulate)
       differentiate();
-    summarise_run(case_, run_.state(), summary_);
+    summarise_run(case_, run_.process(), run_.state(), summary_);
     summarise_objectives(case_,
                          run_.trace(),
                          run_.state(),
@@ -224,7 +224,7 @@ namespace retroforge
 
   void Simulation::forge()
   {
-    output_ = std::make_unique<RunOutput>(case_, summary_.whole, run_.trace(), timings_);
+    output_ = std::make_unique<RunOutput>(case_, run_.process(), summary_.whole, run_.trace(), timings_);
     if (case_.command.resume)
       resume();
     else if (root_ && case_.parameters.output.record)
@@ -355,7 +355,8 @@ namespace retroforge
     {
       const std::string &folder = case_.command.output_directory;
       write_sensitivity(folder, case_.billet, case_.X_0, case_.model.dies, sensitivities_);
-      write_nodal_gradients(folder, case_.billet, case_.X_0, case_.model.dies, case_.process, sensitivities_);
+      write_nodal_gradients(
+        folder, case_.billet, case_.X_0, case_.model.dies, run_.process(), sensitivities_);
     }
   }
 

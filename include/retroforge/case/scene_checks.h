@@ -9,7 +9,14 @@ namespace retroforge
 {
   /// Returns the distance below which things touch [mm]: 1e-3 of the cube root of the whole part's volume,
   /// whatever symmetry leaves of it.
-  double touching_distance(const Scene &scene, const NodalVectors<double> &X);
+  /// @param X  positions of the billet's nodes
+  double touching_distance(const TetMesh &billet, const NodalVectors<double> &X);
+
+  /// Returns how deep in a die a billet may begin [mm]: 0.05 of that size.
+  double deepest_start(const TetMesh &billet, const NodalVectors<double> &X);
+
+  /// What of a die stands in the billet, or the billet in it, and how deep.
+  std::string standing_inside(const Overlap &overlap);
 
   /// Way of a die over the stroke [mm].
   Vec3 path(const Parameters &parameters, const Process<double> &process, unsigned int die);

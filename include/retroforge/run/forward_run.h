@@ -4,6 +4,7 @@
 
 #include <retroforge/adjoint/sweep.h>
 #include <retroforge/case/case.h>
+#include <retroforge/case/earlier_start.h>
 #include <retroforge/record/recording.h>
 
 namespace retroforge
@@ -34,9 +35,10 @@ namespace retroforge
     std::shared_ptr<const TetMesh> billet, nominal_billet; ///< the latter tells lengths that are left open
     NodalVectors<double>           X_0;
     ForgingModel                   model;
-    Process<double>                process; ///< its dies' vertices are those of the model's dies
-    std::vector<NumericsSegment>   segments;
-    Objectives                     objectives;
+    Process<double> process; ///< its dies' vertices are those of the model's dies, and it begins `earlier`
+    EarlierStart    earlier; ///< none for one made in memory
+    std::vector<NumericsSegment> segments;
+    Objectives                   objectives;
   };
 
   /// The run of a forging: forwards, deciding everything, or along a record; differentiated backwards and
@@ -152,6 +154,14 @@ namespace retroforge
     };
 
     RecordedForging recorded() const;
+
+    /// A process that begins as much earlier as this run does.
+    template <typename Number>
+    Process<Number> begun(Process<Number> process) const
+    {
+      problem_.earlier.apply(process);
+      return process;
+    }
 
     /// Returns those of the increments, where their ends follow the state (steps/moved_ends.h); else none.
     std::vector<FollowingRule> following_rules() const;

@@ -23,12 +23,14 @@ namespace retroforge
   class RunOutput
   {
   public:
-    /// @param trace  that followed the run up to where add() is called; it and the case must live as long
+    /// @param process  that of the run
+    /// @param trace    that followed the run up to where add() is called; it, the case and the process must live as long
     /// @throws Error  if a file cannot be written
-    RunOutput(const Case           &forging_case,
-              const WholePart      &whole,
-              const ObjectiveTrace &trace,
-              Timings              &timings);
+    RunOutput(const Case            &forging_case,
+              const Process<double> &process,
+              const WholePart       &whole,
+              const ObjectiveTrace  &trace,
+              Timings               &timings);
 
     /// From here on increments are solved, as far as the time left is concerned.
     void begin();
@@ -63,10 +65,11 @@ namespace retroforge
     /// Returns whether fields are written at the end of an increment.
     bool shows(const IncrementEvent &event) const;
 
-    const Case           &case_;
-    const WholePart       whole_;
-    const ObjectiveTrace &trace_;
-    Timings              &timings_;
+    const Case            &case_;
+    const Process<double> &process_;
+    const WholePart        whole_;
+    const ObjectiveTrace  &trace_;
+    Timings               &timings_;
 
     std::set<unsigned int> touched_; ///< dies that some node was pressed by
     Summary::Depth         deepest_;

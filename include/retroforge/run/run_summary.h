@@ -15,8 +15,12 @@ namespace retroforge
   /// To be called on one rank only.  Units: mm^3.
   double shape_volume(const Case &forging_case);
 
-  /// Fills in what a summary says of the forging: counts, volumes, restarts.
-  void summarise_run(const Case &forging_case, const ForgingState &forged, Summary &summary);
+  /// Fills in what a summary says of the forging: counts, volumes, heat, restarts.
+  /// @param process  that of the run
+  void summarise_run(const Case            &forging_case,
+                     const Process<double> &process,
+                     const ForgingState    &forged,
+                     Summary               &summary);
 
   /// Returns what to know of a run at whose end the metal is strained or warm beyond its table of flow stresses; ""
   /// where it is not, or has none.

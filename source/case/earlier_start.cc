@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright (C) 2026 The Retroforge authors
+#include <retroforge/case/earlier_start.h>
+#include <retroforge/case/scene_checks.h>
+#include <retroforge/core/text.h>
+
+#include <algorithm>
+
+namespace retroforge
+{
+  namespace
+  {
+    /// Depths below this part of what touches are rounding.
+    constexpr double of_touching = 0.01;
+
+    /// Farther than so many depths a die does not back off.
+    constexpr double farthest = 10.;
+
+    /// By so much more, so that rounding leaves nothing inside.
+    constexpr double rounding = 1e-6;
+
+    /// How long before stroke 0 a die has left the metal, if it stands in it and comes out of it so.
+    struct Leaving
+    {
+      double  seconds = 0.;
+      Overlap overlap;
+    };
+
+    std::optional<Leaving> leaving_of(const Die              &die,
+                                      const DieState<double> &state,
+                                      const MetalSurface     &metal,
+                                      const double            least,
+                                      const double            most)
+    {
+      const double speed = state.velocity.norm();
+      if (!(speed > 0.))
+        return {};
+      const Overlap overlap = find_overlap(die, state.displacement, metal);
+      if (!(overlap.depth > least) || overlap.depth > most)
+        return {};
+      const double travel = travel_to_be_free(die, state.displacement, -1. / speed * state.velocity, metal);
+      if (!(travel <= farthest * overlap.depth))
+        return {};
+      return Leaving{travel / speed, overlap};
+    }
+  } // namespace
+
+  EarlierStart earlier_start(const Parameters           &parameters,
+                             const TetMesh              &billet,
+                             const std::vector<Die>     &dies,
+                             const Process<double>      &process,
+                             const NodalVectors<double> &X)
+  {
+    EarlierStart             start;
+    const auto              &operation = process.operations.front();
+    const double             near      = touching_distance(billet, X);
+    const MetalSurface       metal     = billet_surface(parameters.billet, billet, X, 0.2 * near);
+    double                   seconds   = 0.;
+    std::vector<std::string> remarks;
+    for (const unsigned int d : operation.dies)
+      if (const auto leaving =
+            leaving_of(dies[d], process.dies[d], metal, of_touching * near, deepest_start(billet, X)))
+      {
+        seconds = std::max(seconds, (1. + rounding) * leaving->seconds);
+        if (leaving->overlap.depth > near)
+          remarks.push_back("Die " + dies[d].name + ": " + standing_inside(leaving->overlap));
+      }
+    if (!(seconds > 0.))
+      return start;
+    const double stroke = value_of(operation.stroke);
+    start.path          = process.speed(0) * seconds;
+    start.scale         = start.path / stroke;
+    start.shifts.resize(dies.size());
+    for (const unsigned int d : operation.dies)
+      start.shifts[d] = -seconds * process.dies[d].velocity;
+    for (const std::string &remark : remarks)
+      start.remarks.push_back(remark + ": the press begins " + as_text(start.path) + " mm earlier");
+    return start;
+  }
+} // namespace retroforge
