@@ -51,19 +51,19 @@ namespace retroforge
                              const Process<double>      &process,
                              const NodalVectors<double> &X)
   {
-    EarlierStart             start;
-    const auto              &operation = process.operations.front();
-    const double             near      = touching_distance(billet, X);
-    const MetalSurface       metal     = billet_surface(parameters.billet, billet, X, 0.2 * near);
-    double                   seconds   = 0.;
-    std::vector<std::string> remarks;
+    EarlierStart       start;
+    const auto        &operation = process.operations.front();
+    const double       near      = touching_distance(billet, X);
+    const MetalSurface metal     = billet_surface(parameters.billet, billet, X, 0.2 * near);
+    double             seconds   = 0.;
+    std::vector<std::pair<unsigned int, std::string>> remarks;
     for (const unsigned int d : operation.dies)
       if (const auto leaving =
             leaving_of(dies[d], process.dies[d], metal, of_touching * near, deepest_start(billet, X)))
       {
         seconds = std::max(seconds, (1. + rounding) * leaving->seconds);
         if (leaving->overlap.depth > near)
-          remarks.push_back("Die " + dies[d].name + ": " + standing_inside(leaving->overlap));
+          remarks.emplace_back(d, "Die " + dies[d].name + ": " + standing_inside(leaving->overlap));
       }
     if (!(seconds > 0.))
       return start;
@@ -73,8 +73,10 @@ namespace retroforge
     start.shifts.resize(dies.size());
     for (const unsigned int d : operation.dies)
       start.shifts[d] = -seconds * process.dies[d].velocity;
-    for (const std::string &remark : remarks)
-      start.remarks.push_back(remark + ": the press begins " + as_text(start.path) + " mm earlier");
+    for (const auto &[d, remark] : remarks)
+      start.remarks.push_back(remark + ": the press begins " + as_text(start.path) +
+                              " mm earlier; it is free when the die is moved by " +
+                              in_brackets(start.shifts[d]) + " mm");
     return start;
   }
 } // namespace retroforge

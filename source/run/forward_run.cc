@@ -305,7 +305,8 @@ namespace retroforge
   std::vector<double> ForwardRun::replayed_values(const Process<double>      &process,
                                                   const NodalVectors<double> &X_0) const
   {
-    ObjectiveTrace     trace(problem_.objectives, begun(process), trace_.recorded().decisions);
+    const Process<double> begins = begun(process); // the trace refers to it
+    ObjectiveTrace        trace(problem_.objectives, begins, trace_.recorded().decisions);
     const ForgingState state = replay(process, X_0, [&](const IncrementEvent &event) { trace.add(event); });
     return trace.values(state);
   }

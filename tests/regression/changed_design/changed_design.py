@@ -2,7 +2,7 @@
 # Copyright (C) 2026 The Retroforge authors
 """A design changed by --at: at the nominal values it is the nominal run to the last bit; differences of changed runs are
 the free differences of `check`, of billet, process and the shape of a die; penalty and slip follow the material and the speed; a die that follows the billet starts on it and ends at the
-same gap; elements of new meshes keep their proportion to the billet; a run is not resumed with another design.
+same gap; one that would stand in the billet begins earlier; elements of new meshes keep their proportion to the billet; a run is not resumed with another design.
 Usage: changed_design.py RETROFORGE"""
 import os
 import pathlib
@@ -29,6 +29,8 @@ BELL = changed(whole_runs.cube(75, 25, 10, 8), {
     "Design": {"parameters": "die upper/depth"}, "Output": {**NO_FIELDS, "record": "false"}})
 DOME = changed(upsetting("cylinder", {"radius": 10, "height": 15}, 4, 15, 3, 6), {"Die upper": {"shape": "stl", "file": "dome.stl"},
                                                                                   "Output": NO_FIELDS})
+
+RING = changed(DOME, {"Die upper": {"file": "ring.stl"}, "Design": {"parameters": "billet/height, die upper/offset, material/m"}})
 
 
 def run(word, case, output, *settings):
@@ -123,6 +125,31 @@ def die_follows_billet():
     judge("adjoint, tangent and replayed differences agree", done.returncode == 0, done.stderr + done.stdout[-1500:] if done.returncode else "")
 
 
+def begins_from_outside():
+    """A ring that stands on the billet: designs that it would stand in differ from those under a gap by no kink, in the energy and in its slope, by the height, by the
+    die's offset and by its shape. What is differentiated there is the path that begins earlier."""
+    make_die.FACETS_PER_TURN = 32
+    make_die.write_stl(pathlib.Path("ring.stl"), make_die.revolved([(float(r), z) for r, z in ((0, 3), (4, 3), (6, 0), (10, 0), (20, 0))]))
+    nominal = summary("gradient", "ring.prm", "ring")
+    value, slopes = nominal["objectives"][0]["value"], {p["name"]: (p["value"], p["gradient"]["energy"]) for p in nominal["parameters"]}
+    for name, step in (("billet/height", 0.06), ("die upper/offset", 0.06)):
+        at, slope = slopes[name]
+        above, below = (summary("gradient", "ring.prm", "side", (name, at + side * step)) for side in (1, -1))
+        sides = [(above["objectives"][0]["value"] - value) / step / slope - 1, (value - below["objectives"][0]["value"]) / step / slope - 1]
+        judge(f"{name}: both sides have the nominal slope to 3 %", all(abs(side) < 0.03 for side in sides), sides)
+        there = next(p["gradient"]["energy"] for p in above["parameters"] if p["name"] == name)
+        judge(f"{name}: as the design inside has, to 5 %", abs(there / slope - 1) < 0.05, [there, slope])
+    printed = run("simulate", "ring.prm", "side", ("billet/height", 15.15)).stdout
+    judge("it is told", "the press begins 0.15" in printed, printed)
+    judge("and goes the longer way", abs(float(history_of("side")[-1]["time"]) / 0.0315 - 1) < 1e-5, history_of("side")[-1]["time"])
+    # Repeated with its start held, a design with a higher billet has the kink: of differences those that decide anew count, but for jumps.
+    run("check", "ring.prm", "check_ring", "Design/parameters=billet/height, die upper/offset", ("billet/height", 15.15), "Check/steps=1e-3, 1e-4", "Check/taylor halvings=2")
+    rows = {row["parameter"]: row for row in summary_of("check_ring")["check"]}
+    judge("adjoint and tangent agree in there", all(abs(rows[name]["tangent"] / rows[name]["adjoint"] - 1) < 1e-10 for name in slopes if name in rows), rows)
+    off = {name: min(abs(step["free_central"] / rows[name]["adjoint"] - 1) for step in rows[name]["steps"]) for name in ("billet/height", "die upper/offset")}
+    judge("and differences that decide anew, to 1 %", all(each < 0.01 for each in off.values()), off)
+
+
 def elements_keep_their_proportion():
     """A radius larger by 40 % makes almost twice the volume: meshes that are made on the way have as many elements, as the first one has, also where it is
     meshed at another design. A wanted length that is set is that of the nominal design, too."""
@@ -162,6 +189,6 @@ def differences():
         differences_are_those_of_check(case)
 
 
-main({"cylinder.prm": prm(CYLINDER), "followed.prm": prm(FOLLOWED), "bell.prm": prm(BELL), "dome.prm": prm(DOME)},
-     (nominal_is_nominal, contact_follows_the_design, differences, die_follows_billet, elements_keep_their_proportion, another_design_is_refused,
+main({"cylinder.prm": prm(CYLINDER), "followed.prm": prm(FOLLOWED), "bell.prm": prm(BELL), "dome.prm": prm(DOME), "ring.prm": prm(RING)},
+     (nominal_is_nominal, contact_follows_the_design, differences, die_follows_billet, begins_from_outside, elements_keep_their_proportion, another_design_is_refused,
       mistakes))
