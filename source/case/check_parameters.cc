@@ -13,7 +13,8 @@ namespace retroforge
       "steps",
       steps,
       "Steps of the finite differences, relative to the parameter's value or the billet's size. "
-      "Units: none.");
+      "Units: none.",
+      List(Double(1e-12, 1.), 1));
     prm.add_parameter(
       "free differences",
       free,

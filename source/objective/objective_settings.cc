@@ -175,7 +175,17 @@ namespace retroforge
   void TargetSettings::check_names(const std::string &where, const ObjectiveContext &context) const
   {
     if (is_die())
+    {
       find_die(where, context, name.substr(4));
+      return;
+    }
+    const std::string file = name.substr(name.rfind('/') + 1);
+    for (const Die &die : context.dies)
+      if (die.name == file)
+        throw Error(where + "/target",
+                    "is '" + file + "', which is read as the name of an STL file",
+                    "a die of the scene is named as `die NAME'",
+                    "set `die " + file + "'");
   }
 
   TargetSurface TargetSettings::make(const std::string &where, const ObjectiveContext &context) const

@@ -232,11 +232,14 @@ namespace retroforge
   std::string Optimize::why_not_corrected(const unsigned int n_corrections) const
   {
     // What misses limits by their noise only is as near to them as a search comes.
-    const bool is_there = results_.missed_only_by_noise() && results_.stop == Stop::limits;
-    if (!results_.has_converged() && !is_there)
-      return "it had not come to its end, " + in_words(results_.stop) + "; --resume with more goes on";
+    const bool is_there   = results_.missed_only_by_noise() && results_.stop == Stop::limits;
+    const bool is_cut_off = results_.stop == Stop::iterations || results_.stop == Stop::simulations;
+    if (is_cut_off && !is_there)
+      return "it was cut off, " + in_words(results_.stop) + "; --resume with more goes on";
     if (!results_.limits_are_kept() && !is_there)
       return "it did not keep its limits itself";
+    if (!results_.has_converged() && !is_there)
+      return "it had not come to its end, " + in_words(results_.stop);
     if (n_corrections == problem_.parameters().corrections)
       return "Optimisation/corrections is " + std::to_string(n_corrections);
     return "";

@@ -76,6 +76,9 @@ namespace retroforge
   {
     if (!limits_are_kept())
       out << "\n  NOT FEASIBLE: no design that was forged keeps all limits; this one comes closest\n";
+    else if (misses_there())
+      out << "\n  NOT KEPT ON THE FINER MESH: the best design keeps its limits on the mesh of the search "
+             "alone\n";
     for (std::size_t i = 0; i < criteria.limits.size(); ++i)
       if (const double missed = missed_by(i); missed > 0.)
       {

@@ -125,8 +125,8 @@ namespace retroforge
 
     void print_objective(const Summary::Objective &objective, const bool is_model)
     {
-      const char *unit = objective.unit.c_str();
-      std::printf("  %s %.12g %s", objective.name.c_str(), objective.value, unit);
+      const std::string unit = objective.unit == "none" ? "" : " " + objective.unit;
+      std::printf("  %s %.12g%s", objective.name.c_str(), objective.value, unit.c_str());
       const char *separator = " (";
       for (const auto *numbers : {&objective.parts, &objective.details})
         for (const auto &[name, value] : *numbers)
@@ -136,7 +136,7 @@ namespace retroforge
         }
       std::printf("%s", *separator == ',' ? ")" : "");
       if (!is_model && std::isfinite(objective.whole))
-        std::printf("; of the whole part %.12g %s", objective.whole, unit);
+        std::printf("; of the whole part %.12g%s", objective.whole, unit.c_str());
       std::printf("\n");
       if (!objective.note.empty())
         std::printf("    note: %s\n", objective.note.c_str());

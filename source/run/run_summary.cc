@@ -169,10 +169,10 @@ namespace retroforge
     const auto       effect  = [&](const std::size_t j) {
       return percent * design.parameters()[j].scale * sensitivity.gradient[j];
     };
+    const unsigned int remeshed = std::count_if(
+      run.begin(), run.end(), [&](const IncrementDecisions &at) { return at.remeshed && at.begin > 0.; });
     if (sensitivity.unit == "C" || sensitivity.unit == "K")
     {
-      const unsigned int remeshed = std::count_if(
-        run.begin(), run.end(), [&](const IncrementDecisions &at) { return at.remeshed && at.begin > 0.; });
       for (std::size_t j = 0; j < mu.size(); ++j)
         sensitivity.trust.push_back(trust_in_slope_of_temperature(remeshed, effect(j)));
       return;
@@ -184,7 +184,10 @@ namespace retroforge
       if (combination.weights[o] != 0.)
       {
         if (!spans[o])
+        {
+          sensitivity.trust.assign(mu.size(), trust_in_slope_of_final_state(remeshed));
           return;
+        }
         worst.part     = std::min(worst.part, spans[o]->part);
         worst.remeshed = std::max(worst.remeshed, spans[o]->remeshed);
         worst.in_die   = worst.in_die || spans[o]->in_die;

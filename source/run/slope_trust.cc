@@ -111,6 +111,11 @@ namespace retroforge
     return span.remeshed > 0 && std::abs(effect) < least_effect ? little : measured(span);
   }
 
+  std::string trust_in_slope_of_final_state(const unsigned int remeshed)
+  {
+    return remeshed > 0 ? "not judged across " + counted(remeshed, "remeshing") + ": scan" : "";
+  }
+
   std::string trust_in_slope_of_temperature(const unsigned int remeshed, const double effect)
   {
     return remeshed > 0 && std::abs(effect) < least_warming ? little : "";

@@ -111,9 +111,9 @@ namespace retroforge
     /// Returns whether no design but the first could be forged.
     bool found_nothing() const;
 
-    /// Returns the exit status: 0, or 2 where no design keeps the limits or none but the first could be
-    /// forged.
-    int exit_status() const { return limits_are_kept() && !found_nothing() ? 0 : 2; }
+    /// Returns the exit status: 0, or 2 where no design keeps the limits, the best one misses them on the finer mesh, or
+    /// none but the first could be forged.
+    int exit_status() const { return limits_are_kept() && !misses_there() && !found_nothing() ? 0 : 2; }
 
     /// Returns the total change of the objective by new meshes.
     double by_meshes() const;

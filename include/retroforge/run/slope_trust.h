@@ -61,4 +61,8 @@ namespace retroforge
   /// @param remeshed  increments on a new mesh, but for the first
   /// @param effect    of 1 % of the parameter [K]
   std::string trust_in_slope_of_temperature(unsigned int remeshed, double effect);
+
+  /// Returns the same of a value of the metal as it is in the end, its shape or its strains: no class of slopes is known that
+  /// holds; "" where the mesh is the first one.
+  std::string trust_in_slope_of_final_state(unsigned int remeshed);
 } // namespace retroforge

@@ -529,12 +529,13 @@ def corrected():
     sign = -1 if there < best else 1
     bound = best - 0.5 * sign * abs(best - trials[0])
     settings = (f"Optimisation/{'at most' if sign > 0 else 'at least'}=energy: {bound!r}", "Optimisation/confirmation=0.7", "Optimisation/noise runs=0")
-    first, printed = optimize("corrected", "Optimisation/corrections=0", *settings)
+    first, printed = optimize("corrected", "Optimisation/corrections=0", *settings, status=2)
     design = text_of("corrected", "designs", "best_design.prm")
+    judge("which the headline and the exit status tell", "NOT KEPT ON THE FINER MESH" in printed, printed)
     judge("missed on the finer mesh", sign * (first["confirmation"]["values"]["energy"] - bound) > 1e-3 * bound and "not kept there" in printed, first["confirmation"])
     judge("though it is kept", first["limits_kept"] and first["limits"][0]["correction"] == 0, first["limits"])
     judge("and that the search does not go on", not first["confirmation"]["limits_kept"] and "Optimisation/corrections is 0" in printed, printed)
-    found, printed = optimize("corrected", "--resume", f"Optimisation/simulations={first['simulations']}", *settings)
+    found, printed = optimize("corrected", "--resume", f"Optimisation/simulations={first['simulations']}", *settings, status=2)
     judge("cut off, it leaves the design before", best_of(found) == best_of(first) and found["confirmation"]["values"] == first["confirmation"]["values"]
           and found["limits"] == first["limits"] and "was cut off" in printed, [found["limits"], printed])
     judge("in its parameters, too", text_of("corrected", "designs", "best_design.prm") == design, text_of("corrected", "designs", "best_design.prm"))
