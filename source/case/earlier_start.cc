@@ -10,9 +10,6 @@ namespace retroforge
 {
   namespace
   {
-    /// Depths below this part of what touches are rounding.
-    constexpr double of_touching = 0.01;
-
     /// Farther than so many depths a die does not back off.
     constexpr double farthest = 10.;
 
@@ -58,12 +55,10 @@ namespace retroforge
     double             seconds   = 0.;
     std::vector<std::pair<unsigned int, std::string>> remarks;
     for (const unsigned int d : operation.dies)
-      if (const auto leaving =
-            leaving_of(dies[d], process.dies[d], metal, of_touching * near, deepest_start(billet, X)))
+      if (const auto leaving = leaving_of(dies[d], process.dies[d], metal, near, deepest_start(billet, X)))
       {
         seconds = std::max(seconds, (1. + rounding) * leaving->seconds);
-        if (leaving->overlap.depth > near)
-          remarks.emplace_back(d, "Die " + dies[d].name + ": " + standing_inside(leaving->overlap));
+        remarks.emplace_back(d, "Die " + dies[d].name + ": " + standing_inside(leaving->overlap));
       }
     if (!(seconds > 0.))
       return start;

@@ -7,18 +7,14 @@
 
 namespace retroforge
 {
-  namespace
+  std::vector<double> predicted_values(const Evaluation &from, const std::vector<double> &mu)
   {
-    /// Values at a design as the gradients at another predict them.
-    std::vector<double> predicted_values(const Evaluation &from, const std::vector<double> &mu)
-    {
-      std::vector<double> values = from.values;
-      for (std::size_t o = 0; o < from.gradients.size(); ++o)
-        for (std::size_t j = 0; j < mu.size(); ++j)
-          values[o] += from.gradients[o][j] * (mu[j] - from.mu[j]);
-      return values;
-    }
-  } // namespace
+    std::vector<double> values = from.values;
+    for (std::size_t o = 0; o < from.gradients.size(); ++o)
+      for (std::size_t j = 0; j < mu.size(); ++j)
+        values[o] += from.gradients[o][j] * (mu[j] - from.mu[j]);
+    return values;
+  }
 
   Noise measure_noise(OptimizationProblem                                             &problem,
                       const Evaluation                                                &at,

@@ -133,6 +133,49 @@ namespace retroforge
     return !limits_are_kept();
   }
 
+  Neighbours OptimizationResults::neighbours() const
+  {
+    constexpr double       near = 0.1; // of the scales
+    constexpr unsigned int few  = 3;
+    const auto             at   = std::find_if(
+      rows.begin(), rows.end(), [&](const TrialRow &row) { return row.evaluation.mu == best.mu; });
+    if (at == rows.end() || best.gradients.empty())
+      return {};
+    Neighbours                found{0, std::vector<double>(best.values.size(), 0.)};
+    const std::vector<double> x = space.scaled(best.mu);
+    for (const TrialRow &row : rows)
+    {
+      const Evaluation &other = row.evaluation;
+      if (other.failed() || row.mesh != at->mesh || other.mu == best.mu)
+        continue;
+      const std::vector<double> y        = space.scaled(other.mu);
+      double                    distance = 0.;
+      for (std::size_t j = 0; j < x.size(); ++j)
+        distance = std::max(distance, std::abs(y[j] - x[j]));
+      if (distance > near)
+        continue;
+      const std::vector<double> predicted = predicted_values(best, other.mu);
+      for (std::size_t o = 0; o < found.off.size(); ++o)
+        found.off[o] += std::pow(other.values[o] - predicted[o], 2);
+      ++found.n;
+    }
+    if (found.n < few)
+      return {};
+    for (double &off : found.off)
+      off = std::sqrt(off / found.n);
+    return found;
+  }
+
+  bool OptimizationResults::keeps_by_luck(const Limit &limit) const
+  {
+    constexpr double part = 5e-3, of_noise = 3.;
+    const Neighbours near   = neighbours();
+    const double     margin = -limit.excess(best.values) * limit.size;
+    return near.n > 0 && limits_are_kept() && near.off[limit.objective] > margin &&
+           near.off[limit.objective] > part * limit.size &&
+           near.off[limit.objective] > of_noise * noise_of(limit);
+  }
+
   bool OptimizationResults::misses_there(const Limit &limit) const
   {
     return confirmation && !confirmation->best.failed() &&
@@ -249,6 +292,7 @@ namespace retroforge
                             {"scale", json_number(space.scales()[j])},
                             {"at", in_words(space.at(best.mu, j))},
                             {"gradient", json_number(gradient[j])}});
+    const Neighbours near = neighbours();
     for (std::size_t i = 0; i < criteria.limits.size(); ++i)
     {
       const Limit &limit = criteria.limits[i];
@@ -259,6 +303,7 @@ namespace retroforge
                         {"best", json_number(best.values[limit.objective])},
                         {"correction", json_number(limit.correction)},
                         {"noise", json_number(noise_of(limit))},
+                        {"off_near_best", near.n > 0 ? json_number(near.off[limit.objective]) : Json()},
                         {"missed_by", json_number(missed_by(i))},
                         {"by_relaxing", json_number(by_relaxing(i))}});
     }

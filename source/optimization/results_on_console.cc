@@ -128,6 +128,15 @@ namespace retroforge
       if (noise_of(limit) > std::abs(limit.excess(best.values)) * limit.size)
         out << "  noise of " << objectives[limit.objective] << ": " << std::setprecision(3) << noise_of(limit)
             << after_number(units[limit.objective]) << "; the best design is nearer to the limit than that\n";
+    for (const Limit &limit : criteria.limits)
+      if (keeps_by_luck(limit))
+      {
+        const Neighbours near = neighbours();
+        out << "  " << near.n << " designs near the best one are " << std::setprecision(3)
+            << near.off[limit.objective] << after_number(units[limit.objective])
+            << " beside what its slopes of " << objectives[limit.objective]
+            << " foretell, more than it keeps the limit by: it may keep it by luck\n";
+      }
     out << std::setprecision(7);
   }
 

@@ -102,34 +102,14 @@ namespace retroforge
     template <typename Number>
     struct Lifted
     {
-      std::vector<std::vector<Number>> rests;  ///< (1 - C S)^i q
+      std::vector<std::vector<Number>> rests;  ///< R^i q
       std::vector<Number>              values; ///< L q
-      std::vector<CellIndex>           bound;  ///< the cell whose value a node has, or none
     };
-
-    /// Of each node the cells with the least and the largest value around it.
-    template <typename Number>
-    std::pair<std::vector<CellIndex>, std::vector<CellIndex>> extremes(const TetMesh             &mesh,
-                                                                       const std::vector<Number> &q)
-    {
-      std::vector<CellIndex> least(mesh.n_nodes(), invalid_index), largest = least;
-      for (CellIndex c = 0; c < q.size(); ++c)
-        for (const NodeIndex k : mesh.cells[c])
-        {
-          if (least[k] == invalid_index || value_of(q[c]) < value_of(q[least[k]]))
-            least[k] = c;
-          if (largest[k] == invalid_index || value_of(q[c]) > value_of(q[largest[k]]))
-            largest[k] = c;
-        }
-      return {least, largest};
-    }
 
     template <typename Number>
     Lifted<Number> lift(const TetMesh &mesh, const std::vector<Number> &weights, const std::vector<Number> &q)
     {
-      Lifted<Number> lifted{{q},
-                            std::vector<Number>(mesh.n_nodes(), Number(0.)),
-                            std::vector<CellIndex>(mesh.n_nodes(), invalid_index)};
+      Lifted<Number> lifted{{q}, std::vector<Number>(mesh.n_nodes(), Number(0.))};
       while (true)
       {
         std::vector<Number> rest   = lifted.rests.back();
@@ -137,35 +117,21 @@ namespace retroforge
         for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
           lifted.values[k] += smooth[k];
         if (lifted.rests.size() == n_lifts)
-          break;
+          return lifted;
         const auto back = node_to_cell(mesh, smooth);
         for (CellIndex c = 0; c < q.size(); ++c)
           rest[c] -= back[c];
         lifted.rests.push_back(std::move(rest));
       }
-      const auto [least, largest] = extremes(mesh, q);
-      for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
-      {
-        if (value_of(lifted.values[k]) < value_of(q[least[k]]))
-          lifted.bound[k] = least[k];
-        else if (value_of(lifted.values[k]) > value_of(q[largest[k]]))
-          lifted.bound[k] = largest[k];
-        if (lifted.bound[k] != invalid_index)
-          lifted.values[k] = q[lifted.bound[k]];
-      }
-      return lifted;
     }
 
     void reverse_lift(const TetMesh             &mesh,
                       const std::vector<double> &weights,
                       const Lifted<double>      &lifted,
-                      std::vector<double>        values_bar,
+                      const std::vector<double> &values_bar,
                       std::vector<double>       &q_bar,
                       std::vector<double>       &weights_bar)
     {
-      for (NodeIndex k = 0; k < mesh.n_nodes(); ++k)
-        if (lifted.bound[k] != invalid_index)
-          q_bar[lifted.bound[k]] += std::exchange(values_bar[k], 0.);
       std::vector<double> rest_bar(mesh.n_cells(), 0.);
       for (unsigned int i = n_lifts; i-- > 0;)
       {
@@ -187,7 +153,8 @@ namespace retroforge
       ChangedCells<Number>   replaced, made;
       std::vector<Number>    weights;
       Lifted<Number>         lifted;
-      std::vector<Number>    q; ///< C J L q
+      std::vector<Number>    at_node; ///< (J L q)+ at the new nodes
+      std::vector<Number>    q;       ///< C of that
       Number                 lambda;
 
       CellPassage(const MeshChange<Number> &change, const std::vector<Number> &q_T)
@@ -203,10 +170,14 @@ namespace retroforge
           if (c != invalid_index)
             replaced.changed[c] = false;
         }
-        weights                  = replaced.weights();
-        lifted                   = lift(change.old_mesh, weights, q_T);
-        q                        = node_to_cell(change.new_mesh, change.J.apply_bounded(lifted.values));
-        const auto [volume, sum] = replaced.sums(q_T);
+        weights = replaced.weights();
+        lifted  = lift(change.old_mesh, weights, q_T);
+        at_node = change.J.apply(lifted.values);
+        for (Number &value : at_node)
+          if (value_of(value) < 0.)
+            value = Number(0.);
+        q                                = node_to_cell(change.new_mesh, at_node);
+        const auto [volume, sum]         = replaced.sums(q_T);
         const auto [new_volume, new_sum] = made.sums(q);
         if (value_of(sum) > 0. && value_of(new_sum) > 0.)
           lambda = sum / volume * new_volume / new_sum;
@@ -269,7 +240,10 @@ namespace retroforge
 
     std::vector<double> at_node(change.new_mesh.n_nodes(), 0.), weights_bar(q_T.size(), 0.);
     reverse_node_to_cell(change.new_mesh, made_bar, at_node);
-    const auto lifted_bar = change.J.reverse_apply_bounded(passage.lifted.values, at_node);
+    for (NodeIndex k = 0; k < at_node.size(); ++k)
+      if (passage.at_node[k] == 0.)
+        at_node[k] = 0.;
+    const auto lifted_bar = change.J.apply_transpose(at_node);
     change.J.add_weight_bar(passage.lifted.values, at_node, weight_bar);
     reverse_lift(change.old_mesh, passage.weights, passage.lifted, lifted_bar, q_T_bar, weights_bar);
     for (CellIndex c = 0; c < q_T.size(); ++c)

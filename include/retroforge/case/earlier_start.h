@@ -36,7 +36,7 @@ namespace retroforge
     }
   };
 
-  /// Returns that of a scene: none where no die that moves stands in the billet, where one does so by more than a billet may
+  /// Returns that of a scene: none where no die that moves stands in the billet by more than touches, where one does so by more than a billet may
   /// (scene_checks.h), or where backing off would take it ten times as far as it stands in, as along the wall of a bore.
   /// @param X  positions of the billet's nodes
   EarlierStart earlier_start(const Parameters           &parameters,

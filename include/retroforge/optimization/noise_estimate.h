@@ -15,6 +15,9 @@ namespace retroforge
     unsigned int        n_designs = 0;  ///< that it is the mean of
   };
 
+  /// Returns the values at a design as the gradients at another predict them.
+  std::vector<double> predicted_values(const Evaluation &from, const std::vector<double> &mu);
+
   /// Measures the noise of the objective and of all values: forges a few designs around another (Optimisation/noise runs),
   /// over steps so short that all they add to what the gradient predicts is what decisions of the program
   /// change,

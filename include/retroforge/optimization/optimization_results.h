@@ -45,6 +45,13 @@ namespace retroforge
     std::vector<double> before, after;                           ///< values of the objectives
   };
 
+  /// Designs near the best one, beside what its gradients predict.
+  struct Neighbours
+  {
+    unsigned int        n = 0;
+    std::vector<double> off; ///< rms of each value, in its unit; empty where there are less than three
+  };
+
   /// Results of an optimisation.
   struct OptimizationResults
   {
@@ -96,6 +103,12 @@ namespace retroforge
     {
       return noise.values.empty() ? 0. : noise.values[limit.objective];
     }
+    /// Returns those of the designs that were forged, on the mesh of the best one and within a tenth of the scales: what remeshing
+    /// decides there may be far beyond the noise, which is measured over a hundredth of that.
+    Neighbours neighbours() const;
+    /// Returns whether the best design keeps a limit by less than what its neighbours are off by, as by luck: where that is
+    /// more than half a percent of the bound and three times the noise.
+    bool keeps_by_luck(const Limit &limit) const;
     /// Returns whether the best design, forged for the confirmation, misses a limit, or any.
     bool misses_there(const Limit &limit) const;
     bool misses_there() const;

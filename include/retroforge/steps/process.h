@@ -31,7 +31,7 @@ namespace retroforge
     std::vector<unsigned int> dies;            ///< those in the press
     unsigned int              leading_die = 0; ///< whose path is the stroke
     /// Path of the leading die over the stroke, which is that of the nominal design: not 1 where this die
-    /// follows a billet whose height has changed.
+    /// follows a billet whose height has changed, or where the press begins earlier (case/earlier_start.h).
     Number              path_scale = Number(1.);
     PressMotion<Number> motion;
     /// How far it goes in the nominal design [mm]. A run divides it into increments by decision: nothing is

@@ -2,7 +2,9 @@
 // Copyright (C) 2026 The Retroforge authors
 
 // Limits that the best design misses: by their noise only, where each is missed by no more than its own; and what they
-// count after a finer mesh, with the noise, or the tolerance where that is more, on the safe side.
+// count after a finer mesh, with the noise, or the tolerance where that is more, on the safe side. And limits that it keeps by luck: designs within a
+// tenth of the scales are farther off its slopes than it is from the limit, half a percent of it and three times the noise. Designs farther away, that failed or
+// were forged on another mesh, do not count, and less than three say nothing.
 
 #include <retroforge/objective/energy.h>
 #include <retroforge/optimization/optimization_results.h>
@@ -53,4 +55,53 @@ int main()
   results.noise = {};
   std::cout << "without noise";
   corrections();
+
+  // g jumps by 0.6 and -0.6 about its slope of 3 per scale; h follows its slope.
+  const double scale     = space.scales()[0];
+  results.best.mu        = {1.};
+  results.best.values    = {1., 9.8, 51.};
+  results.best.gradients = {{0.}, {3. / scale}, {-2. / scale}};
+  const auto add         = [&](const double part, const double jump, const unsigned int mesh) {
+    TrialRow row{TrialRow::Decision::refused, {}};
+    row.evaluation.mu     = {1. + part * scale};
+    row.evaluation.values = {1., 9.8 + 3. * part + jump, 51. - 2. * part};
+    row.mesh              = mesh;
+    results.rows.push_back(row);
+  };
+  const auto by_luck = [&](const char *what) {
+    const Neighbours near = results.neighbours();
+    std::cout << what << ": " << near.n << " neighbours";
+    if (near.n > 0)
+      std::cout << ", off by " << std::round(1e6 * near.off[1]) / 1e6 << " and "
+                << std::round(1e6 * near.off[2]) / 1e6;
+    std::cout << "; by luck:";
+    for (const Limit &limit : criteria.limits)
+      std::cout << (results.keeps_by_luck(limit) ? " yes" : " no");
+    std::cout << "\n";
+  };
+  results.rows.push_back({TrialRow::Decision::accepted, results.best});
+  add(0.09, 0.6, 0);
+  add(-0.05, -0.6, 0);
+  by_luck("two");
+  add(0.11, 5., 0);
+  add(0.01, 5., 1);
+  results.rows.push_back({TrialRow::Decision::refused, {}});
+  by_luck("others that do not count");
+  add(0.02, 0.6, 0);
+  by_luck("three");
+  results.best.values[1]               = 9.3;
+  results.rows[0].evaluation.values[1] = 9.3;
+  for (TrialRow &row : results.rows)
+    if (!row.evaluation.failed() && row.evaluation.mu != results.best.mu)
+      row.evaluation.values[1] -= 0.5;
+  by_luck("with more room");
+  results.best.values[1] = 9.8;
+  for (TrialRow &row : results.rows)
+    if (!row.evaluation.failed() && row.evaluation.mu != results.best.mu)
+      row.evaluation.values[1] += 0.5;
+  results.noise.values = {0., 0.3, 0.};
+  by_luck("with the noise");
+  results.noise = {};
+  results.best.gradients.clear();
+  by_luck("without slopes");
 }
