@@ -5,6 +5,8 @@
 #include <retroforge/core/text.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace retroforge
 {
@@ -16,29 +18,18 @@ namespace retroforge
     /// By so much more, so that rounding leaves nothing inside.
     constexpr double rounding = 1e-6;
 
-    /// How long before stroke 0 a die has left the metal, if it stands in it and comes out of it so.
-    struct Leaving
-    {
-      double  seconds = 0.;
-      Overlap overlap;
-    };
-
-    std::optional<Leaving> leaving_of(const Die              &die,
-                                      const DieState<double> &state,
-                                      const MetalSurface     &metal,
-                                      const double            least,
-                                      const double            most)
+    /// How long before stroke 0 a die has left the metal that it stands in; infinite where it does not come out of it so.
+    double seconds_to_leave(const Die              &die,
+                            const DieState<double> &state,
+                            const MetalSurface     &metal,
+                            const double            depth,
+                            const double            most)
     {
       const double speed = state.velocity.norm();
-      if (!(speed > 0.))
-        return {};
-      const Overlap overlap = find_overlap(die, state.displacement, metal);
-      if (!(overlap.depth > least) || overlap.depth > most)
-        return {};
+      if (!(speed > 0.) || depth > most)
+        return std::numeric_limits<double>::infinity();
       const double travel = travel_to_be_free(die, state.displacement, -1. / speed * state.velocity, metal);
-      if (!(travel <= farthest * overlap.depth))
-        return {};
-      return Leaving{travel / speed, overlap};
+      return travel <= farthest * depth ? travel / speed : std::numeric_limits<double>::infinity();
     }
   } // namespace
 
@@ -55,12 +46,17 @@ namespace retroforge
     double             seconds   = 0.;
     std::vector<std::pair<unsigned int, std::string>> remarks;
     for (const unsigned int d : operation.dies)
-      if (const auto leaving = leaving_of(dies[d], process.dies[d], metal, near, deepest_start(billet, X)))
+      if (const Overlap overlap = find_overlap(dies[d], process.dies[d].displacement, metal);
+          overlap.depth > near)
       {
-        seconds = std::max(seconds, (1. + rounding) * leaving->seconds);
-        remarks.emplace_back(d, "Die " + dies[d].name + ": " + standing_inside(leaving->overlap));
+        const double before =
+          seconds_to_leave(dies[d], process.dies[d], metal, overlap.depth, deepest_start(billet, X));
+        if (!std::isfinite(before))
+          return start;
+        seconds = std::max(seconds, (1. + rounding) * before);
+        remarks.emplace_back(d, "Die " + dies[d].name + ": " + standing_inside(overlap));
       }
-    if (!(seconds > 0.))
+    if (remarks.empty())
       return start;
     const double stroke = value_of(operation.stroke);
     start.path          = process.speed(0) * seconds;

@@ -36,8 +36,9 @@ namespace retroforge
     }
   };
 
-  /// Returns that of a scene: none where no die that moves stands in the billet by more than touches, where one does so by more than a billet may
-  /// (scene_checks.h), or where backing off would take it ten times as far as it stands in, as along the wall of a bore.
+  /// Returns that of a scene: none where no die stands in the billet by more than touches; where one stands in it that is at rest, and
+  /// pushes it out in any case, or by more than a billet may (scene_checks.h); or where backing off would take a die ten times as
+  /// far as it stands in, as along the wall of a bore.
   /// @param X  positions of the billet's nodes
   EarlierStart earlier_start(const Parameters           &parameters,
                              const TetMesh              &billet,

@@ -7,7 +7,7 @@
 // - the upper plane 0.5 inside, along its facing: 0.5, of a stroke of 5 a tenth; to twice its speed the same path;
 // - inclined by 60 degrees to its way: 0.5 / cos 60;
 // - the lower die coming up at a quarter of the speed: it stands back by a quarter of the path;
-// - the lower die, at rest, 0.5 inside: not at all; 1.5 inside: not at all, which is refused;
+// - the lower die, at rest, 0.5 inside, alone or as the upper one is: not at all; 1.5 inside: not at all, which is refused;
 // - moved by what it says no die stands in the billet, and the leading die ends where it would;
 // - on dual numbers derivatives stay.
 
@@ -85,6 +85,8 @@ int main(int argc, char **argv)
   Parameters at_rest    = block(0., 100. * down);
   at_rest.dies[0].point = 0.5 * up;
   report("at rest", at_rest);
+  at_rest.dies[1].point = 19.5 * up;
+  report("at rest, and the other as deep", at_rest);
 
   const Parameters parameters                     = block(0.5, 100. * down);
   auto             process                        = converted<Dual>(parameters.process({20., 20.}));
