@@ -39,6 +39,7 @@ namespace
     p.dies[1].point       = (20. - inside) * up;
     p.dies[1].velocity    = velocity;
     p.press.stroke        = 5.;
+    p.press.increments    = 5;
     p.resolve_defaults({20., 20.});
     return p;
   }
