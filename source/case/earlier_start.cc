@@ -18,6 +18,22 @@ namespace retroforge
     /// By so much more, so that rounding leaves nothing inside.
     constexpr double rounding = 1e-6;
 
+    /// Whether a face of the billet's surface stands in a die by more than touches: what is pushed out of it costs work at once, where that of single
+    /// nodes, under a round die, grows with the square of the depth.
+    bool has_a_face_inside(const TetMesh              &billet,
+                           const NodalVectors<double> &X,
+                           const Die                  &die,
+                           const Vec3                 &displacement,
+                           const double                near)
+    {
+      return std::any_of(billet.faces.begin(), billet.faces.end(), [&](const auto &face) {
+        return !billet.patches[face.patch].symmetry &&
+               std::all_of(face.nodes.begin(), face.nodes.end(), [&](const NodeIndex k) {
+                 return die.signed_distance(X[k], displacement) < -near;
+               });
+      });
+    }
+
     /// How long before stroke 0 a die has left the metal that it stands in; infinite where it does not come out of it so.
     double seconds_to_leave(const Die              &die,
                             const DieState<double> &state,
@@ -47,7 +63,7 @@ namespace retroforge
     std::vector<std::pair<unsigned int, std::string>> remarks;
     for (const unsigned int d : operation.dies)
       if (const Overlap overlap = find_overlap(dies[d], process.dies[d].displacement, metal);
-          overlap.depth > near)
+          overlap.depth > near && has_a_face_inside(billet, X, dies[d], process.dies[d].displacement, near))
       {
         const double before =
           seconds_to_leave(dies[d], process.dies[d], metal, overlap.depth, deepest_start(billet, X));

@@ -36,7 +36,7 @@ namespace retroforge
     }
   };
 
-  /// Returns that of a scene: none where no die stands in the billet by more than touches; where one stands in it that is at rest, and
+  /// Returns that of a scene: none where no face of the billet stands in a die by more than touches; where one stands in it that is at rest, and
   /// pushes it out in any case, or by more than a billet may (scene_checks.h); or where backing off would take a die ten times as
   /// far as it stands in, as along the wall of a bore.
   /// @param X  positions of the billet's nodes
