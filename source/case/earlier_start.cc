@@ -18,8 +18,8 @@ namespace retroforge
     /// By so much more, so that rounding leaves nothing inside.
     constexpr double rounding = 1e-6;
 
-    /// Whether a face of the billet's surface stands in a die by more than touches: what is pushed out of it costs work at once, where that of single
-    /// nodes, under a round die, grows with the square of the depth.
+    /// Whether a face of the billet's surface stands in a die by more than touches: what is pushed out of it costs
+    /// work at once, where that of single nodes, under a round die, grows with the square of the depth.
     bool has_a_face_inside(const TetMesh              &billet,
                            const NodalVectors<double> &X,
                            const Die                  &die,

@@ -153,8 +153,7 @@ namespace retroforge
       ChangedCells<Number>   replaced, made;
       std::vector<Number>    weights;
       Lifted<Number>         lifted;
-      std::vector<Number>    at_node; ///< (J L q)+ at the new nodes
-      std::vector<Number>    q;       ///< C of that
+      std::vector<Number>    q; ///< C (J L q)+
       Number                 lambda;
 
       CellPassage(const MeshChange<Number> &change, const std::vector<Number> &q_T)
@@ -170,9 +169,9 @@ namespace retroforge
           if (c != invalid_index)
             replaced.changed[c] = false;
         }
-        weights = replaced.weights();
-        lifted  = lift(change.old_mesh, weights, q_T);
-        at_node = change.J.apply(lifted.values);
+        weights      = replaced.weights();
+        lifted       = lift(change.old_mesh, weights, q_T);
+        auto at_node = change.J.apply(lifted.values);
         for (Number &value : at_node)
           if (value_of(value) < 0.)
             value = Number(0.);
@@ -240,8 +239,9 @@ namespace retroforge
 
     std::vector<double> at_node(change.new_mesh.n_nodes(), 0.), weights_bar(q_T.size(), 0.);
     reverse_node_to_cell(change.new_mesh, made_bar, at_node);
+    const auto free = change.J.apply(passage.lifted.values);
     for (NodeIndex k = 0; k < at_node.size(); ++k)
-      if (passage.at_node[k] == 0.)
+      if (free[k] < 0.)
         at_node[k] = 0.;
     const auto lifted_bar = change.J.apply_transpose(at_node);
     change.J.add_weight_bar(passage.lifted.values, at_node, weight_bar);

@@ -36,9 +36,11 @@ namespace retroforge
     }
   };
 
-  /// Returns that of a scene: none where no face of the billet stands in a die by more than touches; where one stands in it that is at rest, and
-  /// pushes it out in any case, or by more than a billet may (scene_checks.h); or where backing off would take a die ten times as
-  /// far as it stands in, as along the wall of a bore.
+  /// Returns that of a scene. The press does not begin earlier
+  /// - where no face of the billet stands in a die by more than touches;
+  /// - where a die at rest stands in the billet, which pushes it out in any case;
+  /// - where a die stands in it by more than a billet may (scene_checks.h), or would have to go back by ten times
+  ///   that, as along the wall of a bore.
   /// @param X  positions of the billet's nodes
   EarlierStart earlier_start(const Parameters           &parameters,
                              const TetMesh              &billet,
