@@ -3,6 +3,7 @@
 #include <retroforge/case/parameters.h>
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
+#include <retroforge/material/temperature_range.h>
 
 #include <algorithm>
 #include <array>
@@ -175,7 +176,6 @@ end
 
   void Parameters::check_heat() const
   {
-    constexpr double absolute_zero = -273.15;
     if (heat.heating != Heating::conduction)
       return;
     if (material.temperature.empty())

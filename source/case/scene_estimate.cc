@@ -281,6 +281,16 @@ namespace retroforge
           ": temperatures are in C, and steel melts near 1450: is it in K? Then subtract 273.15");
       if (metal.table)
         warn_of_table(*metal.table, metal.initial.temperature, warnings);
+      const MaterialParameters &given = view.parameters.material;
+      if (const double T = metal.initial.temperature; is_beyond(given.valid_temperatures, T))
+        warnings.push_back("Material/temperature = " + as_text(T) + ": the law's numbers hold from " +
+                           as_text(given.valid_temperatures[0]) + " to " +
+                           as_text(given.valid_temperatures[1]) + " C (Material/valid temperatures)");
+      if (is_beyond(given.valid_rates, estimate.strain_rate))
+        warnings.push_back(view.name(view.process.operations.front().leading_die) +
+                           "/velocity: the billet is strained at " + as_text(estimate.strain_rate) +
+                           " /s, and the law's numbers hold from " + as_text(given.valid_rates[0]) + " to " +
+                           as_text(given.valid_rates[1]) + " /s (Material/valid strain rates)");
       if (!(estimate.flow_stress >= least_stress && estimate.flow_stress <= largest_stress))
         warnings.push_back(
           (material_type(metal.type).reads_consistency() ? "Material/consistency = " + as_text(metal.law.K)

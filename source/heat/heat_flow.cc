@@ -3,13 +3,13 @@
 #include <retroforge/heat/conduction_step.h>
 #include <retroforge/heat/contact_skins.h>
 #include <retroforge/heat/heat_flow.h>
+#include <retroforge/material/temperature_range.h>
 
 namespace retroforge
 {
   namespace
   {
     constexpr double stefan_boltzmann = 5.670374419e-11; // [mW/(mm² K⁴)]
-    constexpr double absolute_zero    = -273.15;         // [C]
 
     /// Film of a free surface by convection and radiation.
     template <typename Number>

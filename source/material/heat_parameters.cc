@@ -3,6 +3,7 @@
 #include <retroforge/core/enum_setting.h>
 #include <retroforge/core/setting_tags.h>
 #include <retroforge/material/heat_parameters.h>
+#include <retroforge/material/temperature_range.h>
 
 namespace retroforge
 {
@@ -53,7 +54,7 @@ namespace retroforge
     prm.add_parameter("surroundings",
                       surroundings,
                       "Temperature of air and walls around the workpiece. Units: C.",
-                      Double(-273.15));
+                      Double(absolute_zero));
     prm.add_parameter(
       "die effusivity",
       die_effusivity,

@@ -17,7 +17,7 @@ namespace retroforge
 {
   void MaterialParameters::add_parameters(dealii::ParameterHandler &prm)
   {
-    using dealii::Patterns::Double;
+    using dealii::Patterns::Double, dealii::Patterns::List;
     prm.enter_subsection("Material");
     prm.add_parameter(
       "law",
@@ -71,9 +71,21 @@ namespace retroforge
       "Damage that the metal collects, for the objective `damage' and pictures; it weakens nothing. "
       "Latham-Cockcroft: the integral of max(sigma_1, 0)/sigma_0 over the strain, sigma_1 the largest "
       "principal stress and sigma_0 the flow stress. Units: none.");
+    const std::string range =
+      "beyond them a run warns. Files of materials have them. Empty: not told. Units: ";
+    prm.add_parameter("valid temperatures",
+                      valid_temperatures,
+                      "Between which the numbers of the law hold, as `800, 1250'; " + range + "C.",
+                      List(Double(), 0, 2));
+    prm.add_parameter("valid strain rates",
+                      valid_rates,
+                      "Between which they hold, as `0.1, 100'; " + range + "1/s.",
+                      List(Double(0.), 0, 2));
     prm.leave_subsection();
     tag(prm, "Material", SettingRole::scene);
     tag(prm, "Material/table", SettingTags::Files::one);
+    for (const char *entry : {"Material/valid temperatures", "Material/valid strain rates"})
+      tag(prm, entry, SettingRole::report);
   }
 
   namespace
@@ -130,6 +142,16 @@ namespace retroforge
       return T;
     }
 
+    void check_range(const std::vector<double> &range, const std::string &entry)
+    {
+      if (!range.empty() && !(range.size() == 2 && range[0] < range[1]))
+        throw Error("Material/" + entry,
+                    range.size() == 2 ? "go from " + as_text(range[0]) + " to " + as_text(range[1])
+                                      : "has one number",
+                    "a range has two, the smaller one first",
+                    "give `FROM, TO', or leave it empty");
+    }
+
     std::shared_ptr<const FlowTable> table_of(const std::string &file)
     {
       if (file.empty())
@@ -158,6 +180,8 @@ namespace retroforge
 
   Material<double> MaterialParameters::metal(const double rate) const
   {
+    check_range(valid_temperatures, "valid temperatures");
+    check_range(valid_rates, "valid strain rates");
     Material<double> metal(law);
     metal.type               = find_material_type(type, "Material/law");
     metal.damage             = static_cast<unsigned int>(damage);

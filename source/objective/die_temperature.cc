@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/heat/surface_temperature.h>
+#include <retroforge/material/temperature_range.h>
 #include <retroforge/objective/die_temperature.h>
 #include <retroforge/objective/objective_settings.h>
 
@@ -139,6 +140,7 @@ namespace retroforge
                       "it follows from the heat that flows there, and Heat/heating is not conduction",
                       "set Heat/heating = conduction, or leave the objective out");
         objective.at_end = std::make_unique<DieTemperature>(die.find(where, context), smoothing);
+        objective.least  = absolute_zero;
       }
     };
   } // namespace

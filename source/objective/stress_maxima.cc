@@ -8,6 +8,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <limits>
+
 namespace retroforge
 {
   namespace
@@ -177,6 +179,8 @@ namespace retroforge
       {
         objective.path = std::make_unique<StressMaximum>(
           stress, sharpness, context.consistency, window.make(where, context), region.make(where));
+        if (stress == InnerStress::pressure)
+          objective.least = -std::numeric_limits<double>::infinity();
       }
     };
   } // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/material/temperature_range.h>
 #include <retroforge/objective/objective_settings.h>
 #include <retroforge/objective/temperatures.h>
 #include <retroforge/objective/volume.h>
@@ -132,6 +133,8 @@ namespace retroforge
                       "Heat/heating is none, and the metal keeps that before the stroke",
                       "set Heat/heating = adiabatic or conduction, or leave the objective out");
         objective.at_end = std::make_unique<TemperatureObjective>(extreme, smoothing);
+        if (extreme != TemperatureExtreme::spread)
+          objective.least = absolute_zero;
       }
     };
   } // namespace

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
 #include <retroforge/core/nearest_name.h>
+#include <retroforge/core/text.h>
 #include <retroforge/optimization/least_squares.h>
 #include <retroforge/optimization/merit.h>
 
@@ -36,6 +37,11 @@ namespace retroforge
       for (const auto &[name, bound] : values)
       {
         const unsigned int o = index_of(objectives, name, at_least ? "at least" : "at most");
+        if (!at_least && bound < objectives[o].least)
+          throw Error("Optimisation/at most",
+                      "asks for at most " + as_text(bound) + " of '" + name + "'",
+                      "no value of it is below " + as_text(objectives[o].least),
+                      "give a bound above that, in " + objectives[o].unit());
         limits.push_back({o, bound, at_least});
         is_limited[o] = true;
       }

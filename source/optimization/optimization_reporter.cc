@@ -13,6 +13,7 @@
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/run/run_messages.h>
+#include <retroforge/run/run_summary.h>
 
 #include <algorithm>
 #include <cmath>
@@ -295,10 +296,11 @@ namespace retroforge
     if (name == "best")
     {
       if (scenario == 0)
-        results_.doubts.clear();
+        results_.warnings.clear();
       const std::string of = scenario == 0 ? "" : problem_.scenarios.name(scenario) + ": ";
-      for (const std::string &doubt : run.check())
-        results_.doubts.push_back(of + doubt);
+      for (const auto &told : {run.check(), warnings_at_end(forging_case, run)})
+        for (const std::string &warning : told)
+          results_.warnings.push_back(of + warning);
     }
     if (name == "best" && scenario == 0)
     {

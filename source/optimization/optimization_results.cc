@@ -371,6 +371,8 @@ namespace retroforge
     for (std::size_t o = 0; o < details.size(); ++o)
       if (!details[o].empty())
         json["details"][objectives[o]] = details[o];
+    if (!warnings.empty())
+      json["warnings"] = warnings;
     if (confidence)
       json["identification"] = as_json(*this);
     if (confirmation)

@@ -179,8 +179,8 @@ namespace retroforge
     for (std::size_t o = 0; o < details.size(); ++o)
       for (const auto &[what, detail] : details[o])
         out << "  " << what << " of " << objectives[o] << " at the best design: " << detail << '\n';
-    for (const std::string &doubt : doubts)
-      out << "  warning: the best design: " << doubt << '\n';
+    for (const std::string &warning : warnings)
+      out << "  warning: the best design: " << warning << '\n';
     for (std::size_t r = 0; r < by_moving_relation.size(); ++r)
       out << (r == 0 ? "\n" : "") << "  " << space.relations()[r].text << ": "
           << (space.holds_as_equation(best.mu, r)

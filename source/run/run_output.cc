@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/contact/level_gaps.h>
-#include <retroforge/contact/penetration.h>
 #include <retroforge/core/nearest_name.h>
 #include <retroforge/core/text.h>
 #include <retroforge/mesh/parts_quality.h>
 #include <retroforge/output/console.h>
 #include <retroforge/run/run_output.h>
+#include <retroforge/run/run_summary.h>
 
 #include <cmath>
 #include <cstdio>
@@ -139,20 +139,13 @@ namespace retroforge
 
   HistoryRow RunOutput::row_of(const IncrementEvent &event)
   {
-    const ForgingState      &state  = event.state;
-    const Scene             &scene  = state.epoch->scene;
-    const ReplicatedEntries &cells  = scene.discretization.cells();
-    const std::vector<Die>  &dies   = case_.model.dies;
-    const double             size   = volume(scene.mesh, state.workpiece.X, cells);
-    const auto               states = process_.at_stroke(state.stroke, state.operation).dies;
-    const Penetration        deepest =
-      deepest_point(scene.mesh, scene.topology, dies, states, state.workpiece.X, case_.comm);
-    if (!(deepest.depth <= deepest_.depth))
-      deepest_ = {deepest.depth,
-                  deepest.depth / case_.edge_length(),
-                  state.stroke,
-                  {{deepest.place[0], deepest.place[1], deepest.place[2]}},
-                  deepest.die == invalid_index ? "" : dies[deepest.die].name};
+    const ForgingState      &state = event.state;
+    const Scene             &scene = state.epoch->scene;
+    const ReplicatedEntries &cells = scene.discretization.cells();
+    const double             size  = volume(scene.mesh, state.workpiece.X, cells);
+    const Summary::Depth     depth = depth_in_dies(case_, process_, state);
+    if (!(depth.depth <= deepest_.depth))
+      deepest_ = depth;
     const unsigned int leading  = case_.nominal.operations[state.operation].leading_die;
     const Vec3        &velocity = case_.nominal.dies[leading].velocity;
     const double       force    = event.record.forces[leading] * velocity / velocity.norm();
@@ -164,7 +157,7 @@ namespace retroforge
             energy,
             size,
             minimum_quality(scene.mesh, state.workpiece.X, cells),
-            deepest.depth,
+            depth.depth,
             event.record.newton,
             event.record.krylov,
             whole_.force * force,

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/penetration.h>
 #include <retroforge/core/text.h>
 #include <retroforge/core/version.h>
 #include <retroforge/design/mesh_anew.h>
 #include <retroforge/mesh/mesh_quality.h>
 #include <retroforge/output/blas.h>
+#include <retroforge/output/warnings.h>
 #include <retroforge/run/run_summary.h>
 
 #include <algorithm>
@@ -122,24 +124,100 @@ namespace retroforge
     summarise_restarts(forging_case.segments, summary);
   }
 
-  std::string beyond_table(const Process<double> &process, const WorkpieceState<3, double> &workpiece)
+  namespace
   {
-    const auto &table = process.material.table;
-    if (!table)
-      return "";
-    const double strain  = *std::max_element(workpiece.strain.begin(), workpiece.strain.end());
-    const auto  &T       = workpiece.temperature;
-    const double before  = process.material.initial.temperature,
-                 warmest = T.empty() ? before : *std::max_element(T.begin(), T.end()),
-                 coldest = T.empty() ? before : *std::min_element(T.begin(), T.end());
-    // Where the run begins outside of the table, a warning before it tells so.
-    const bool cools = coldest < std::min(before, table->least_temperature());
-    if (strain <= table->largest_strain() && warmest <= table->largest_temperature() && !cools)
-      return "";
-    return "the metal was strained up to " + as_text(strain) + " and is at " + as_text(coldest) + " to " +
-           as_text(warmest) + " C, and Material/table ends at " + as_text(table->largest_strain()) +
-           " and at " + as_text(table->least_temperature()) + " and " +
-           as_text(table->largest_temperature()) + " C: beyond, stresses are those at its edge.";
+    /// Where the metal is strained or warm beyond its table of flow stresses; "" where it is not, or has none.
+    std::string beyond_table(const Process<double> &process, const WorkpieceState<3, double> &workpiece)
+    {
+      const auto &table = process.material.table;
+      if (!table)
+        return "";
+      const double strain  = *std::max_element(workpiece.strain.begin(), workpiece.strain.end());
+      const auto  &T       = workpiece.temperature;
+      const double before  = process.material.initial.temperature,
+                   warmest = T.empty() ? before : *std::max_element(T.begin(), T.end()),
+                   coldest = T.empty() ? before : *std::min_element(T.begin(), T.end());
+      // Where the run begins outside of the table, a warning before it tells so.
+      const bool cools = coldest < std::min(before, table->least_temperature());
+      if (strain <= table->largest_strain() && warmest <= table->largest_temperature() && !cools)
+        return "";
+      return "the metal was strained up to " + as_text(strain) + " and is at " + as_text(coldest) + " to " +
+             as_text(warmest) + " C, and Material/table ends at " + as_text(table->largest_strain()) +
+             " and at " + as_text(table->least_temperature()) + " and " +
+             as_text(table->largest_temperature()) + " C: beyond, stresses are those at its edge.";
+    }
+
+    /// Part of the metal at temperatures where the numbers of its law do not hold.
+    double part_beyond(const std::vector<double> &valid, const ForgingState &state)
+    {
+      const WorkpieceState<3, double> &workpiece = state.workpiece;
+      double                           beyond = 0., whole = 0.;
+      for (const auto &cell : state.epoch->scene.mesh.cells)
+      {
+        const double part = tet_volume(corners(cell, workpiece.X)) / double(cell.size());
+        for (const NodeIndex k : cell)
+        {
+          whole += part;
+          beyond += is_beyond(valid, workpiece.temperature[k]) ? part : 0.;
+        }
+      }
+      return beyond / whole;
+    }
+  } // namespace
+
+  std::vector<std::string>
+  beyond_law(const Case &forging_case, const Process<double> &process, const ForgingState &state)
+  {
+    std::vector<std::string> warnings;
+    if (const std::string beyond = beyond_table(process, state.workpiece); !beyond.empty())
+      warnings.push_back(beyond);
+    constexpr double           much  = 0.05;
+    const std::vector<double> &valid = forging_case.parameters.material.valid_temperatures,
+                              &T     = state.workpiece.temperature;
+    // Where all of it begins beyond, a warning before the run tells so.
+    if (valid.empty() || T.empty() || is_beyond(valid, process.material.initial.temperature))
+      return warnings;
+    if (const double part = part_beyond(valid, state); part > much)
+    {
+      const auto [coldest, warmest] = std::minmax_element(T.begin(), T.end());
+      warnings.push_back("the metal ends at " + as_text(*coldest) + " to " + as_text(*warmest) + " C, " +
+                         as_text(100. * part) + " % of it where the law's numbers do not hold: from " +
+                         as_text(valid[0]) + " to " + as_text(valid[1]) +
+                         " C (Material/valid temperatures).");
+    }
+    return warnings;
+  }
+
+  Summary::Depth
+  depth_in_dies(const Case &forging_case, const Process<double> &process, const ForgingState &state)
+  {
+    const Scene            &scene   = state.epoch->scene;
+    const std::vector<Die> &dies    = forging_case.model.dies;
+    const Penetration       deepest = deepest_point(scene.mesh,
+                                              scene.topology,
+                                              dies,
+                                              process.at_stroke(state.stroke, state.operation).dies,
+                                              state.workpiece.X,
+                                              forging_case.comm);
+    return {deepest.depth,
+            deepest.depth / forging_case.edge_length(),
+            state.stroke,
+            {{deepest.place[0], deepest.place[1], deepest.place[2]}},
+            deepest.die == invalid_index ? "" : dies[deepest.die].name};
+  }
+
+  std::vector<std::string> warnings_at_end(const Case &forging_case, const ForwardRun &run)
+  {
+    const ForgingState &state = run.state();
+    Summary             summary;
+    summary.volume_initial = volume(forging_case.billet.cells, run.X_0());
+    summary.volume_final   = volume(state.epoch->scene.mesh.cells, state.workpiece.X);
+    summary.deepest        = depth_in_dies(forging_case, run.process(), state);
+    std::vector<std::string> warnings =
+      warnings_of(summary, forging_case.parameters.contact.largest_depth, {});
+    for (const std::string &beyond : beyond_law(forging_case, run.process(), state))
+      warnings.push_back(beyond);
+    return warnings;
   }
 
   std::vector<std::optional<ValueSpan>> spans_of(const Objectives                      &objectives,

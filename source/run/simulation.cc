@@ -181,7 +181,7 @@ namespace retroforge
     summary_.record_bytes = run_.recording().bytes();
     summary_.warnings =
       warnings_of(summary_, case_.parameters.contact.largest_depth, output_->untouched_dies());
-    if (const std::string beyond = beyond_table(case_.process, run_.state().workpiece); !beyond.empty())
+    for (const std::string &beyond : beyond_law(case_, case_.process, run_.state()))
       summary_.warnings.push_back(beyond);
     const bool passed = verify();
     write_summary();

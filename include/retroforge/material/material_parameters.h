@@ -18,6 +18,8 @@ namespace retroforge
     std::string                   table;       ///< file of the type `table`
     std::string                   temperature; ///< of the billet before the stroke [C]; empty: not given
     Damage                        damage = Damage::none;
+    /// Where the numbers of the law hold, from and to: temperatures [C] and strain rates [1/s]; empty: not told.
+    std::vector<double> valid_temperatures, valid_rates;
 
     void add_parameters(dealii::ParameterHandler &prm);
 
@@ -27,4 +29,10 @@ namespace retroforge
     /// @throws Error  where there is no such law, or its numbers are not what it has
     Material<double> metal(double rate) const;
   };
+
+  /// Returns whether a value lies outside of a range, which is empty where it is not told.
+  inline bool is_beyond(const std::vector<double> &range, const double value)
+  {
+    return !range.empty() && (value < range.front() || value > range.back());
+  }
 } // namespace retroforge

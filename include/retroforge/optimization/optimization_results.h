@@ -85,8 +85,9 @@ namespace retroforge
     /// Told beside values of the best design's forging, as the true maximum beside a smooth one: of each
     /// objective of the case itself, in its unit unless their names say other.
     std::vector<std::map<std::string, double>> details = {};
-    std::vector<std::string> doubts        = {}; ///< of how the best design begins, as `simulate' tells them
-    unsigned int             n_simulations = 0, n_sweeps = 0, n_failed = 0; ///< forgings, sweeps, designs
+    std::vector<std::string>                   warnings =
+      {}; ///< of how the best design begins and ends, as `simulate' tells them
+    unsigned int n_simulations = 0, n_sweeps = 0, n_failed = 0; ///< forgings, sweeps, designs
 
     double value(const Evaluation &evaluation) const { return criteria.value(evaluation.values); }
     /// Returns the change of the objective per unit by which a limit is relaxed; NaN where the search did not

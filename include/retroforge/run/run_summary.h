@@ -5,6 +5,7 @@
 #include <retroforge/adjoint/objective_sensitivity.h>
 #include <retroforge/case/case.h>
 #include <retroforge/output/summary.h>
+#include <retroforge/run/forward_run.h>
 #include <retroforge/run/slope_trust.h>
 #include <retroforge/time/objective_trace.h>
 
@@ -22,9 +23,19 @@ namespace retroforge
                      const ForgingState    &forged,
                      Summary               &summary);
 
-  /// Returns what to know of a run at whose end the metal is strained or warm beyond its table of flow stresses; ""
-  /// where it is not, or has none.
-  std::string beyond_table(const Process<double> &process, const WorkpieceState<3, double> &workpiece);
+  /// Returns what to know of a run at whose end the metal is strained or warm beyond its table of flow stresses, or at
+  /// temperatures where the numbers of its law do not hold.
+  std::vector<std::string>
+  beyond_law(const Case &forging_case, const Process<double> &process, const ForgingState &state);
+
+  /// Returns how deep the surface is in a die at the end of an increment, and where. Collective.
+  /// @param process  that of the run
+  Summary::Depth
+  depth_in_dies(const Case &forging_case, const Process<double> &process, const ForgingState &state);
+
+  /// Returns what a user must know of a run that nothing watched on its way, by how it ends: metal inside a die, volume
+  /// lost or won, strains beyond a table. Collective.
+  std::vector<std::string> warnings_at_end(const Case &forging_case, const ForwardRun &run);
 
   /// Returns the part of the run that each objective is made of; nothing for those that do not follow from forces.
   std::vector<std::optional<ValueSpan>> spans_of(const Objectives                      &objectives,

@@ -173,6 +173,8 @@ MISTAKES = {
                                                "Design/parameters=die upper/free form 4"), r"Design/parameters.*free form 4.*did you mean"),
     "a time that is none": (settings("Heat/heating=conduction", "Material/temperature=900", "Design/parameters=heat/transfer time"),
                             r"Design/parameters.*heat/transfer time.*is 0.*set Heat/transfer time > 0"),
+    "where a law holds, the wrong way around": (settings("Material/valid temperatures=1250, 800"), r"Material/valid temperatures: go from 1250 to 800; .*FROM, TO"),
+    "where a law holds, one number": (settings("Material/valid strain rates=100"), r"Material/valid strain rates: has one number; .*FROM, TO"),
     "free form of a die without modes": (settings("Die upper/shape=punch", "Design/parameters=die upper/free form"),
                                          r"Design/parameters.*die upper/free form' is not a parameter"),
     "unknown shape of a die": (settings("Die lower/shape=cone"), r"Die lower/shape.*cone.*bell"),
@@ -439,6 +441,13 @@ def told():
                                                     "Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0",
                                                     "Heat/resting die=side"),
              r"warning: die side, on which the billet is to rest for 4 s, does not touch"),
+            ("colder than the law's numbers hold", settings("Material/temperature=20", "Material/valid temperatures=800, 1250"),
+             r"warning: Material/temperature = 20: the law's numbers hold from 800 to 1250 C \(Material/valid temperatures\)"),
+            ("faster than they hold", settings("Material/valid strain rates=0.001, 0.01"),
+             r"warning: Die upper/velocity: the billet is strained at [.0-9]+ /s, and the law's numbers hold from 0.001 to 0.01 /s"),
+            ("metal that cools until they do not hold", settings("Heat/heating=conduction", "Material/temperature=900", "Heat/transfer time=30",
+                                                                  "Material/valid temperatures=890, 1250"),
+             r"warning: the metal ends at [.0-9]+ to [.0-9]+ C, [.0-9]+ % of it where the law's numbers do not hold: from 890 to 1250 C"),
             ("die that nothing touches", settings("Dies/names=lower, upper, side", "Die side/point=50, 0, 0", "Die side/facing=-1, 0, 0"),
              r"warning: the stroke pressed no node against die side")):
         done = run(["case.prm", "--output", "told", "--overwrite"] + short + more, command="simulate")

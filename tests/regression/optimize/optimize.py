@@ -16,7 +16,7 @@ import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 from scene import SCENE, best_of, found_in, lines_of, optimize, rows_of  # noqa: E402
-from whole_runs import ENVIRONMENT, ROOT, changed, command, judge, main, prm, run, start, summary_of, text_of, write  # noqa: E402
+from whole_runs import ENVIRONMENT, ROOT, changed, command, history_of, judge, main, prm, run, start, summary_of, text_of, write  # noqa: E402
 
 
 def whole():
@@ -65,6 +65,18 @@ def begins_in_a_die():
     warnings = [line.removeprefix("  warning: ") for line in done.stdout.splitlines() if "mm inside it" in line]
     judge("it ends where the die stands in the billet", abs(best_of(found)[0]) == 0.3 and len(warnings) == 1, [best_of(found), done.stdout])
     judge("and says so", all(f"warning: the best design: {warning}\n" in printed for warning in warnings), printed)
+
+
+def ends_in_a_die():
+    """Metal that is inside a die where the best design ends: told, and where and how deep as `simulate' tells it of the last increment."""
+    found, printed = optimize("sunk", "Contact/largest depth=0", "Optimisation/iterations=2", "Optimisation/noise runs=0")
+    told = [warning for warning in found.get("warnings", []) if "inside die" in warning]
+    judge("depth is told", len(told) == 1 and f"the best design: {told[0]}" in printed, found.get("warnings"))
+    done = run("simulate", "sunk_by_hand", "Contact/largest depth=0", case="sunk/best.prm")
+    judge("that design", done.returncode == 0, done.stderr)
+    depth = float(history_of("sunk_by_hand")[-1]["depth"])
+    judge("the last increment's", abs(float(told[0].split("up to ")[1].split()[0]) / depth - 1) < 1e-2, [told, depth])
+    judge("no word where that depth may be", "warnings" not in optimize("may", "Optimisation/iterations=1", "Optimisation/noise runs=0")[0])
 
 
 def by_hand():
@@ -185,7 +197,7 @@ def die_free_form():
         del scene["Die upper"][setting]
     os.makedirs("elsewhere_folder", exist_ok=True)
     done = subprocess.run([*command("simulate", "die_elsewhere", case="../die/best.prm")], cwd="elsewhere_folder", env=ENVIRONMENT,
-                          capture_output=True, text=True, check=False)
+                          capture_output=True, text=True)
     value = summary_of("elsewhere_folder/die_elsewhere")["objectives"][0]["value"] if done.returncode == 0 else None
     judge("run from another folder", value == objective["best"], f"{value} {done.stderr}")
     written = changed(scene, {"Die upper": {"file": "die/designs/best_die_upper.stl", "point": "0, 0, 0"}, "Design": {"parameters": "material/K"}})
@@ -592,6 +604,7 @@ def refused():
              ["Design/parameters=dies/friction", "Optimisation/scattered=dies/friction", "Optimisation/scatter range=0.2, 0.6"],
              "none but the one that is scattered"),
             ("limits that exclude each other", ["Optimisation/at least=energy: 10", "Optimisation/at most=energy: 9"], "no value is both"),
+            ("a limit that nothing can keep", ["Optimisation/at most=energy: -3"], "no value of it is below 0"),
             ("an objective twice", ["Optimisation/objective=barrel, barrel"], "stands twice"),
             ("an objective from both sides, with scatter",
              ["Design/parameters=billet/control point 1 r, dies/friction", "Optimisation/scattered=dies/friction",
@@ -617,4 +630,4 @@ def refused():
     judge("resumed with another tolerance", "taken from the journal" in printed and found["simulations"] >= len(before.splitlines()) // 3)
 
 
-main({"case.prm": prm(SCENE)}, (whole, noise_at_the_end, begins_in_a_die, by_hand, killed, limited, infeasible, limits_that_do_not_press, beset, checked, free_form, die_free_form, bounded, related, held, recorded, failing, far_away, meshes_within_limits, resumed_through_meshes, gradient_on_a_new_mesh, free_form_far_away, from_elsewhere, identified, scattered, confirmed, corrected, on_two_ranks, reported, refused))
+main({"case.prm": prm(SCENE)}, (whole, noise_at_the_end, begins_in_a_die, ends_in_a_die, by_hand, killed, limited, infeasible, limits_that_do_not_press, beset, checked, free_form, die_free_form, bounded, related, held, recorded, failing, far_away, meshes_within_limits, resumed_through_meshes, gradient_on_a_new_mesh, free_form_far_away, from_elsewhere, identified, scattered, confirmed, corrected, on_two_ranks, reported, refused))
