@@ -34,6 +34,18 @@ namespace retroforge
       });
     }
 
+    /// Whether a die that moves in the first operation stands in another one, too, which would begin and end with it back.
+    bool moves_later(const Process<double> &process)
+    {
+      const auto &first = process.operations.front().dies;
+      return std::any_of(first.begin(), first.end(), [&](const unsigned int d) {
+        return process.dies[d].velocity.norm() > 0. &&
+               std::any_of(process.operations.begin() + 1, process.operations.end(), [&](const auto &later) {
+                 return later.has(d);
+               });
+      });
+    }
+
     /// How long before stroke 0 a die has left the metal that it stands in; infinite where it does not come out of it so.
     double seconds_to_leave(const Die              &die,
                             const DieState<double> &state,
@@ -72,7 +84,7 @@ namespace retroforge
         seconds = std::max(seconds, (1. + rounding) * before);
         remarks.emplace_back(d, "Die " + dies[d].name + ": " + standing_inside(overlap));
       }
-    if (remarks.empty())
+    if (remarks.empty() || moves_later(process))
       return start;
     const double stroke = value_of(operation.stroke);
     start.path          = process.speed(0) * seconds;

@@ -155,12 +155,15 @@ namespace retroforge
 
   Objectives Parameters::make_objectives(const std::vector<Die> &made_dies, const TetMesh &made_billet) const
   {
-    Objectives made;
+    Objectives                          made;
+    const std::vector<DieState<double>> states = initial_states();
+    const double time = press.motion().path(0., press.stroke) / states[leading_die()].velocity.norm();
     for (const ObjectiveParameters &objective : objectives.all)
       made.push_back(objective.make({made_dies,
-                                     initial_states(),
+                                     states,
                                      leading_die(),
                                      press.stroke,
+                                     time,
                                      material.metal(1.).initial_law().K,
                                      made_billet,
                                      edge_length(made_billet),

@@ -17,6 +17,15 @@ namespace retroforge
       return x;
     }
 
+    /// A coefficient of friction as dies have it: 0 is next to none instead. No friction is left out of all equations, and
+    /// of their derivatives; this is not felt in forces, and has its slope.
+    template <typename Number>
+    Number felt(const Number &friction)
+    {
+      constexpr double next_to_none = 1e-9;
+      return value_of(friction) == 0. ? Number(friction + next_to_none) : friction;
+    }
+
     std::vector<Dual> along(const std::vector<double> &mu, const unsigned int j)
     {
       std::vector<Dual> dual;
@@ -216,7 +225,7 @@ namespace retroforge
         case Kind::friction:
           for (unsigned int d = 0; d < dies_.size(); ++d)
             if (d == parameter.die || (parameter.die == invalid_index && dies_[d].friction > 0.))
-              process.dies[d].friction = mu[j];
+              process.dies[d].friction = felt(mu[j]);
           break;
         case Kind::shear_limit:
           process.dies[parameter.die].shear_limit = mu[j];
@@ -225,7 +234,7 @@ namespace retroforge
           process.dies[parameter.die].temperature = mu[j];
           break;
         case Kind::zone_friction:
-          process.dies[parameter.die].zones[parameter.number].friction = mu[j];
+          process.dies[parameter.die].zones[parameter.number].friction = felt(mu[j]);
           break;
         case Kind::zone_limit:
           process.dies[parameter.die].zones[parameter.number].shear_limit = mu[j];

@@ -3,6 +3,7 @@
 #include <deal.II/lac/solver_cg.h>
 
 #include <retroforge/heat/network_matrix.h>
+#include <retroforge/linear_algebra/direct_solver.h>
 
 namespace retroforge
 {
@@ -40,7 +41,18 @@ namespace retroforge
     dealii::Vector<double>                   x(start.begin(), start.end());
     dealii::SolverControl                    control(10000, tolerance * rhs.l2_norm());
     dealii::SolverCG<dealii::Vector<double>> cg(control);
-    cg.solve(*this, x, rhs, preconditioner_);
+    try
+    {
+      cg.solve(*this, x, rhs, preconditioner_);
+    }
+    catch (const dealii::SolverControl::NoConvergence &failure)
+    {
+      throw NoLinearSolution("Heat",
+                             "conduction was not solved in " + std::to_string(failure.last_step) +
+                               " iterations",
+                             "capacities and conductances of the metal's cells are positive numbers",
+                             "look at Heat/heat capacity and conductivity, or use a better mesh");
+    }
     return std::vector<double>(x.begin(), x.end());
   }
 } // namespace retroforge

@@ -102,6 +102,12 @@ namespace retroforge
 
   namespace
   {
+    template <typename Number>
+    bool is_in_press(const EquilibriumView<Number> &view, const unsigned int die)
+    {
+      return view.stage.physics.dies[die].in_press != 0;
+    }
+
     /// The speed is no sum: one rank has it.
     template <typename Number>
     bool has_speed(const EquilibriumView<Number> &view)
@@ -114,10 +120,21 @@ namespace retroforge
   std::vector<Number> Effort::terms(const EquilibriumView<Number> &view) const
   {
     std::vector<Number> terms = power_terms(view);
-    const Number        v     = speed(view, die_);
+    if (!is_in_press(view, die_))
+    {
+      terms.insert(terms.end(), 2, Number(0.));
+      return terms;
+    }
+    const Number v = speed(view, die_);
     terms.push_back(has_speed(view) ? v : Number(0.));
     terms.push_back(by_ == By::force ? power_of_die(view, die_) : Number(0.));
     return terms;
+  }
+
+  template <typename Number>
+  Number Effort::length(const PathRow<Number> &row, const PathWindow &window) const
+  {
+    return value_of(row.integrals[row.integrals.size() - 2]) > 0. ? window.overlap(row) : Number(0.);
   }
 
   void Effort::reverse_terms(const EquilibriumView<double> &view,
@@ -126,6 +143,8 @@ namespace retroforge
   {
     const std::size_t n = n_power_terms(view.stage.scene.dies.size());
     AssertDimension(weights.size(), n + 2);
+    if (!is_in_press(view, die_))
+      return; // no window has this increment
     reverse_power_terms(view, weights, bar);
     if (has_speed(view))
       bar.physics.dies[die_].velocity +=
@@ -164,7 +183,9 @@ namespace retroforge
   template <typename Number>
   std::vector<Number> MeanEffort::terms(const PathRow<Number> &row, double) const
   {
-    const Number length = window_.overlap(row);
+    const Number length = effort_.length(row, window_);
+    if (value_of(length) == 0.)
+      return {Number(0.), Number(0.)};
     return {Number(effort_.force(row.integrals) * length), length};
   }
 
@@ -195,7 +216,7 @@ namespace retroforge
     bool   found   = false;
     double largest = 0.;
     for (const PathRow<double> &row : rows)
-      if (window_.overlap(row) > 0.)
+      if (effort_.length(row, window_) > 0.)
       {
         const double force = effort_.force(row.integrals);
         largest            = found ? std::max(largest, force) : force;
@@ -208,15 +229,13 @@ namespace retroforge
   ForcePath<Number> MaximumEffort::path_of(const PathRows<Number> &rows) const
   {
     ForcePath<Number> path{{}, {}, {}, {}, 0.};
-    double            end = 0., offset = 0., whole = 0.;
+    double            whole = 0.;
     for (const PathRow<Number> &row : rows)
       whole += row.length;
     for (const PathRow<Number> &row : rows)
     {
-      if (row.place < end) // another operation, which nothing is fitted across to
-        offset += 3. * whole;
-      end                 = row.place;
-      const Number length = window_.overlap(row);
+      const double offset = 3. * whole * row.operation; // nothing is fitted across to another one
+      const Number length = effort_.length(row, window_);
       if (value_of(length) == 0.)
         continue;
       path.force.push_back(effort_.force(row.integrals));
@@ -243,13 +262,13 @@ namespace retroforge
     std::size_t             i = 0; // of those in the window
     for (const PathRow<double> &row : rows)
     {
-      const bool is_inside = window_.overlap(row) > 0.;
+      const bool is_inside = effort_.length(row, window_) > 0.;
       rows_bar.push_back(derivatives_of(
         [&](const PathRow<Dual> &at) {
-          return is_inside
-                   ? Dual(bar.force[i] * effort_.force(at.integrals) + bar.length[i] * window_.overlap(at) +
-                          bar.place[i] * (at.stroke + 0.5 * at.step))
-                   : Dual(0.);
+          return is_inside ? Dual(bar.force[i] * effort_.force(at.integrals) +
+                                  bar.length[i] * effort_.length(at, window_) +
+                                  bar.place[i] * (at.stroke + 0.5 * at.step))
+                           : Dual(0.);
         },
         row));
       i += is_inside;
@@ -275,6 +294,7 @@ namespace retroforge
   template Number              PathWindow::time_inside(const PathRow<Number> &) const;               \
   template std::vector<Number> Effort::terms(const EquilibriumView<Number> &) const;                 \
   template Number              Effort::force(const std::vector<Number> &) const;                     \
+  template Number              Effort::length(const PathRow<Number> &, const PathWindow &) const;    \
   template std::vector<Number> MeanEffort::compute_integrals(const EquilibriumView<Number> &) const; \
   template std::vector<Number> MeanEffort::terms(const PathRow<Number> &, double) const;             \
   template Number              MeanEffort::combine(const std::vector<Number> &, double) const;       \

@@ -127,7 +127,8 @@ namespace retroforge
       double       work = 0.;
       for (std::size_t s = 0; s < bar.size(); ++s)
         work += bar[s] * row.integrals[s];
-      const PathRow<double> without{{}, row.dt, row.time, row.stroke, row.step, row.place, row.length};
+      const PathRow<double> without{
+        {}, row.dt, row.time, row.stroke, row.step, row.place, row.length, row.operation};
       rows_bar.push_back(derivatives_of(
         [&](const PathRow<Dual> &at) { return Dual(work * window_.time_inside(at)); }, without));
       rows_bar.back().integrals = bar;

@@ -92,8 +92,7 @@ namespace retroforge
     if (end > 0.)
       window.end = end;
     window.check(where);
-    const double speed = context.states[context.leading_die].velocity.norm();
-    const double last  = window.over == PathWindow::Over::time ? context.stroke / speed : context.stroke;
+    const double last = window.over == PathWindow::Over::time ? context.time : context.stroke;
     if (window.begin >= last)
       throw Error(where + "/window begin",
                   "is " + as_text(window.begin) + ", but the run ends at " + as_text(last),

@@ -6,8 +6,14 @@ namespace retroforge
 {
   PathRow<double> values_of(const PathRow<Dual> &row)
   {
-    PathRow<double> values{
-      {}, row.dt.val(), row.time.val(), row.stroke.val(), row.step.val(), row.place, row.length};
+    PathRow<double> values{{},
+                           row.dt.val(),
+                           row.time.val(),
+                           row.stroke.val(),
+                           row.step.val(),
+                           row.place,
+                           row.length,
+                           row.operation};
     for (const Dual &integral : row.integrals)
       values.integrals.push_back(integral.val());
     return values;
@@ -29,6 +35,7 @@ namespace retroforge
             Dual(row.stroke),
             Dual(row.step),
             row.place,
-            row.length};
+            row.length,
+            row.operation};
   }
 } // namespace retroforge

@@ -265,6 +265,13 @@ namespace retroforge
     return sum;
   }
 
+  std::optional<std::uint64_t> RecordWriter::finished_bytes(const std::string &directory)
+  {
+    if (directory.empty() || !is_file(finished_file(directory)))
+      return {};
+    return fs::file_size(finished_file(directory));
+  }
+
   RecordReader::RecordReader(const std::string &path)
   {
     if (is_file(path) || is_file(finished_file(path)))

@@ -74,8 +74,8 @@ namespace retroforge
 
   std::optional<std::uint64_t> Recording::bytes() const
   {
-    if (!writer_)
-      return {};
-    return writer_->bytes();
+    if (writer_)
+      return writer_->bytes();
+    return RecordWriter::finished_bytes(directory_);
   }
 } // namespace retroforge

@@ -102,7 +102,6 @@ namespace retroforge
       report.n_nodes_kept =
         mesh.n_nodes() - std::count(result.old_node.begin(), result.old_node.end(), invalid_index);
       report.quality_after = worst.quality;
-      report.angle_after   = worst.angle;
     }
   } // namespace
 

@@ -205,9 +205,18 @@ namespace retroforge
 
   std::vector<FollowingRule> ForwardRun::following_rules() const
   {
-    if (!follows_trend() || problem_.parameters.remeshing.when != RemesherParameters::When::quality)
+    if (!follows_trend())
       return {};
-    return retroforge::following_rules(increments_, state_.remeshed);
+    const auto decided_by_quality = [this](const unsigned int increment) {
+      const auto later = std::find_if(problem_.segments.begin() + 1,
+                                      problem_.segments.end(),
+                                      [&](const NumericsSegment &of) { return of.input.first > increment; });
+      return std::prev(later)->parameters.remeshing.when == RemesherParameters::When::quality;
+    };
+    std::vector<unsigned int> moving;
+    std::copy_if(
+      state_.remeshed.begin(), state_.remeshed.end(), std::back_inserter(moving), decided_by_quality);
+    return retroforge::following_rules(increments_, moving);
   }
 
   bool ForwardRun::is_left() const

@@ -146,6 +146,40 @@ namespace retroforge
   template struct Process<double>;
   template struct Process<Dual>;
 
+  namespace
+  {
+    /// Adds the derivatives of  time_bar * process.time(stroke, operation).
+    void reverse_time(const Process<double> &process,
+                      const double           stroke,
+                      const unsigned int     operation,
+                      const double           time_bar,
+                      Process<double>       &bar)
+    {
+      const Operation<double> &of = process.operations[operation];
+      const double speed = process.speed(operation), per_path_bar = time_bar * of.motion.path(0., stroke);
+      bar.operations[operation].path_scale += per_path_bar / speed;
+      bar.dies[of.leading_die].velocity -=
+        per_path_bar * of.path_scale / std::pow(speed, 3) * process.leading_velocity(operation);
+      reverse_path(of.motion, 0., stroke, time_bar * of.path_scale / speed, bar.operations[operation].motion);
+    }
+
+    /// The same of whole_time().
+    void reverse_whole_time(const Process<double> &process,
+                            const double           stroke,
+                            const unsigned int     operation,
+                            const double           time_bar,
+                            Process<double>       &bar)
+    {
+      reverse_time(process, stroke, operation, time_bar, bar);
+      for (unsigned int o = 0; o < operation; ++o)
+      {
+        reverse_time(process, process.operations[o].stroke, o, time_bar, bar);
+        bar.operations[o + 1].waiting.transfer += time_bar;
+        bar.operations[o + 1].waiting.dwell += time_bar;
+      }
+    }
+  } // namespace
+
   void reverse_over(const Process<double> &process,
                     const StrokeStep      &at,
                     const double           approach,
@@ -164,7 +198,7 @@ namespace retroforge
     const double speed = process.speed(at.operation), dt_bar = bar.dt + approach * bar.tau;
     const double path = operation.motion.path(at.stroke, at.step), faster = pace(operation, at);
     // In scale/speed, by which all times are made of paths, and in the pace.
-    double per_path_bar = dt_bar * path + bar.time * operation.motion.path(0., at.stroke), pace_bar = 0.;
+    double per_path_bar = dt_bar * path, pace_bar = 0.;
     auto   dies_bar = bar.dies;
     for (std::size_t d = 0; d < dies_bar.size(); ++d)
     {
@@ -183,7 +217,8 @@ namespace retroforge
     const double per_speed = operation.path_scale / speed;
     const double path_bar  = dt_bar * per_speed - (at.step > 0. ? pace_bar * at.step / (path * path) : 0.);
     reverse_path(operation.motion, at.stroke, at.step, path_bar, operation_bar.motion);
-    reverse_path(operation.motion, 0., at.stroke, bar.time * per_speed, operation_bar.motion);
+    if (bar.time != 0.)
+      reverse_whole_time(process, at.stroke, at.operation, bar.time, process_bar);
   }
 
   Process<double> no_process_derivatives(const Process<double> &process, const std::vector<Die> &dies)

@@ -22,7 +22,12 @@ namespace retroforge
   {
     const Number    dt = process.duration(place(record));
     PathRow<Number> row =
-      recorded_row<Number>({}, dt, process.time(record.stroke, record.operation), record.stroke, record.step);
+      recorded_row<Number>({},
+                           dt,
+                           process.whole_time(record.stroke, record.operation),
+                           value_of(process.whole_stroke(record.stroke, record.operation)),
+                           record.step,
+                           record.operation);
     row.stroke += ends.start;
     row.step += ends.end - ends.start;
     row.time += dt * ends.start / record.step;

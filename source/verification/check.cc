@@ -60,7 +60,8 @@ namespace retroforge
       }
       catch (const Error &error)
       {
-        std::cerr << "  free difference of step " << h << ": " << error.what() << std::endl;
+        if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+          std::cerr << "  free difference of step " << h << ": " << error.what() << std::endl;
       }
       return differences;
     }
@@ -159,15 +160,6 @@ namespace retroforge
       best                = std::min(
         best, error((ratio2 * steps[i].replayed_central - steps[i - 1].replayed_central) / (ratio2 - 1.)));
     }
-    return best;
-  }
-
-  double CheckRow::best_free_error() const
-  {
-    double best = std::numeric_limits<double>::max();
-    for (const auto &step : steps)
-      if (!std::isnan(step.free_central))
-        best = std::min(best, relative(step.free_central, adjoint));
     return best;
   }
 

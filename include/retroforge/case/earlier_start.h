@@ -39,6 +39,7 @@ namespace retroforge
   /// Returns that of a scene. The press does not begin earlier
   /// - where no face of the billet stands in a die by more than touches;
   /// - where a die at rest stands in the billet, which pushes it out in any case;
+  /// - where one of the dies that move stands in a later operation, too, whose place at the start is the same number;
   /// - where a die stands in it by more than a billet may (scene_checks.h), or would have to go back by ten times
   ///   that, as along the wall of a bore.
   /// @param X  positions of the billet's nodes

@@ -61,11 +61,9 @@ namespace retroforge
     /// Tells whether friction is proportional to the slip.
     virtual bool is_linear(const MaterialLaw<double> &) const { return false; }
 
-    /// Tells whether friction is the gradient in V of a potential. Where it follows the pressure, it is not.
+    /// Tells whether friction is the gradient in V of a potential, and its tangent symmetric. Where it follows the pressure,
+    /// it is not.
     virtual bool has_potential() const = 0;
-
-    /// Tells whether the tangent is symmetric: that of a smooth force is, if and only if it has a potential.
-    bool is_symmetric() const { return has_potential(); }
 
     /// Returns f [N s/mm], which is proportional to the area.
     virtual double factor(const SlidingPoint<double> &point) const = 0;

@@ -33,7 +33,6 @@ namespace retroforge
     /// Largest part of a stress in the table by which the fitted power law misses it.
     double misfit() const { return misfit_; }
 
-    double least_strain() const { return strain_.front(); }
     double largest_strain() const { return strain_.back(); }
     double least_temperature() const { return temperature_.front(); }
     double largest_temperature() const { return temperature_.back(); }

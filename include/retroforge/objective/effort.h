@@ -12,7 +12,8 @@
 /// The force that the press must bring up, averaged over a window of the run or its maximum there.
 namespace retroforge
 {
-  /// A part of the run, by time or by stroke. An increment counts with that part of it that lies inside.
+  /// A part of the run, by time or by stroke, from the start of the first operation's. An increment counts with that part
+  /// of it that lies inside.
   /// Times follow the die's speed, strokes the state where ends of increments do (steps/moved_ends.h), and so does
   /// an increment's part of a window, with a kink where an increment begins or ends on the window's edge.
   struct PathWindow
@@ -53,7 +54,7 @@ namespace retroforge
     explicit Effort(const unsigned int die, const By by = By::power) : die_(die), by_(by) {}
 
     /// Returns what a stage contributes to what the force follows from, this rank's part: the terms of the
-    /// power, the die's speed, and the power of the die where it is asked for.
+    /// power, the die's speed, 0 where it is not in the press, and the power of the die where it is asked for.
     template <typename Number>
     std::vector<Number> terms(const EquilibriumView<Number> &view) const;
 
@@ -65,6 +66,10 @@ namespace retroforge
     /// Returns the force of an increment with these terms [N].
     template <typename Number>
     Number force(const std::vector<Number> &terms) const;
+
+    /// Returns an increment's part of a window, of those in which the die stands in the press: 0 in other operations.
+    template <typename Number>
+    Number length(const PathRow<Number> &row, const PathWindow &window) const;
 
   private:
     unsigned int die_;

@@ -14,6 +14,7 @@ namespace retroforge
     const std::vector<DieState<double>> &states;      ///< at the start
     unsigned int                         leading_die; ///< taken where no die is named
     double                               stroke;      ///< [mm]
+    double                               time;        ///< that it takes [s]
     double                               consistency; ///< K, a stress of the size to expect [MPa]
     const TetMesh                       &billet;
     double                               element_size; ///< [mm]

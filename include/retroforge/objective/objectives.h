@@ -25,9 +25,9 @@ namespace retroforge
     double                                weight  = 1.; ///< in the combination
     SymmetryScaling                       scaling = SymmetryScaling::none;
     unsigned int                          die     = invalid_index; ///< the die of a scaling `force`
-    double                                least   = 0.; ///< no value lies below, in the objective's unit
-    std::unique_ptr<const PathObjective>  path;         ///< null for an objective of the end
-    std::unique_ptr<const FinalObjective> at_end;       ///< null for an objective of the path
+    std::unique_ptr<const PathObjective>  path;                    ///< null for an objective of the end
+    std::unique_ptr<const FinalObjective> at_end;                  ///< null for an objective of the path
+    double                                least = 0.;              ///< no value lies below, in the unit
 
     std::string unit() const { return path ? path->unit() : at_end->unit(); }
   };

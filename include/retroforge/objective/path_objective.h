@@ -27,27 +27,30 @@ namespace retroforge
   {
     std::vector<Number> integrals; ///< completed over ranks
     Number              dt;        ///< [s]
-    Number              time;      ///< at the increment's start, stroke / speed [s]
-    Number              stroke;    ///< at the increment's start [mm]
+    Number              time;      ///< at the increment's start, from that of the first stroke [s]
+    Number              stroke;    ///< at the increment's start, those of operations before included [mm]
     Number              step;      ///< [mm]
     /// The middle of the increment and its length in the recorded run [mm], fixed by decision: stroke and step are
     /// others where ends of increments follow the state (steps/moved_ends.h).
-    double place, length;
+    double       place, length;
+    unsigned int operation = 0;
   };
 
   template <typename Number>
   using PathRows = std::vector<PathRow<Number>>;
 
   /// Returns that of an increment as it was recorded.
-  /// @param stroke  at its start [mm]
+  /// @param time, stroke  at its start, from that of the run [s, mm]
   template <typename Number>
   PathRow<Number> recorded_row(std::vector<Number> integrals,
                                const Number       &dt,
                                const Number       &time,
                                const double        stroke,
-                               const double        step)
+                               const double        step,
+                               const unsigned int  operation = 0)
   {
-    return {std::move(integrals), dt, time, Number(stroke), Number(step), stroke + 0.5 * step, step};
+    return {
+      std::move(integrals), dt, time, Number(stroke), Number(step), stroke + 0.5 * step, step, operation};
   }
 
   /// Values at places, of which an objective makes its own.
@@ -129,7 +132,8 @@ namespace retroforge
                         derivative(at.stroke),
                         derivative(at.step),
                         row.place,
-                        row.length};
+                        row.length,
+                        row.operation};
     for (Dual &integral : at.integrals)
       bar.integrals.push_back(derivative(integral));
     return bar;

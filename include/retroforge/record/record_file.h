@@ -6,6 +6,7 @@
 #include <retroforge/record/record_format.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 /// @file
@@ -59,6 +60,9 @@ namespace retroforge
 
     /// Size of the record on disk.
     std::uint64_t bytes() const;
+
+    /// The same of a finished record, whose writer is gone; none where there is no such.
+    static std::optional<std::uint64_t> finished_bytes(const std::string &directory);
 
   private:
     RecordWriter(const std::string &directory, const RecordShape &shape, unsigned int n_increments);

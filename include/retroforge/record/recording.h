@@ -43,7 +43,7 @@ namespace retroforge
     /// The increments, from memory or, one at a time, from the disk. Refers to this object.
     std::function<const IncrementRecord &(unsigned int)> access() const;
 
-    /// Size on the disk, of what this run wrote.
+    /// Size on the disk, of what this run wrote, or of the finished record that it was restored from.
     std::optional<std::uint64_t> bytes() const;
 
   private:

@@ -28,7 +28,6 @@ namespace retroforge
     double quality_before = 0; ///< smallest, see tet_quality()
     double quality_after  = 0;
     double angle_before   = 0; ///< smallest dihedral angle, degrees
-    double angle_after    = 0;
 
     double volume_before      = 0;
     double volume_uncorrected = 0;

@@ -112,7 +112,7 @@ namespace retroforge
   /// @throws Error  for times that are not, and for a die to wait on that does not stand in the operation
   void check_waiting(const Process<double> &process);
 
-  /// Pull-back of over(), dt = duration(), tau = approach dt, and the time at the start: adds to process_bar.
+  /// Pull-back of over(), dt = duration(), tau = approach dt, and whole_time() at the start: adds to process_bar.
   void reverse_over(const Process<double> &process,
                     const StrokeStep      &at,
                     double                 approach,

@@ -51,7 +51,6 @@ namespace retroforge
     /// without the error in h^2: where the derivative nearly cancels, no step is small enough for that and
     /// large enough for rounding.
     double best_replayed_error() const;
-    double best_free_error() const;
     /// What the differences that decide everything anew, and those that replay, have in common; jumps over the
     /// value of the objective. Nothing is known of a derivative that is zero.
     DifferenceFit free_fit() const;

@@ -111,6 +111,16 @@ def differences_are_those_of_check(case):
         judge(f"{name}: free difference", error < 1e-9, f"{error:.1e}")
 
 
+def without_friction():
+    """At a friction of 0 the slope by it is that of the side there is."""
+    none = summary("gradient", "cylinder.prm", "none", ("dies/friction", 0.0))
+    slope = [p["gradient"]["energy"] for p in none["parameters"] if p["name"] == "dies/friction"][0]
+    value = none["objectives"][0]["value"]
+    secants = [(energy("simulate", "cylinder.prm", "little", ("dies/friction", h)) - value) / h for h in (1e-3, 2e-3)]
+    there = 2 * secants[0] - secants[1]
+    judge("slope at no friction", abs(slope / there - 1) < 1e-3, [slope, secants])
+
+
 def die_follows_billet():
     """A billet 1 mm higher, under a die that starts 1 mm higher and ends where it did, is one pressed 1 mm farther."""
     higher, farther = ("billet/height", 16.0), ("Die upper/point=0, 0, 16", "Press/stroke=4")
@@ -191,5 +201,5 @@ def differences():
 
 
 main({"cylinder.prm": prm(CYLINDER), "followed.prm": prm(FOLLOWED), "bell.prm": prm(BELL), "dome.prm": prm(DOME), "ring.prm": prm(RING)},
-     (nominal_is_nominal, contact_follows_the_design, differences, die_follows_billet, begins_from_outside, elements_keep_their_proportion, another_design_is_refused,
+     (nominal_is_nominal, contact_follows_the_design, differences, without_friction, die_follows_billet, begins_from_outside, elements_keep_their_proportion, another_design_is_refused,
       mistakes))

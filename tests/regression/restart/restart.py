@@ -132,6 +132,7 @@ def finished():
     done.append(run("gradient", "run", "--resume"))
     judge("finished: other settings change nothing", all(d.returncode == 0 for d in done) and results("run") == once and
           "do not change it" in done[1].stdout, done[1].stdout + done[1].stderr)
+    judge("size of its record", summary_of("run")["record_bytes"] == os.path.getsize("run/record.h5"), summary_of("run")["record_bytes"])
 
 
 def longer_stroke():

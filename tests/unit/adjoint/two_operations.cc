@@ -7,10 +7,16 @@
 //   process go on.
 // - A run that is restored from the record in the second operation is the same to the bit, and goes on as one
 //   that was not.
-// - The derivative of the energy by the positions of the nodes, the speeds and the offsets of both dies and
-//   by K: by the adjoint and by the direct method, to 1e-10; differences of replays, to 1e-6.
+// - Efforts of the dies are those of their operations: times the strokes they are the energy, to 1e-12; a window of stroke
+//   counts from the start of the first one, and has none of a die that stands in the other one.
+// - The derivatives of the energy, of both mean efforts, and of the largest one of the second die, of a window, by the
+//   positions of the nodes, the speeds and the offsets of both dies and by K: by the adjoint and by the direct method, to
+//   1e-10; differences of replays, to 1e-6.
 
-#include "directions.h"
+#include "ways.h"
+
+#include <retroforge/core/error.h>
+#include <retroforge/objective/effort.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -66,85 +72,69 @@ namespace
               << ", nodes within 1e-8 mm: " << yes(apart < 1e-8) << "\n";
   }
 
-  /// A number of the process by which derivatives are taken, or the nodes along a direction.
-  struct Way
+  /// Of both dies over the whole run, and of the second one over a part of its stroke.
+  void add_efforts(Objectives &objectives)
   {
-    std::string  name;
-    unsigned int die    = invalid_index;
-    bool         offset = false;
-
-    template <typename Number>
-    void move(Process<Number> &process, const Number &t) const
-    {
-      if (die == invalid_index)
-        process.material.law.K += t;
-      else if (offset)
-        process.dies[die].displacement[2] += t;
-      else
-        process.dies[die].velocity[2] += t;
-    }
-
-    double of(const Process<double> &bar) const
-    {
-      return die == invalid_index ? bar.material.law.K
-             : offset             ? bar.dies[die].displacement[2]
-                                  : bar.dies[die].velocity[2];
-    }
-  };
-
-  double best_difference(const std::function<double(double)> &energy, const double adjoint, const double size)
-  {
-    double best = 1e300;
-    for (const double h : {1e-3, 1e-4, 1e-5})
-      best =
-        std::min(best, relative_error((energy(h * size) - energy(-h * size)) / (2. * h * size), adjoint));
-    return best;
+    const auto add =
+      [&](const std::string &name, const unsigned int die, std::unique_ptr<const PathObjective> path) {
+        objectives.push_back({name, 1., SymmetryScaling::force, die, std::move(path), nullptr});
+      };
+    const PathWindow end{PathWindow::Over::stroke, 3.4, 4.9}, all, last{PathWindow::Over::stroke, 4.5};
+    add("effort of the first die", 1, std::make_unique<MeanEffort>(Effort(1), all));
+    add("effort of the second die", 2, std::make_unique<MeanEffort>(Effort(2), all));
+    add("largest", 2, std::make_unique<MaximumEffort>(Effort(2, Effort::By::force), end, SmoothMaximum{}));
+    add("at the end", 2, std::make_unique<MeanEffort>(Effort(2), last));
   }
 
-  void check_derivatives(const ForwardRun &run)
+  void check_efforts(RecordedRun &run)
   {
-    const AdjointResult bar  = run.sweep(each(run.objectives())).gradients[0];
-    const auto          tell = [](const std::string &name, const double direct, const double differences) {
-      std::cout << "  by " << name << ": direct method within 1e-10: " << yes(direct < 1e-10)
-                << ", differences within 1e-6: " << yes(differences < 1e-6) << "\n";
+    const std::vector<double> values = run.values();
+    std::cout << "efforts are those of their operations: "
+              << yes(relative_error(3. * values[1] + 2. * values[2], run.state().energy.total()) < 1e-12)
+              << ", the largest one within 10 % of that at the end: "
+              << yes(std::abs(values[3] / values[4] - 1.) < 0.1) << "\n";
+    const auto refused = [&](const PathWindow &window) {
+      Objectives objectives;
+      objectives.push_back(
+        {"none", 1., SymmetryScaling::force, 1, std::make_unique<MeanEffort>(Effort(1), window), nullptr});
+      ForgingProblem problem = problem_of(run.parameters, 3., 2.);
+      problem.objectives     = std::move(objectives);
+      ForwardRun other(std::move(problem), ForwardRun::Keep::nothing, timings_of_runs());
+      try
+      {
+        other.forge();
+        other.values();
+        return false;
+      }
+      catch (const Error &)
+      {
+        return true;
+      }
     };
-    NodalVectors<Dual> X;
-    convert(run.X_0(), X);
-    for (const Way &way : {Way{"K"},
-                           Way{"the speed of the first die", 1},
-                           Way{"the speed of the second die", 2},
-                           Way{"the offset of the first die", 1, true},
-                           Way{"the offset of the second die", 2, true}})
+    std::cout << "a window in which the die does not stand: refused: "
+              << yes(refused({PathWindow::Over::stroke, 3.1, 5.})) << "\n";
+  }
+
+  void check_derivatives(const RecordedRun &run)
+  {
+    const auto                 sweep = run.sweep(each(run.objectives()));
+    const NodalVectors<double> still(run.scene.mesh.n_nodes());
+    std::vector<Way>           ways = {Way{{"the nodes", random_vectors(still.size()), 0., 0., {}}},
+                                       Way{{"the speed of the first die", still, 1., 0., {}}},
+                                       Way{{"the offset of the first die", still, 0., 1., {}}}};
+    const auto add = [&](const std::string &of, const std::function<void(Process<double> &)> &dots) {
+      ways.push_back({{of, still, 0., 0., {}}, dots});
+    };
+    add("K", [](Process<double> &dot) { dot.material.law.K = 1.; });
+    add("the speed of the second die", [](Process<double> &dot) { dot.dies[2].velocity[2] = -80.; });
+    add("the offset of the second die", [](Process<double> &dot) { dot.dies[2].displacement[2] = 1.; });
+    for (std::size_t o = 0; o < sweep.gradients.size(); ++o)
     {
-      Dual t(0.);
-      t.fastAccessDx(0)  = 1.;
-      auto         along = converted<Dual>(run.process());
-      const double found = way.of(bar.process);
-      way.move(along, t);
-      tell(way.name,
-           relative_error(run.tangent(along, X)[0].dx(0), found),
-           best_difference(
-             [&](const double change) {
-               Process<double> process = run.process();
-               way.move(process, change);
-               return run.replay(process, run.X_0()).energy.total();
-             },
-             found,
-             way.die == invalid_index || way.offset ? 1. : 100.));
+      WorstErrors worst;
+      for (const Way &way : ways)
+        worst.take(slope_errors(run, way, sweep.gradients, 1e-3)[o], way.direction.name);
+      worst.print(run.objectives()[o].name + ": ");
     }
-    const NodalVectors<double> X_dot = random_vectors(run.X_0().size());
-    double                     found = 0.;
-    for (std::size_t k = 0; k < X_dot.size(); ++k)
-      found += bar.X_0[k] * X_dot[k];
-    tell("the nodes",
-         relative_error(
-           run.tangent(converted<Dual>(run.process()), moved<Dual>(run.X_0(), X_dot, 0.))[0].dx(0), found),
-         best_difference(
-           [&](const double t) {
-             return run.replay(run.process(), moved<double>(run.X_0(), X_dot, t)).energy.total();
-           },
-           found,
-           1.));
   }
 
   /// Restored after some increments of the second operation.
@@ -167,20 +157,22 @@ int main(int argc, char **argv)
   check_halves();
   const Parameters p =
     three_dies(Vec3({0., 0., 30.}), Vec3({0.029809, -0.049900, -0.998309}), Vec3({0, 0, -80.}));
-  ForwardRun run(problem_of(p, 3., 2.), ForwardRun::Keep::increments, timings_of_runs());
-  double     stroke = 0., time = 0.;
-  bool       goes_on = true;
-  run.forge([&](const IncrementEvent &event) {
-    const double now = run.process().whole_stroke(event.state.stroke, event.state.operation);
-    goes_on          = goes_on && std::abs(now - stroke - event.record.step) < 1e-12 && event.time > time;
+  ForgingProblem problem = problem_of(p, 3., 2.);
+  add_efforts(problem.objectives);
+  RecordedRun run(std::move(problem));
+  double      stroke  = 0.;
+  bool        goes_on = true;
+  for (const IncrementRecord &record : run.records)
+  {
+    const double now = run.process().whole_stroke(record.stroke + record.step, record.operation);
+    goes_on          = goes_on && std::abs(now - stroke - record.step) < 1e-12;
     stroke           = now;
-    time             = event.time;
-    std::cout << "operation " << event.record.operation << " from " << event.record.stroke << " by "
-              << event.record.step << " mm\n";
-  });
-  run.values();
-  std::cout << "strokes and times go on: " << yes(goes_on) << ", to " << stroke
+    std::cout << "operation " << record.operation << " from " << record.stroke << " by " << record.step
+              << " mm\n";
+  }
+  std::cout << "strokes go on: " << yes(goes_on) << ", to " << stroke
             << " mm, none left: " << yes(!run.is_left()) << "\n";
   check_restored(run, p, run.state().increments - 1);
+  check_efforts(run);
   check_derivatives(run);
 }

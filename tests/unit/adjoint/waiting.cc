@@ -8,7 +8,7 @@
 // - Cooling in air of metal that conducts well, before the second stroke, is  T_a + (T - T_a) exp(-h A t/(rho c V))  on the
 //   mean; the surface is colder than that by h L/(3 k) = 1e-3 of T - T_a, L half the edge of the block.
 // - Times go on over the wait; those on dies leave out that in the air; the run without a wait ends hotter.
-// - The derivatives of the energy and of the least temperature by both transfers and dwells, films, temperatures of metal and
+// - The derivatives of the energy, of the least temperature and of a mean effort over a time of the second stroke by both transfers and dwells, films, temperatures of metal and
 //   dies, speed and offset of the second die and the nodes: by the adjoint and by the direct method to 1e-10, differences of
 //   replays to 1e-6, order 2; on one mesh, and where the mesh is made anew; on two ranks a few of
 //   them, with new meshes.
@@ -18,6 +18,7 @@
 // - Times that are none, a die to wait on that is not there, a dwell without a film: one message each.
 
 #include <retroforge/core/error.h>
+#include <retroforge/objective/effort.h>
 #include <retroforge/objective/temperatures.h>
 
 #include <deal.II/base/mpi.h>
@@ -137,7 +138,17 @@ namespace
 
   void check_derivatives(const std::string &name, const Parameters &p, const Meshes meshes)
   {
-    RecordedRun                run(problem_of(p, meshes));
+    ForgingProblem problem = problem_of(p, meshes);
+    // The second stroke goes from 0.63 to 0.655 s: parts of increments at both ends.
+    problem.objectives.push_back(
+      {"force of the second die in a time",
+       1.,
+       SymmetryScaling::force,
+       2,
+       std::make_unique<MeanEffort>(Effort(2, Effort::By::force),
+                                    PathWindow{PathWindow::Over::time, 0.634, 0.651}),
+       nullptr});
+    RecordedRun                run(std::move(problem));
     const auto                 sweep = run.sweep(each(run.objectives()));
     const NodalVectors<double> still(run.scene.mesh.n_nodes());
     std::vector<Way>           ways = {Way{{"random X_0", random_vectors(still.size()), 0., 0., {}}},

@@ -157,7 +157,7 @@ namespace
     const Process<Dual> moved = with_moved_ends(along(process, direction.process), at, along(direction.ends));
     const Physics<Dual> physics = moved.over(at);
     double              forward = (bar.dt + approach * bar.tau) * moved.duration(at).dx(0) +
-                     bar.time * moved.time(at.stroke, at.operation).dx(0);
+                     bar.time * moved.whole_time(at.stroke, at.operation).dx(0);
     for_each_number([&](const Dual &x, const double &x_bar) { forward += x_bar * x.dx(0); },
                     physics,
                     static_cast<const Physics<double> &>(bar));

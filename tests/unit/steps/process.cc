@@ -46,7 +46,7 @@ namespace
     process.dies[0].displacement = Vec3({0., 0., 1.});
     process.dies[1].velocity     = Vec3({0., 0., -100.});
     process.dies[2].velocity     = Vec3({3., 0., -40.});
-    process.operations           = {{{0, 1}, 1, 1.1, {}}, {{0, 2}, 2, 0.9, {{50., 30.}, crank}}};
+    process.operations           = {{{0, 1}, 1, 1.1, {}, 8.}, {{0, 2}, 2, 0.9, {{50., 30.}, crank}}};
     return process;
   }
 
@@ -68,8 +68,8 @@ namespace
     {
       const Physics<Dual> physics = process.over(at);
       const Dual          dt      = process.duration(at);
-      double              sum =
-        (bar.dt + approach * bar.tau) * dt.dx(0) + bar.time * process.time(at.stroke, at.operation).dx(0);
+      double              sum     = (bar.dt + approach * bar.tau) * dt.dx(0) +
+                   bar.time * process.whole_time(at.stroke, at.operation).dx(0);
       for_each_number([&](const Dual &x, const double &x_bar) { sum += x_bar * x.dx(0); },
                       physics,
                       static_cast<const Physics<double> &>(bar));
