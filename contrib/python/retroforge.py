@@ -20,6 +20,7 @@ import numbers
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -30,11 +31,20 @@ import numpy as np
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 from retroforge_report import vtu  # noqa: E402
 
-PROGRAM = os.environ.get("RETROFORGE", pathlib.Path(__file__).resolve().parents[2] / "build" / "retroforge")
+BUILT = pathlib.Path(__file__).resolve().parents[2] / "build" / "retroforge"
 
 
 class Error(RuntimeError):
     """What the program says of a run that failed: where, what was found, which rule it breaks, and the remedy."""
+
+
+def program():
+    """The program: that of the environment variable RETROFORGE, the one built beside this file, or one in PATH."""
+    found = shutil.which(os.environ.get("RETROFORGE") or (BUILT if BUILT.exists() else "retroforge"))
+    if found is None:
+        raise Error(f"retroforge: is neither {BUILT} nor in PATH, nor named by the environment variable RETROFORGE; "
+                    "build it, or set RETROFORGE to the program")
+    return found
 
 
 @dataclasses.dataclass
@@ -101,22 +111,22 @@ def optimize(case, settings={}, at={}, folder=None):  # pylint: disable=dangerou
 
 def start(command, case, settings, at, folder, progress=None, accepted=(0,)):
     """@param accepted  exit statuses with which results are there"""
-    words = [str(PROGRAM), command, str(case), "--output", str(folder)]
+    words = [program(), command, str(case), "--output", str(folder)]
     for option, values in (("--set", settings), ("--at", at)):
         for name, value in values.items():
             words += [option, f"{name}={as_text(value)}"]
     history = pathlib.Path(folder) / "history.csv"
     before = state_of(history)
     with tempfile.TemporaryFile("w+") as told, tempfile.TemporaryFile("w+") as complaint:
-        with subprocess.Popen(words, stdout=told, stderr=complaint, env={"OMP_NUM_THREADS": "1", **os.environ}) as program:
+        with subprocess.Popen(words, stdout=told, stderr=complaint, env={"OMP_NUM_THREADS": "1", **os.environ}) as running:
             try:
                 if progress is not None:
-                    follow(program, history, before, progress)
-                program.wait()
+                    follow(running, history, before, progress)
+                running.wait()
             except BaseException:
-                program.terminate()
+                running.terminate()
                 raise
-        if program.returncode not in accepted:
+        if running.returncode not in accepted:
             told.seek(0)
             complaint.seek(0)
             raise Error(complaint.read().strip().removeprefix("retroforge: ") or f"{command} did not pass:\n{told.read()}")

@@ -122,11 +122,11 @@ namespace retroforge
     void check_fineness(const BilletParameters &p)
     {
       const double n_cells = expected_cells(p);
-      if (n_cells > 1e9)
+      if (n_cells > 1e8)
         throw Error("Billet/element size",
                     "is " + as_text(p.element_size) + ", which makes about " + as_text(n_cells) +
                       " tetrahedra",
-                    "a mesh may have 1e9",
+                    "a mesh may have 1e8, some 360 GB in memory",
                     "choose a larger element size");
     }
   } // namespace

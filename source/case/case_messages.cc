@@ -22,8 +22,23 @@ namespace retroforge
     {
       if (!(n_cells > many_cells))
         return {};
+      constexpr double memory = 3.6e-6; // of a tetrahedron, in runs of up to 1.3 millions [GB]
       return {parameter + " = " + as_text(element_size) + " makes about " + as_text(n_cells) +
-              " tetrahedra; expect hours, and gigabytes of memory"};
+              " tetrahedra; expect hours, and " + as_text(std::ceil(memory * n_cells)) + " GB of memory"};
+    }
+
+    /// What a setting that is left out leaves out of the model.
+    std::vector<std::string> notes_on_what_is_left_out(const Case &forging_case)
+    {
+      std::vector<std::string> notes;
+      const auto              &dies = forging_case.process.dies;
+      if (std::none_of(dies.begin(), dies.end(), [](const DieState<double> &die) { return die.rubs(); }))
+        notes.push_back("no die has any friction: Die NAME/friction is 0 where it is not set");
+      if (forging_case.parameters.billet.is_from_file() && forging_case.process.material.depends_on_state())
+        notes.push_back(
+          "the metal of a billet from a file begins without strain and at one temperature: what an earlier "
+          "forging did to it is not in the file");
+      return notes;
     }
 
     /// Whether what is missing is small beside the surface: what closes it has the area vector  -sum_f A_f
@@ -93,6 +108,7 @@ namespace retroforge
     for (const Die &die : forging_case.model.dies)
       if (die.surface())
         remark("the file of die " + die.name, die.surface()->remarks);
+    add(notes_on_what_is_left_out(forging_case));
     add(notes_on_slender_cells(forging_case));
     for (const Die &die : forging_case.model.dies)
       add(notes_on_holes(die));

@@ -65,11 +65,11 @@ namespace retroforge
                   "leave it 0 and set Contact/penetration");
     const double n_cells =
       remeshing.element_size > 0. ? 8. * std::pow(size.side / remeshing.element_size, 3) : 0.;
-    if (!(n_cells <= 1e9))
+    if (!(n_cells <= 1e8))
       throw Error("Remeshing/element size",
                   "is " + as_text(remeshing.element_size) + ", which makes about " + as_text(n_cells) +
                     " tetrahedra",
-                  "a mesh may have 1e9",
+                  "a mesh may have 1e8, some 360 GB in memory",
                   "choose a larger element size, or 0 for that of the billet");
   }
 

@@ -292,6 +292,12 @@ namespace retroforge
                   "'" + name + "' changes nothing, as " + found->second,
                   "a derivative is taken by what acts",
                   "leave it out, or give that number another value: a friction of 1e-6 is next to none");
+    if (const bool is_of_die = name.rfind("die ", 0) == 0 && name.find("/temperature") != std::string::npos;
+        !process_.heat.conducts() && (is_of_die || name.rfind("heat/", 0) == 0))
+      throw Error(where,
+                  "names '" + name + "', and no heat flows: Heat/heating is not conduction",
+                  "a derivative is taken by what acts",
+                  "set Heat/heating = conduction, or leave it out");
     for (const std::string time : {"transfer time", "dwell time"})
       if (name == "heat/" + time && process_.heat.conducts())
         throw Error(where,

@@ -114,7 +114,6 @@ namespace retroforge
       fine->scenarios->use_main(*fine->at_best);
       journal->use_mesh(problem.meshes.made_at());
     }
-    const Case &main = fine->scenarios->at(0);
-    return Confirmation{at_start, evaluate(best), main.billet.n_nodes(), main.parameters.press.increments};
+    return Confirmation{at_start, evaluate(best), fine->scenarios->at(0).billet.n_nodes()};
   }
 } // namespace retroforge

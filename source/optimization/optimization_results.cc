@@ -113,7 +113,14 @@ namespace retroforge
     if (!has_converged() || !limits_are_kept())
       return NAN;
     const double multiplier = limit < multipliers.size() ? multipliers[limit] : 0.;
-    return multiplier == 0. ? 0. : -multiplier / criteria.limits[limit].size;
+    if (multiplier == 0.)
+      return is_within_noise(criteria.limits[limit]) ? NAN : 0.;
+    return -multiplier / criteria.limits[limit].size;
+  }
+
+  bool OptimizationResults::is_within_noise(const Limit &limit) const
+  {
+    return noise_of(limit) > std::abs(limit.excess(best.values)) * limit.size;
   }
 
   double OptimizationResults::missed_by(const std::size_t limit) const
@@ -378,12 +385,12 @@ namespace retroforge
     if (confirmation)
       json["confirmation"] = {
         {"nodes", confirmation->n_nodes},
-        {"increments", confirmation->n_increments},
+        {"increments", confirmation->best.increments},
         {"start", confirmation->start.failed() ? Json() : json_number(value(confirmation->start))},
         {"best", confirmation->best.failed() ? Json() : json_number(value(confirmation->best))},
         {"values_start", values_by_name(objectives, confirmation->start.values)},
         {"values", values_by_name(objectives, confirmation->best.values)},
-        {"limits_kept", !misses_there()},
+        {"limits_kept", !misses_there() && !fails_there()},
         {"not_corrected", not_corrected},
         {"failure", confirmation->start.failure + confirmation->best.failure}};
     write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iomanip>
 #include <ostream>
+#include <sstream>
 
 namespace retroforge
 {
@@ -79,6 +80,9 @@ namespace retroforge
     else if (misses_there())
       out << "\n  NOT KEPT ON THE FINER MESH: the best design keeps its limits on the mesh of the search "
              "alone\n";
+    if (fails_there())
+      out << "\n  NOT FORGED ON THE FINER MESH: the best design cannot be trusted; there it fails:\n    "
+          << confirmation->best.failure << '\n';
     for (std::size_t i = 0; i < criteria.limits.size(); ++i)
       if (const double missed = missed_by(i); missed > 0.)
       {
@@ -112,11 +116,12 @@ namespace retroforge
           << objectives[limit.objective] + (limit.at_least ? " at least" : " at most") << std::right
           << std::setprecision(7) << std::setw(14) << limit.bound << std::setw(14)
           << start.values[limit.objective] << std::setw(14) << best.values[limit.objective] << "  "
-          << (missed_by(i) > 0.      ? "not kept"
-              : !limits_are_kept()   ? "unknown, as another limit is not kept"
-              : !has_converged()     ? "unknown, as the search did not come to its end"
-              : by_relaxing(i) == 0. ? "not felt"
-                                     : as_text(by_relaxing(i)))
+          << (missed_by(i) > 0.            ? "not kept"
+              : !limits_are_kept()         ? "unknown, as another limit is not kept"
+              : !has_converged()           ? "unknown, as the search did not come to its end"
+              : by_relaxing(i) == 0.       ? "not felt"
+              : std::isnan(by_relaxing(i)) ? "unknown, as it is nearer than its noise"
+                                           : as_text(by_relaxing(i)))
           << '\n';
     }
     for (const Limit &limit : criteria.limits)
@@ -125,7 +130,7 @@ namespace retroforge
             << limit.correction << std::noshowpos << after_number(units[limit.objective])
             << ", which a finer mesh and the noise add to it\n";
     for (const Limit &limit : criteria.limits)
-      if (noise_of(limit) > std::abs(limit.excess(best.values)) * limit.size)
+      if (is_within_noise(limit))
         out << "  noise of " << objectives[limit.objective] << ": " << std::setprecision(3) << noise_of(limit)
             << after_number(units[limit.objective]) << "; the best design is nearer to the limit than that\n";
     for (const Limit &limit : criteria.limits)
@@ -199,12 +204,15 @@ namespace retroforge
       print_confidence(*this, out);
     if (confirmation)
     {
-      out << std::setprecision(7) << "\n  on a mesh of " << confirmation->n_nodes << " nodes, in "
-          << confirmation->n_increments << " increments: ";
-      if (confirmation->start.failed() || confirmation->best.failed())
-        out << "failed: " << confirmation->start.failure + confirmation->best.failure << '\n';
-      else
-        out << value(confirmation->start) << unit << " -> " << value(confirmation->best) << unit << '\n';
+      const auto told = [&](const Evaluation &there) {
+        std::ostringstream text;
+        text << std::setprecision(7) << value(there) << unit;
+        return there.failed() ? "failed (" + there.failure + ")" : text.str();
+      };
+      out << "\n  on a mesh of " << confirmation->n_nodes << " nodes";
+      if (!fails_there())
+        out << ", in " << confirmation->best.increments << " increments";
+      out << ": " << told(confirmation->start) << " -> " << told(confirmation->best) << '\n';
       if (!confirmation->best.failed())
         for (const Limit &limit : criteria.limits)
           out << "    " << objectives[limit.objective] << ' ' << confirmation->best.values[limit.objective]

@@ -107,6 +107,8 @@ namespace retroforge
                         {"jumps", json_number(check.free_jumps)},
                         {"doubtful", check.is_doubtful}};
       json["verdict"] = check.verdict;
+      if (!check.failed_by.empty())
+        json["failed_by"] = check.failed_by;
       return json;
     }
   } // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
 #include <retroforge/core/error.h>
+#include <retroforge/core/nearest_name.h>
 #include <retroforge/verification/check.h>
 
 #include <iomanip>
@@ -44,26 +45,41 @@ namespace retroforge
       }
     };
 
-    /// A run that decides anew may also fail anew: then there is no difference, and the rest of
-    /// the check goes on.
-    Values free_differences(const Line                &line,
-                            const DifferenceEvaluator &evaluator,
-                            const double               h,
-                            const std::size_t          n)
+    /// A forging beside the nominal one may fail, most of all one that decides anew: then it has no values, no difference is
+    /// made of it, and the rest of the check goes on.
+    Values values_at(const Line                                &line,
+                     const decltype(DifferenceEvaluator::free) &objectives,
+                     const std::string                         &what,
+                     const double                               h,
+                     const std::size_t                          n)
     {
-      Values differences(n, NAN);
       try
       {
-        const Values plus = line(evaluator.free, h), minus = line(evaluator.free, -h);
-        for (std::size_t o = 0; o < n; ++o)
-          differences[o] = (plus[o] - minus[o]) / (2. * h);
+        return line(objectives, h);
       }
       catch (const Error &error)
       {
         if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-          std::cerr << "  free difference of step " << h << ": " << error.what() << std::endl;
+          std::cerr << "  " << what << " at a step of " << h << ": " << error.what() << std::endl;
+        return Values(n, NAN);
       }
-      return differences;
+    }
+
+    /// What a derivative that did not pass fails by, in words.
+    std::string reason_of_failure(const CheckRow        &row,
+                                  const CheckParameters &parameters,
+                                  const bool             same,
+                                  const bool             is_linear)
+    {
+      std::vector<std::string> reasons;
+      if (!same)
+        reasons.push_back("direct method");
+      if (!(row.best_replayed_error() <= parameters.replayed_bar))
+        reasons.push_back("replayed differences");
+      if (!is_linear && !(row.taylor_orders.back() >= parameters.taylor_bar))
+        reasons.push_back(std::isnan(row.taylor_orders.back()) ? "Taylor, whose forgings fail"
+                                                               : "Taylor: a kink within Check/taylor start?");
+      return join(reasons);
     }
 
     /// Completes the rows of one line, one per objective.
@@ -79,11 +95,18 @@ namespace retroforge
         rows[o].tangent = tangents[o];
       for (const double step : parameters.steps)
       {
-        const double h    = step * scale;
-        const Values plus = line(evaluator.replayed, h), minus = line(evaluator.replayed, -h);
-        Values       free(rows.size(), NAN);
+        const double      h    = step * scale;
+        const std::size_t n    = rows.size();
+        const Values      plus = values_at(line, evaluator.replayed, "replayed", h, n),
+                     minus     = values_at(line, evaluator.replayed, "replayed", -h, n);
+        Values free(n, NAN);
         if (parameters.free)
-          free = free_differences(line, evaluator, h, rows.size());
+        {
+          const Values above = values_at(line, evaluator.free, "decided anew", h, n),
+                       below = values_at(line, evaluator.free, "decided anew", -h, n);
+          for (std::size_t o = 0; o < n; ++o)
+            free[o] = (above[o] - below[o]) / (2. * h);
+        }
         for (std::size_t o = 0; o < rows.size(); ++o)
         {
           const double value = sensitivities[o].value;
@@ -95,7 +118,7 @@ namespace retroforge
       for (unsigned int i = 0; i <= parameters.taylor_halvings; ++i)
       {
         const double h  = parameters.taylor_start * scale * std::pow(0.5, i);
-        const Values at = line(evaluator.replayed, h);
+        const Values at = values_at(line, evaluator.replayed, "replayed", h, rows.size());
         for (std::size_t o = 0; o < rows.size(); ++o)
         {
           const double remainder = std::abs(at[o] - sensitivities[o].value - h * rows[o].adjoint);
@@ -125,8 +148,8 @@ namespace retroforge
                               1e-10 * std::abs(sensitivities[o].value));
         const bool same = row.tangent_error() <= parameters.tangent_bar ||
                           std::abs(row.adjoint - row.tangent) <= 1e-13 * whole;
-        row.passed = same && row.best_replayed_error() <= parameters.replayed_bar &&
-                     (linear || row.taylor_orders.back() >= parameters.taylor_bar);
+        row.failed_by = reason_of_failure(row, parameters, same, linear);
+        row.passed    = row.failed_by.empty();
       }
     }
   } // namespace
@@ -408,7 +431,10 @@ namespace retroforge
               out << order;
             else
               out << '-';
-          out << (row.is_zero ? "  passed (zero)" : row.passed ? "  passed" : "  FAILED") << std::scientific;
+          out << (row.is_zero  ? "  passed (zero)"
+                  : row.passed ? "  passed"
+                               : "  FAILED (" + row.failed_by + ")")
+              << std::scientific;
         }
         out << '\n';
       }

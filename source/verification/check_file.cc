@@ -44,6 +44,7 @@ namespace retroforge
               {"magnitude", json_number<Json>(row.magnitude)},
               {"least_difference", json_number<Json>(row.least_difference)},
               {"is_zero", row.is_zero},
+              {"failed_by", row.failed_by},
               {"free", numbers({free.slope, free.uncertainty, free.jump})}};
     }
 
@@ -59,7 +60,8 @@ namespace retroforge
                    json.at("passed"),
                    as_number(json.at("magnitude")),
                    as_number(json.at("least_difference")),
-                   json.at("is_zero")};
+                   json.at("is_zero"),
+                   json.value("failed_by", "")};
       for (const Json &d : json.at("steps"))
         row.steps.push_back({as_number(d.at(0)),
                              as_number(d.at(1)),

@@ -20,9 +20,15 @@ namespace retroforge
 
     Summary::Check as_summary(const CheckRow &row)
     {
-      const char    *verdict = row.is_zero ? "zero" : row.passed ? "passed" : "failed";
-      Summary::Check check{
-        row.objective, row.parameter, row.adjoint, row.tangent, {}, row.taylor_orders, verdict};
+      const char         *verdict = row.is_zero ? "zero" : row.passed ? "passed" : "failed";
+      Summary::Check      check{row.objective,
+                           row.parameter,
+                           row.adjoint,
+                           row.tangent,
+                           {},
+                           row.taylor_orders,
+                           verdict,
+                           row.failed_by};
       const DifferenceFit free = row.free_fit();
       check.free_slope         = free.slope;
       check.free_uncertainty   = free.uncertainty;

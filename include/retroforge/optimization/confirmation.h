@@ -13,7 +13,7 @@ namespace retroforge
   struct Confirmation
   {
     Evaluation   start, best;
-    unsigned int n_nodes = 0, n_increments = 0;
+    unsigned int n_nodes = 0;
   };
 
   /// Forges start and optimum with elements and increments Optimisation/confirmation times as large, each on

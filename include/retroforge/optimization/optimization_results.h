@@ -91,7 +91,7 @@ namespace retroforge
 
     double value(const Evaluation &evaluation) const { return criteria.value(evaluation.values); }
     /// Returns the change of the objective per unit by which a limit is relaxed; NaN where the search did not
-    /// come to its end within all limits.
+    /// come to its end within all limits, or ended beside this one by less than its noise without a multiplier.
     double by_relaxing(std::size_t limit) const;
     /// Returns the amount by which the best design misses a limit, in its unit; 0 where it keeps it, to the
     /// tolerance.
@@ -104,12 +104,16 @@ namespace retroforge
     {
       return noise.values.empty() ? 0. : noise.values[limit.objective];
     }
+    /// Returns whether the best design is nearer to a limit than its noise.
+    bool is_within_noise(const Limit &limit) const;
     /// Returns those of the designs that were forged, on the mesh of the best one and within a tenth of the scales: what remeshing
     /// decides there may be far beyond the noise, which is measured over a hundredth of that.
     Neighbours neighbours() const;
     /// Returns whether the best design keeps a limit by less than what its neighbours are off by, as by luck: where that is
     /// more than half a percent of the bound and three times the noise.
     bool keeps_by_luck(const Limit &limit) const;
+    /// Returns whether the best design could not be forged for the confirmation.
+    bool fails_there() const { return confirmation && confirmation->best.failed(); }
     /// Returns whether the best design, forged for the confirmation, misses a limit, or any.
     bool misses_there(const Limit &limit) const;
     bool misses_there() const;
@@ -125,9 +129,12 @@ namespace retroforge
     /// Returns whether no design but the first could be forged.
     bool found_nothing() const;
 
-    /// Returns the exit status: 0, or 2 where no design keeps the limits, the best one misses them on the finer mesh, or
-    /// none but the first could be forged.
-    int exit_status() const { return limits_are_kept() && !misses_there() && !found_nothing() ? 0 : 2; }
+    /// Returns the exit status: 0, or 2 where no design keeps the limits, the best one misses them on the finer mesh or
+    /// cannot be forged there, or none but the first could be forged.
+    int exit_status() const
+    {
+      return limits_are_kept() && !misses_there() && !fails_there() && !found_nothing() ? 0 : 2;
+    }
 
     /// Returns the total change of the objective by new meshes.
     double by_meshes() const;

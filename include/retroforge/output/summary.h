@@ -67,7 +67,8 @@ namespace retroforge
       double                 tangent = unknown;
       std::vector<CheckStep> steps;
       std::vector<double>    taylor_orders;
-      std::string            verdict; ///< "passed", "failed", or "zero" where there is no dependence
+      std::string            verdict;   ///< "passed", "failed", or "zero" where there is no dependence
+      std::string            failed_by; ///< in words; empty where it passed
       /// What the free differences have in common: a slope, and jumps over the value of the objective.
       double free_slope = unknown, free_uncertainty = unknown, free_jumps = unknown;
       bool   is_doubtful = false; ///< that slope is more than half beside the adjoint

@@ -42,7 +42,8 @@ namespace retroforge
     bool                       passed;
     double                     magnitude        = 0.; ///< of the derivative but for cancellation, or 0
     double                     least_difference = 0.; ///< that differences are asked to resolve to the bar
-    bool                       is_zero = false; ///< the objective does not depend on it, but for rounding
+    bool                       is_zero   = false; ///< the objective does not depend on it, but for rounding
+    std::string                failed_by = {};    ///< in words; empty where it passed
 
     /// Against the larger of the derivative and its magnitude: in a direction along which the derivative
     /// cancels, rounding does not.

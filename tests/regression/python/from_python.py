@@ -3,10 +3,12 @@
 """contrib/python: results of a run as Python has them; designs on one mesh, whose differences are the gradient; mistakes as
 exceptions with the program's message; the example ends where the gradient vanishes, with less than a third of the barrel.
 Usage: from_python.py FOLDER, with the program in the environment variable RETROFORGE"""
+import os
 import pathlib
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -34,6 +36,15 @@ class FromPython(unittest.TestCase):
         np.testing.assert_allclose(forging.history["stroke"], [1.25, 2.5, 3.75, 5.0])
         np.testing.assert_allclose(forging.history["energy"][-1], forging.objectives["energy"], rtol=1e-14)
         np.testing.assert_array_equal(forging.gradient("barrel", RADII), list(forging.gradients["barrel"].values()))
+
+    def test_program(self):
+        """Without the program it says where that is looked for; one in PATH is found by its name."""
+        built = os.environ["RETROFORGE"]
+        with unittest.mock.patch.dict(os.environ, RETROFORGE="nowhere"):
+            with self.assertRaisesRegex(retroforge.Error, "nor named by the environment variable RETROFORGE"):
+                retroforge.run(CASE, QUICK)
+        with unittest.mock.patch.dict(os.environ, RETROFORGE="retroforge", PATH=str(pathlib.Path(built).resolve().parent)):
+            self.assertEqual(pathlib.Path(retroforge.program()).resolve(), pathlib.Path(built).resolve())
 
     def test_designs(self):
         """On one mesh: differences over 2 um are the gradient but for the decisions that it freezes."""
