@@ -415,13 +415,12 @@ namespace retroforge
         if (i < row.steps.size())
         {
           const auto &d = row.steps[i];
-          out << std::setprecision(0) << std::setw(10) << d.step << std::setprecision(1) << std::setw(11)
-              << relative(d.replayed_central, row.adjoint) << std::setw(11)
-              << relative(d.replayed_forward, row.adjoint) << std::setw(11);
-          if (std::isnan(d.free_central))
-            out << "-";
-          else
-            out << relative(d.free_central, row.adjoint);
+          out << std::setprecision(0) << std::setw(10) << d.step << std::setprecision(1);
+          for (const double difference : {d.replayed_central, d.replayed_forward, d.free_central})
+            if (out << std::setw(11); std::isnan(difference)) // its forgings failed, or it is not asked for
+              out << "-";
+            else
+              out << relative(difference, row.adjoint);
         }
         if (i == 0)
         {
