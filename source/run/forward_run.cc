@@ -8,9 +8,11 @@
 #include <retroforge/output/results_folder.h>
 #include <retroforge/output/safe_file.h>
 #include <retroforge/run/forward_run.h>
+#include <retroforge/run/slope_trust.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -203,20 +205,49 @@ namespace retroforge
            std::any_of(state_.remeshed.begin(), state_.remeshed.end(), is_on_the_way);
   }
 
-  std::vector<FollowingRule> ForwardRun::following_rules() const
+  std::vector<unsigned int> ForwardRun::remeshed_for_quality() const
   {
-    if (!follows_trend())
-      return {};
     const auto decided_by_quality = [this](const unsigned int increment) {
       const auto later = std::find_if(problem_.segments.begin() + 1,
                                       problem_.segments.end(),
                                       [&](const NumericsSegment &of) { return of.input.first > increment; });
       return std::prev(later)->parameters.remeshing.when == RemesherParameters::When::quality;
     };
-    std::vector<unsigned int> moving;
+    std::vector<unsigned int> remeshed;
     std::copy_if(
-      state_.remeshed.begin(), state_.remeshed.end(), std::back_inserter(moving), decided_by_quality);
-    return retroforge::following_rules(increments_, moving);
+      state_.remeshed.begin(), state_.remeshed.end(), std::back_inserter(remeshed), decided_by_quality);
+    return remeshed;
+  }
+
+  std::vector<FollowingRule> ForwardRun::following_rules() const
+  {
+    return follows_trend() ? retroforge::following_rules(increments_, remeshed_for_quality())
+                           : std::vector<FollowingRule>();
+  }
+
+  std::optional<ForwardRun::LateForces> ForwardRun::late_forces() const
+  {
+    constexpr double least_left = 0.05; // of the stroke; measured, doc/theory/remeshing.md
+    if (!follows_trend())
+      return {};
+    const std::vector<unsigned int> remeshed = remeshed_for_quality();
+    LateForces                      late{std::vector<bool>(problem_.objectives.size(), false),
+                    retroforge::following_rules(increments_, remeshed, least_left)};
+    if (late.rules == retroforge::following_rules(increments_, remeshed))
+      return {};
+    std::vector<IncrementDecisions> increments;
+    for (const StrokeStep &at : increments_)
+    {
+      const double begin = problem_.process.whole_stroke(at.stroke, at.operation);
+      increments.push_back({begin, begin + at.step, false, 0});
+    }
+    for (std::size_t o = 0; o < late.objectives.size(); ++o)
+      if (const auto &path = problem_.objectives[o].path; path && path->is_of_forces())
+        late.objectives[o] =
+          span_of(shares_of_increments(*path, trace_.recorded().rows[o]), increments).is_short();
+    if (std::find(late.objectives.begin(), late.objectives.end(), true) == late.objectives.end())
+      return {};
+    return late;
   }
 
   bool ForwardRun::is_left() const
@@ -287,36 +318,137 @@ namespace retroforge
             follows_trend()};
   }
 
+  namespace
+  {
+    /// What of some combinations is of objectives that are marked, or that are not.
+    std::vector<Combination>
+    parts_of(std::vector<Combination> combinations, const std::vector<bool> &marked, const bool which)
+    {
+      for (Combination &combination : combinations)
+        for (std::size_t o = 0; o < combination.weights.size(); ++o)
+          if (marked[o] != which)
+            combination.weights[o] = 0.;
+      return combinations;
+    }
+
+    bool is_nothing(const Combination &combination)
+    {
+      return std::all_of(
+        combination.weights.begin(), combination.weights.end(), [](const double w) { return w == 0.; });
+    }
+
+    /// Adds the sweep of those that are something.
+    void add_sweep(const RecordedForging                     &run,
+                   const ForgingState                        &end,
+                   const std::vector<Combination>            &combinations,
+                   std::vector<std::optional<AdjointResult>> &sums,
+                   unsigned int                              &linear_solves)
+    {
+      std::vector<Combination> some;
+      std::copy_if(
+        combinations.begin(), combinations.end(), std::back_inserter(some), std::not_fn(is_nothing));
+      if (some.empty())
+        return;
+      AdjointSweep sweep = adjoint_sweep(run, end, some);
+      linear_solves += sweep.linear_solves;
+      auto part = sweep.gradients.begin();
+      for (std::size_t c = 0; c < combinations.size(); ++c)
+      {
+        if (is_nothing(combinations[c]))
+          continue;
+        if (!sums[c])
+          sums[c] = std::move(*part);
+        else
+        {
+          for (std::size_t k = 0; k < sums[c]->X_0.size(); ++k)
+            sums[c]->X_0[k] += part->X_0[k];
+          add_numbers(part->process, sums[c]->process);
+        }
+        ++part;
+      }
+    }
+  } // namespace
+
   AdjointSweep ForwardRun::sweep(const std::vector<Combination> &combinations) const
   {
-    return adjoint_sweep(recorded(), state_, combinations);
+    RecordedForging run  = recorded();
+    const auto      late = late_forces();
+    if (!late)
+      return adjoint_sweep(run, state_, combinations);
+    AdjointSweep                              sweep;
+    std::vector<std::optional<AdjointResult>> sums(combinations.size());
+    add_sweep(run, state_, parts_of(combinations, late->objectives, false), sums, sweep.linear_solves);
+    run.rules = late->rules;
+    add_sweep(run, state_, parts_of(combinations, late->objectives, true), sums, sweep.linear_solves);
+    for (std::optional<AdjointResult> &sum : sums)
+      sweep.gradients.push_back(sum ? std::move(*sum)
+                                    : AdjointResult{NodalVectors<double>(problem_.X_0.size()),
+                                                    no_process_derivatives(problem_.process, dies())});
+    return sweep;
   }
+
+  namespace
+  {
+    template <typename T>
+    void take_marked(const std::vector<T> &from, const std::vector<bool> &marked, std::vector<T> &to)
+    {
+      for (std::size_t o = 0; o < to.size(); ++o)
+        if (marked[o])
+          to[o] = from[o];
+    }
+  } // namespace
 
   std::vector<Dual> ForwardRun::tangent(const Process<Dual> &process, NodalVectors<Dual> X_0) const
   {
-    return tangent_sweep(recorded(), begun(process), std::move(X_0));
+    RecordedForging run  = recorded();
+    const auto      late = late_forces();
+    if (!late)
+      return tangent_sweep(run, begun(process), std::move(X_0));
+    std::vector<Dual> values = tangent_sweep(run, begun(process), X_0);
+    run.rules                = late->rules;
+    take_marked(tangent_sweep(run, begun(process), std::move(X_0)), late->objectives, values);
+    return values;
   }
 
-  ForgingState ForwardRun::replay(const Process<double>      &at_process,
-                                  const NodalVectors<double> &X_0,
-                                  const Forging::Observer    &observer) const
+  ForgingState ForwardRun::replay(const Process<double>            &at_process,
+                                  const NodalVectors<double>       &X_0,
+                                  const std::vector<FollowingRule> &rules,
+                                  const Forging::Observer          &observer) const
   {
     const Process<double>           process = begun(at_process);
     ForgingState                    state   = Forging::start(first_epoch_, process, X_0);
     std::optional<Forging::Nominal> nominal;
     if (follows_trend())
-      nominal.emplace(Forging::Nominal{problem_.process, problem_.X_0, following_rules()});
+      nominal.emplace(Forging::Nominal{problem_.process, problem_.X_0, rules});
     running_->forging.replay(
       process, nominal ? &*nominal : nullptr, state_.increments, recorded().record, state, observer);
     return state;
   }
 
-  std::vector<double> ForwardRun::replayed_values(const Process<double>      &process,
-                                                  const NodalVectors<double> &X_0) const
+  ForgingState ForwardRun::replay(const Process<double>      &process,
+                                  const NodalVectors<double> &X_0,
+                                  const Forging::Observer    &observer) const
+  {
+    return replay(process, X_0, following_rules(), observer);
+  }
+
+  std::vector<double> ForwardRun::replayed_values(const Process<double>            &process,
+                                                  const NodalVectors<double>       &X_0,
+                                                  const std::vector<FollowingRule> &rules) const
   {
     const Process<double> begins = begun(process); // the trace refers to it
     ObjectiveTrace        trace(problem_.objectives, begins, trace_.recorded().decisions);
-    const ForgingState state = replay(process, X_0, [&](const IncrementEvent &event) { trace.add(event); });
+    const ForgingState    state =
+      replay(process, X_0, rules, [&](const IncrementEvent &event) { trace.add(event); });
     return trace.values(state);
+  }
+
+  std::vector<double> ForwardRun::replayed_values(const Process<double>      &process,
+                                                  const NodalVectors<double> &X_0) const
+  {
+    std::vector<double> values = replayed_values(process, X_0, following_rules());
+    if (const auto late = late_forces())
+      take_marked(replayed_values(process, X_0, late->rules), late->objectives, values);
+    return values;
   }
 } // namespace retroforge

@@ -78,7 +78,8 @@ namespace retroforge
   } // namespace
 
   std::vector<FollowingRule> following_rules(const std::vector<StrokeStep>   &increments,
-                                             const std::vector<unsigned int> &remeshed)
+                                             const std::vector<unsigned int> &remeshed,
+                                             const double                     least_left)
   {
     std::vector<FollowingRule> rules(increments.size());
     bool                       any = false, leads = false; // a new mesh is ahead in the operation
@@ -95,7 +96,8 @@ namespace retroforge
       rules[i] = leads ? FollowingRule{1., 0.5 * std::min(at.step, increments[i + 1].step)}
                        : FollowingRule{(end - to) / (end - at.stroke), 0.};
       any      = any || leads;
-      leads    = leads || std::binary_search(remeshed.begin(), remeshed.end(), i);
+      leads    = leads || (end - at.stroke >= least_left * end &&
+                        std::binary_search(remeshed.begin(), remeshed.end(), i));
     }
     return any ? rules : std::vector<FollowingRule>();
   }

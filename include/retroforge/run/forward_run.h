@@ -155,6 +155,29 @@ namespace retroforge
 
     RecordedForging recorded() const;
 
+    /// Objectives that few increments make, forces as a rule, of a run whose last new mesh has little of the stroke before
+    /// it: the increments on it would become longer and shorter by all that the strokes of new meshes move by, and what a
+    /// new mesh takes to come to its dies would make their slopes. Of these objectives that stroke is held.
+    struct LateForces
+    {
+      std::vector<bool>          objectives; ///< of the run, which are such
+      std::vector<FollowingRule> rules;      ///< by which ends of increments move for them
+    };
+
+    /// Returns them, where there are any and their rules differ from following_rules().
+    std::optional<LateForces> late_forces() const;
+
+    /// The increments that began on a mesh that quality asked for.
+    std::vector<unsigned int> remeshed_for_quality() const;
+
+    ForgingState        replay(const Process<double>            &process,
+                               const NodalVectors<double>       &X_0,
+                               const std::vector<FollowingRule> &rules,
+                               const Forging::Observer          &observer) const;
+    std::vector<double> replayed_values(const Process<double>            &process,
+                                        const NodalVectors<double>       &X_0,
+                                        const std::vector<FollowingRule> &rules) const;
+
     /// A process that begins as much earlier as this run does.
     template <typename Number>
     Process<Number> begun(Process<Number> process) const

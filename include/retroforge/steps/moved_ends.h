@@ -54,12 +54,19 @@ namespace retroforge
   {
     double of_start = 0.; ///< the part of how far the increment begins beside its record
     double most     = 0.; ///< b [mm]; 0 on the last mesh, where the state does not count
+
+    bool operator==(const FollowingRule &other) const
+    {
+      return of_start == other.of_start && most == other.most;
+    }
   };
 
   /// Returns those of the increments of a run; none where no mesh was made anew within an operation.
-  /// @param remeshed  the increments, from 0, that began on a new mesh, in their order
+  /// @param remeshed    the increments, from 0, that began on a new mesh, in their order
+  /// @param least_left  part of its operation's stroke that must be left at a new mesh, or what leads to that is held
   std::vector<FollowingRule> following_rules(const std::vector<StrokeStep>   &increments,
-                                             const std::vector<unsigned int> &remeshed);
+                                             const std::vector<unsigned int> &remeshed,
+                                             double                           least_left = 0.);
 
   /// How the end of an increment follows the positions at its start.
   class FollowingEnd
