@@ -4,10 +4,13 @@
 the free differences of `check`, of billet, process and the shape of a die; penalty and slip follow the material and the speed; a die that follows the billet starts on it and ends at the
 same gap; one that would stand in the billet begins earlier; elements of new meshes keep their proportion to the billet; a run is not resumed with another design.
 Usage: changed_design.py RETROFORGE"""
+import math
 import os
 import pathlib
 import re
 import sys
+
+import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import whole_runs  # noqa: E402
@@ -30,6 +33,11 @@ BELL = changed(whole_runs.cube(75, 25, 10, 8), {
 DOME = changed(upsetting("cylinder", {"radius": 10, "height": 15}, 4, 15, 3, 6), {"Die upper": {"shape": "stl", "file": "dome.stl"},
                                                                                   "Output": NO_FIELDS})
 
+CONE = changed(whole_runs.cube(20, 5, 8, 0), {
+    "Billet": {"size": "40, 40, 20"}, "Die lower": {"friction law": "Tresca", "friction": 0.5},
+    "Die upper": {"shape": "stl", "file": "cone.stl", "velocity": "0, 0, -50", "friction law": "Tresca", "friction": 0.3},
+    "Material": {"consistency": 45}, "Objectives": {"names": "force"}, "Objective force": {"type": "maximum effort"},
+    "Design": {"parameters": "billet/height"}, "Output": NO_FIELDS})
 RING = changed(DOME, {"Die upper": {"file": "ring.stl"}, "Design": {"parameters": "billet/height, die upper/offset, material/m"}})
 
 
@@ -161,6 +169,21 @@ def begins_from_outside():
     judge("and differences that decide anew, to 1 %", all(each < 0.01 for each in off.values()), off)
 
 
+def forces_after_a_late_mesh():
+    """Slopes of a largest force where the mesh is made anew within the last twentieth of the stroke, as in some of these designs, are those of
+    the trend: with all ends that follow the state they were of the other sign."""
+    make_die.FACETS_PER_TURN = 48
+    tip = [(4 * math.sin(math.radians(a)), 4 * (1 - math.cos(math.radians(a)))) for a in (0, 10, 20, 30, 40, 50)]
+    make_die.write_stl(pathlib.Path("cone.stl"), make_die.revolved([*tip, (30.0, tip[-1][1] + (30 - tip[-1][0]) * math.tan(math.radians(50)))]))
+    heights, slopes, forces = (19.6, 19.8, 20.0, 20.2, 20.4, 20.6), [], []
+    for height in heights:
+        found = summary("gradient", "cone.prm", "cone", ("billet/height", height))
+        forces.append(found["objectives"][0]["value"])
+        slopes.append(found["parameters"][0]["gradient"]["force"])
+    trend = float(np.polyfit(heights, forces, 1)[0])
+    judge("slopes of the trend", all(0.6 * trend < slope < 1.5 * trend for slope in slopes), [trend, slopes])
+
+
 def elements_keep_their_proportion():
     """A radius larger by 40 % makes almost twice the volume: meshes that are made on the way have as many elements, as the first one has, also where it is
     meshed at another design. A wanted length that is set is that of the nominal design, too."""
@@ -200,6 +223,6 @@ def differences():
         differences_are_those_of_check(case)
 
 
-main({"cylinder.prm": prm(CYLINDER), "followed.prm": prm(FOLLOWED), "bell.prm": prm(BELL), "dome.prm": prm(DOME), "ring.prm": prm(RING)},
-     (nominal_is_nominal, contact_follows_the_design, differences, without_friction, die_follows_billet, begins_from_outside, elements_keep_their_proportion, another_design_is_refused,
+main({"cylinder.prm": prm(CYLINDER), "followed.prm": prm(FOLLOWED), "bell.prm": prm(BELL), "dome.prm": prm(DOME), "ring.prm": prm(RING), "cone.prm": prm(CONE)},
+     (nominal_is_nominal, contact_follows_the_design, differences, without_friction, die_follows_billet, begins_from_outside, forces_after_a_late_mesh, elements_keep_their_proportion, another_design_is_refused,
       mistakes))

@@ -390,6 +390,12 @@ namespace
     bool same = rules.size() == wanted.size();
     for (std::size_t i = 0; same && i < rules.size(); ++i)
       same = std::abs(rules[i].of_start - wanted[i].of_start) < 1e-15 && rules[i].most == wanted[i].most;
+    // Of the stroke of 9 mm 6 are left at the one new mesh on the way.
+    const auto held = following_rules(increments, {0, 2, 5}, 0.67),
+               led  = following_rules(increments, {0, 2, 5}, 0.66);
+    std::cout << "a new mesh with too little of the stroke left: held: " << yes(held.empty())
+              << ", with enough: " << yes(led == rules) << "; of two the later one: "
+              << yes(following_rules(increments, {1, 4}, 0.4) == following_rules(increments, {1})) << "\n";
     std::cout << "rules of two operations: " << yes(same) << ", new meshes between operations only: none: "
               << yes(following_rules(increments, {0, 5}).empty()) << "\n";
   }
