@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <cstring>
 #include <iostream>
+#include <limits>
 #include <random>
 
 using namespace retroforge;
@@ -199,8 +200,9 @@ namespace
     Objectives                     objectives(problem.functions.size());
     for (std::size_t o = 0; o < objectives.size(); ++o)
     {
-      objectives[o].name = names[o];
-      objectives[o].path = std::make_unique<EnergyObjective>();
+      objectives[o].name  = names[o];
+      objectives[o].path  = std::make_unique<EnergyObjective>();
+      objectives[o].least = -std::numeric_limits<double>::infinity();
       if (o > 0)
         parameters.at_most.emplace(names[o], problem.offsets[o - 1]);
     }

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <limits>
 
 using namespace retroforge;
 
@@ -105,8 +106,9 @@ namespace
       Objectives objectives(3);
       for (unsigned int o = 0; o < 3; ++o)
       {
-        objectives[o].name = std::vector<std::string>{"f", "g", "h"}[o];
-        objectives[o].path = std::make_unique<EnergyObjective>();
+        objectives[o].name  = std::vector<std::string>{"f", "g", "h"}[o];
+        objectives[o].path  = std::make_unique<EnergyObjective>();
+        objectives[o].least = -std::numeric_limits<double>::infinity();
       }
       const std::vector<DesignParameter> all = {{"a", "mm", DesignParameter::Kind::billet, 1., 1.},
                                                 {"b", "mm", DesignParameter::Kind::billet, 1., 1.}};
