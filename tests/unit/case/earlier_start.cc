@@ -8,6 +8,7 @@
 // - inclined by 60 degrees to its way: 0.5 / cos 60;
 // - the lower die coming up at a quarter of the speed: it stands back by a quarter of the path;
 // - the lower die, at rest, 0.5 inside, alone or as the upper one is: not at all; 1.5 inside: not at all, which is refused;
+// - the upper plane 0.5 inside, where it stands in a second operation, too: not at all; where the one at rest does: 0.5;
 // - moved by what it says no die stands in the billet, and the leading die ends where it would;
 // - on dual numbers derivatives stay.
 
@@ -44,10 +45,17 @@ namespace
     return p;
   }
 
-  void report(const std::string &name, const Parameters &parameters)
+  /// @param later  dies of a second operation; none: there is no such
+  void
+  report(const std::string &name, const Parameters &parameters, const std::vector<unsigned int> &later = {})
   {
-    const TetMesh    mesh    = make_billet(parameters.billet, MPI_COMM_WORLD);
-    Process<double>  process = parameters.process({20., 20.});
+    const TetMesh   mesh    = make_billet(parameters.billet, MPI_COMM_WORLD);
+    Process<double> process = parameters.process({20., 20.});
+    if (!later.empty())
+    {
+      process.operations.push_back(process.operations.front());
+      process.operations.back().dies = later;
+    }
     std::vector<Die> dies;
     for (const DieParameters &die : parameters.dies)
       dies.push_back(die.die());
@@ -88,6 +96,9 @@ int main(int argc, char **argv)
   report("at rest", at_rest);
   at_rest.dies[1].point = 19.5 * up;
   report("at rest, and the other as deep", at_rest);
+
+  report("and again in a second operation", block(0.5, 100. * down), {0, 1});
+  report("the lower die alone there", block(0.5, 100. * down), {0});
 
   const Parameters parameters                     = block(0.5, 100. * down);
   auto             process                        = converted<Dual>(parameters.process({20., 20.}));

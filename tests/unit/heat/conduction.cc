@@ -9,8 +9,12 @@
 // - Twenty boxes with nodes moved at random, dies at both ends and free sides, from a jump of the temperature: none
 //   leaves the range of what it was made of by more than rounding, in short steps and in long ones; and the heat that came
 //   in is that in the body.
+// - A conductance that is no number has no temperatures: NoLinearSolution, for which increments are halved.
 
 #include "heat_test_tools.h"
+
+#include <retroforge/heat/network_matrix.h>
+#include <retroforge/linear_algebra/direct_solver.h>
 
 #include <algorithm>
 #include <functional>
@@ -184,6 +188,24 @@ namespace
     if (over >= 1e-6 || unbalanced >= 1e-11)
       std::cout << "  " << over << ' ' << unbalanced << "\n";
   }
+
+  void check_no_solution()
+  {
+    const TetMesh       mesh = box_mesh(Vec3({1., 1., 1.}), {1, 1, 1});
+    const NetworkEdges  edges(mesh, Topology(mesh));
+    std::vector<double> couplings(conduction_network(mesh, edges, mesh.X).conductances.size(), 1.);
+    couplings[0] = std::nan("");
+    const std::vector<double> ones(mesh.n_nodes(), 1.);
+    try
+    {
+      NetworkMatrix(edges, ones, couplings).solve(ones, std::vector<double>(ones.size(), 0.));
+      std::cout << "no solution: NO\n";
+    }
+    catch (const NoLinearSolution &error)
+    {
+      std::cout << "no solution: " << error.what() << "\n";
+    }
+  }
 } // namespace
 
 int main()
@@ -198,4 +220,5 @@ int main()
                std::abs(cube_error(6, 16, 0.) - fine)});
   check_stretching();
   check_bounds();
+  check_no_solution();
 }
