@@ -4,6 +4,8 @@
 #include <retroforge/steps/change_of_mesh.h>
 #include <retroforge/steps/moved_ends.h>
 
+#include <algorithm>
+#include <array>
 #include <numeric>
 #include <optional>
 
@@ -162,10 +164,12 @@ namespace retroforge
     public:
       WayBack(const RecordedForging          &run,
               const ForgingState             &end,
-              const std::vector<Combination> &combinations)
+              const std::vector<Combination> &combinations,
+              const std::vector<bool>        &late)
           : run_(run)
           , end_(end)
           , combinations_(combinations)
+          , late_(late.empty() ? std::vector<bool>(combinations.size(), false) : late)
           , costates_(start_costates(run, end, combinations))
           , state_(end.workpiece)
           , remeshed_(end.remeshed)
@@ -202,15 +206,24 @@ namespace retroforge
       Step step(unsigned int i) const;
       void restore_start(const Step &step);
       void reverse_increment(const Step &step);
-      void reverse_ends(const Step &step, const FollowingEnd &following, std::vector<Costate> &parts);
+      void reverse_ends(const Step                                       &step,
+                        const std::array<std::optional<FollowingEnd>, 2> &following,
+                        std::vector<Costate>                             &parts);
       void leave_mesh_as_made(const Step &step);
       void reverse_remeshing(const Step &step);
 
       bool ends_follow() const { return !run_.rules.empty(); }
 
+      FollowingRule rule_of(const bool late, const unsigned int i) const
+      {
+        const std::vector<FollowingRule> &rules = late ? run_.late_rules : run_.rules;
+        return rules.empty() ? FollowingRule() : rules[i];
+      }
+
       const RecordedForging          &run_;
       const ForgingState             &end_;
       const std::vector<Combination> &combinations_;
+      const std::vector<bool>         late_; ///< which of them have the late rules
 
       std::vector<Costate>       costates_;
       WorkpieceState<3, double>  state_;    ///< at the end, then at the start of each increment
@@ -277,19 +290,21 @@ namespace retroforge
 
     void WayBack::reverse_increment(const Step &step)
     {
-      const unsigned int          before = epoch_->system.n_solves;
-      std::vector<Costate>        parts;
-      std::optional<FollowingEnd> following;
+      const unsigned int                         before = epoch_->system.n_solves;
+      std::vector<Costate>                       parts;
+      std::array<std::optional<FollowingEnd>, 2> following; // and late
       if (ends_follow())
       {
         parts = apart(run_, costates_);
-        following.emplace(epoch_->scene.mesh,
-                          remeshed_.empty() ? run_.X_0 : epoch_->scene.mesh.X,
-                          state_.X,
-                          epoch_->increment.mechanics.mean_velocity(step.record),
-                          run_.process,
-                          place(step.record),
-                          run_.rules[step.i]);
+        for (const bool late : {false, true})
+          if (std::find(late_.begin(), late_.end(), late) != late_.end())
+            following[late].emplace(epoch_->scene.mesh,
+                                    remeshed_.empty() ? run_.X_0 : epoch_->scene.mesh.X,
+                                    state_.X,
+                                    epoch_->increment.mechanics.mean_velocity(step.record),
+                                    run_.process,
+                                    place(step.record),
+                                    rule_of(late, step.i));
       }
       const IncrementMemory no_history;
       epoch_->increment.reverse(run_.process,
@@ -299,7 +314,7 @@ namespace retroforge
                                 source_of(run_, rows_bar_, combinations_, step.i),
                                 ends_follow() ? parts : costates_);
       if (ends_follow())
-        reverse_ends(step, *following, parts);
+        reverse_ends(step, following, parts);
       else
         for (std::size_t j = 0; j < costates_.size(); ++j)
           reverse_rows(run_, rows_bar_, combinations_[j], step.i, step.record, costates_[j]);
@@ -307,14 +322,16 @@ namespace retroforge
     }
 
     /// What fell on the ends of the increment falls on the state at its start, and on the end of the one before.
-    void WayBack::reverse_ends(const Step &step, const FollowingEnd &following, std::vector<Costate> &parts)
+    void WayBack::reverse_ends(const Step                                       &step,
+                               const std::array<std::optional<FollowingEnd>, 2> &following,
+                               std::vector<Costate>                             &parts)
     {
       for (std::size_t j = 0; j < costates_.size(); ++j)
       {
         const MovedEnds<double> of_rows =
           reverse_rows(run_, rows_bar_, combinations_[j], step.i, step.record, costates_[j]);
         const MovedEnds<double> of_work  = together(run_, step.record, std::move(parts[j]), costates_[j]);
-        const double            of_start = following.reverse_moved(
+        const double            of_start = following[late_[j]]->reverse_moved(
           end_bar_[j] + of_rows.end + of_work.end, made_bar_[j], costates_[j].workpiece.X);
         end_bar_[j] = step.goes_on ? of_start + of_rows.start + of_work.start : 0.;
       }
@@ -388,16 +405,19 @@ namespace retroforge
 
   AdjointSweep adjoint_sweep(const RecordedForging          &run,
                              const ForgingState             &end,
-                             const std::vector<Combination> &combinations)
+                             const std::vector<Combination> &combinations,
+                             const std::vector<bool>        &late)
   {
     AssertDimension(end.increments, run.n);
+    Assert(late.empty() || late.size() == combinations.size(),
+           dealii::ExcDimensionMismatch(late.size(), combinations.size()));
     AssertDimension(run.traced.rows.size(), run.objectives.size());
     AssertDimension(run.traced.decisions.size(), run.objectives.size());
     Assert(std::all_of(combinations.begin(),
                        combinations.end(),
                        [&](const Combination &of) { return of.weights.size() == run.objectives.size(); }),
            dealii::ExcMessage("a combination has a weight for each objective"));
-    WayBack way(run, end, combinations);
+    WayBack way(run, end, combinations, late);
     for (unsigned int i = end.increments; i-- > 0;)
       way.over(i);
     return way.arrive();

@@ -320,15 +320,13 @@ namespace retroforge
 
   namespace
   {
-    /// What of some combinations is of objectives that are marked, or that are not.
-    std::vector<Combination>
-    parts_of(std::vector<Combination> combinations, const std::vector<bool> &marked, const bool which)
+    /// What of a combination is of objectives that are marked, or that are not.
+    Combination part_of(Combination combination, const std::vector<bool> &marked, const bool which)
     {
-      for (Combination &combination : combinations)
-        for (std::size_t o = 0; o < combination.weights.size(); ++o)
-          if (marked[o] != which)
-            combination.weights[o] = 0.;
-      return combinations;
+      for (std::size_t o = 0; o < combination.weights.size(); ++o)
+        if (marked[o] != which)
+          combination.weights[o] = 0.;
+      return combination;
     }
 
     bool is_nothing(const Combination &combination)
@@ -337,35 +335,16 @@ namespace retroforge
         combination.weights.begin(), combination.weights.end(), [](const double w) { return w == 0.; });
     }
 
-    /// Adds the sweep of those that are something.
-    void add_sweep(const RecordedForging                     &run,
-                   const ForgingState                        &end,
-                   const std::vector<Combination>            &combinations,
-                   std::vector<std::optional<AdjointResult>> &sums,
-                   unsigned int                              &linear_solves)
+    void add_result(AdjointResult &&part, std::optional<AdjointResult> &sum)
     {
-      std::vector<Combination> some;
-      std::copy_if(
-        combinations.begin(), combinations.end(), std::back_inserter(some), std::not_fn(is_nothing));
-      if (some.empty())
-        return;
-      AdjointSweep sweep = adjoint_sweep(run, end, some);
-      linear_solves += sweep.linear_solves;
-      auto part = sweep.gradients.begin();
-      for (std::size_t c = 0; c < combinations.size(); ++c)
+      if (!sum)
       {
-        if (is_nothing(combinations[c]))
-          continue;
-        if (!sums[c])
-          sums[c] = std::move(*part);
-        else
-        {
-          for (std::size_t k = 0; k < sums[c]->X_0.size(); ++k)
-            sums[c]->X_0[k] += part->X_0[k];
-          add_numbers(part->process, sums[c]->process);
-        }
-        ++part;
+        sum = std::move(part);
+        return;
       }
+      for (std::size_t k = 0; k < sum->X_0.size(); ++k)
+        sum->X_0[k] += part.X_0[k];
+      add_numbers(part.process, sum->process);
     }
   } // namespace
 
@@ -375,15 +354,27 @@ namespace retroforge
     const auto      late = late_forces();
     if (!late)
       return adjoint_sweep(run, state_, combinations);
-    AdjointSweep                              sweep;
+    run.late_rules = late->rules;
+    std::vector<Combination> parts;
+    std::vector<bool>        are_late;
+    std::vector<std::size_t> of;
+    for (std::size_t c = 0; c < combinations.size(); ++c)
+      for (const bool is_late : {false, true})
+        if (Combination part = part_of(combinations[c], late->objectives, is_late);
+            !is_nothing(part) || (!is_late && is_nothing(combinations[c])))
+        {
+          parts.push_back(std::move(part));
+          are_late.push_back(is_late);
+          of.push_back(c);
+        }
+    AdjointSweep                              of_parts = adjoint_sweep(run, state_, parts, are_late);
     std::vector<std::optional<AdjointResult>> sums(combinations.size());
-    add_sweep(run, state_, parts_of(combinations, late->objectives, false), sums, sweep.linear_solves);
-    run.rules = late->rules;
-    add_sweep(run, state_, parts_of(combinations, late->objectives, true), sums, sweep.linear_solves);
+    for (std::size_t p = 0; p < parts.size(); ++p)
+      add_result(std::move(of_parts.gradients[p]), sums[of[p]]);
+    AdjointSweep sweep;
+    sweep.linear_solves = of_parts.linear_solves;
     for (std::optional<AdjointResult> &sum : sums)
-      sweep.gradients.push_back(sum ? std::move(*sum)
-                                    : AdjointResult{NodalVectors<double>(problem_.X_0.size()),
-                                                    no_process_derivatives(problem_.process, dies())});
+      sweep.gradients.push_back(std::move(*sum));
     return sweep;
   }
 

@@ -21,6 +21,8 @@ namespace retroforge
     std::vector<FollowingRule> rules = {};
     NodalVectors<double>       X_0   = {}; ///< where the run began, if so [mm]
     bool meshes_follow = false;            ///< whether new meshes follow the shape (steps/following_mesh.h)
+    /// Of each increment, as `rules`, of combinations that are said to be late; none: their ends are held.
+    std::vector<FollowingRule> late_rules = {};
   };
 
   /// dPhi/dX_0 and dPhi/d(process) of one combination of objectives.
@@ -39,9 +41,11 @@ namespace retroforge
   /// The backward sweep over all recorded increments: per combination one linear solve per stage, J^T at each
   /// remeshing. Two meshes are in memory while one is left for the other.
   /// @param end   where it ended; earlier positions and strains follow from the recorded velocities
+  /// @param late  which combinations have the late rules; empty: none
   AdjointSweep adjoint_sweep(const RecordedForging          &run,
                              const ForgingState             &end,
-                             const std::vector<Combination> &combinations);
+                             const std::vector<Combination> &combinations,
+                             const std::vector<bool>        &late = {});
 
   /// The direct method: all objectives and their derivatives along one direction of (X_0, process), by the
   /// same kernels run forward on dual numbers.
