@@ -205,9 +205,11 @@ namespace retroforge
     if (confirmation)
     {
       const auto told = [&](const Evaluation &there) {
+        if (there.failed()) // it has no values
+          return "failed (" + there.failure + ")";
         std::ostringstream text;
         text << std::setprecision(7) << value(there) << unit;
-        return there.failed() ? "failed (" + there.failure + ")" : text.str();
+        return text.str();
       };
       out << "\n  on a mesh of " << confirmation->n_nodes << " nodes";
       if (!fails_there())

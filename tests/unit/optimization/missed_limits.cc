@@ -126,7 +126,7 @@ int main()
   std::cout << "\nkept on the finer mesh: status " << results.exit_status();
   results.start                      = results.best;
   results.confirmation->start.values = results.best.values;
-  results.confirmation->best.values.clear();
+  results.confirmation->best         = Evaluation();
   results.confirmation->best.failure = "it folds";
   std::ostringstream text;
   results.print(text);
