@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/edge_points.h>
 #include <retroforge/contact/level_gaps.h>
 #include <retroforge/contact/surface_rates.h>
 #include <retroforge/core/shares.h>
@@ -56,135 +57,6 @@ namespace retroforge
                                             const std::vector<ContactPair> &pairs)
     {
       return projections_of(view, pairs, 0, pairs.size());
-    }
-  } // namespace
-
-  namespace
-  {
-    using Ends = std::array<unsigned int, 2>;
-
-    /// For each pair of an edge without a velocity of its own, the pairs of its ends; invalid_index for an end that
-    /// does not see the die, and for all others.
-    std::vector<Ends> ends_of_edges(const std::vector<ContactPair> &pairs)
-    {
-      std::map<std::pair<unsigned int, NodeIndex>, unsigned int> of_node;
-      for (unsigned int p = 0; p < pairs.size(); ++p)
-        if (pairs[p].point.is_node())
-          of_node[{pairs[p].die, pairs[p].point.nodes[0]}] = p;
-      std::vector<Ends> ends(pairs.size(), {{invalid_index, invalid_index}});
-      for (unsigned int p = 0; p < pairs.size(); ++p)
-        if (!pairs[p].point.has_own_velocity())
-          for (unsigned int i = 0; i < 2; ++i)
-            if (const auto found = of_node.find({pairs[p].die, pairs[p].point.nodes[i]});
-                found != of_node.end())
-              ends[p][i] = found->second;
-      return ends;
-    }
-
-    /// (pair of a node, pair of an edge at it), in a fixed order; as often as the edge stands at the node in
-    /// the whole, so that a sector's nodes touch as those of the whole do.
-    std::vector<std::array<unsigned int, 2>> touched_by_edges(const Topology                 &topology,
-                                                              const std::vector<ContactPair> &pairs)
-    {
-      const std::vector<Ends>                  ends = ends_of_edges(pairs);
-      std::vector<std::array<unsigned int, 2>> touched;
-      for (unsigned int p = 0; p < pairs.size(); ++p)
-        if (const ContactPoint &point = pairs[p].point; !point.has_own_velocity())
-        {
-          const auto &edges = topology.surface_edges;
-          const auto  edge  = std::lower_bound(edges.begin(), edges.end(), point.nodes);
-          AssertThrow(edge != edges.end() && *edge == point.nodes, dealii::ExcInternalError());
-          for (unsigned int i = 0; i < 2; ++i)
-            if (ends[p][i] != invalid_index)
-              touched.insert(touched.end(), topology.edge_images[edge - edges.begin()][i], {{ends[p][i], p}});
-        }
-      return touched;
-    }
-
-    /// The parts with which edges that touch count for their ends,  g_m = 1 - w(4 b_m/s_m):  none where the die
-    /// only begins to bulge into the edge, so that nothing jumps there; all where it bulges by a quarter of the
-    /// ramp's width. Where b_m is small beside that, the ends are as near as the edge and need none: of ends that
-    /// are b_m away from a die which the edge touches, at least 0.99 touch. (By 1 - w(b_m/s_m) it was 0.75, and
-    /// friction on the hub too low.) Also all where an end does not see the die, and where ramps are sharp.
-    class BulgingParts
-    {
-    public:
-      BulgingParts(const std::vector<ContactPair> &pairs, const FrictionRamp &ramp)
-          : ramp_(ramp), ends_(ramp.sharp ? std::vector<Ends>() : ends_of_edges(pairs))
-      {
-      }
-
-      template <typename Number>
-      Number operator()(const ContactSet<Number> &contact, const unsigned int m) const
-      {
-        return is_whole(m)
-                 ? Number(1.)
-                 : Number(1. - ramp_(Number(steepness * bulge(contact, m) / contact.scales[m]), false));
-      }
-
-      /// Adds the derivatives of  part_bar * (*this)(contact, m).
-      void reverse(const ContactSet<double> &contact,
-                   const unsigned int        m,
-                   const double              part_bar,
-                   std::vector<double>      &gaps_bar,
-                   std::vector<double>      &scales_bar) const
-      {
-        if (is_whole(m))
-          return;
-        const double s = contact.scales[m], b = bulge(contact, m),
-                     slope = -part_bar * steepness * ramp_.derivative(steepness * b / s) / s;
-        for (const unsigned int end : ends_[m])
-          gaps_bar[end] += 0.5 * slope;
-        gaps_bar[m] -= slope;
-        scales_bar[m] -= slope * b / s;
-      }
-
-    private:
-      static constexpr double steepness = 4.;
-
-      bool is_whole(const unsigned int m) const
-      {
-        return ends_.empty() || ends_[m][0] == invalid_index || ends_[m][1] == invalid_index;
-      }
-
-      /// b_m = (delta_a + delta_b)/2 - delta_m  [mm]
-      template <typename Number>
-      Number bulge(const ContactSet<Number> &contact, const unsigned int m) const
-      {
-        const auto delta = [&](const unsigned int p) { return contact.projections[p].delta; };
-        return 0.5 * (delta(ends_[m][0]) + delta(ends_[m][1])) - delta(m);
-      }
-
-      FrictionRamp      ramp_;
-      std::vector<Ends> ends_;
-    };
-
-    /// Makes the derivatives in the ramps those in the points' own, and adds those in gaps and scales: the reverse of
-    /// how edges let nodes touch.
-    void reverse_touched_by_edges(const ContactSet<double> &contact,
-                                  const FrictionRamp       &ramp,
-                                  std::vector<double>      &ramps_bar,
-                                  std::vector<double>      &gaps_bar,
-                                  std::vector<double>      &scales_bar)
-    {
-      const BulgingParts  part_of(contact.pairs, ramp);
-      std::vector<double> at;
-      for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-        at.push_back(own_ramp(contact, ramp, p, contact.projections[p].delta));
-      std::vector<double> before; // of the node, at each step
-      for (const auto &[node, edge] : contact.touched_by_edges)
-      {
-        before.push_back(at[node]);
-        at[node] += (1. - at[node]) * part_of(contact, edge) * at[edge];
-      }
-      for (std::size_t i = contact.touched_by_edges.size(); i-- > 0;)
-      {
-        const auto &[node, edge] = contact.touched_by_edges[i];
-        const double part = part_of(contact, edge), missing_bar = (1. - before[i]) * ramps_bar[node];
-        part_of.reverse(contact, edge, missing_bar * at[edge], gaps_bar, scales_bar);
-        ramps_bar[edge] += missing_bar * part;
-        ramps_bar[node] *= 1. - part * at[edge];
-      }
     }
   } // namespace
 
@@ -323,10 +195,7 @@ namespace retroforge
       contact.chords         = find_chords(view, pairs, index);
       level_gaps(X, approach.ramp, contact);
     }
-    contact.touched_by_edges = touched_by_edges(topology, pairs);
-    const BulgingParts part_of(pairs, approach.ramp);
-    for (const auto &[node, edge] : contact.touched_by_edges)
-      contact.ramps[node] += (1. - contact.ramps[node]) * part_of(contact, edge) * contact.ramps[edge];
+    let_edges_touch(topology, approach.ramp, contact);
     // A triangle is visited from its first pair of each die.
     for (unsigned int p = 0; p < pairs.size(); ++p)
       if (const ContactPoint &point = pairs[p].point;
@@ -372,7 +241,7 @@ namespace retroforge
     else
     {
       std::vector<double> ramps_bar = bar.ramp;
-      reverse_touched_by_edges(contact, ramp, ramps_bar, gaps_bar, scales_bar);
+      reverse_edges_touch(contact, ramp, ramps_bar, gaps_bar, scales_bar);
       for (unsigned int p = 0; p < gaps_bar.size(); ++p)
         reverse_own_ramp(
           contact, ramp, p, contact.projections[p].delta, ramps_bar[p], gaps_bar[p], scales_bar[p]);

@@ -6,9 +6,6 @@ namespace retroforge
 {
   namespace
   {
-    /// Bulges over the edge's length up to which a die counts as smooth, and from which on as sharp.
-    constexpr double smooth_bulge = 0.06, sharp_bulge = 0.15;
-
     /// Constant weight beside those of the edges that touch: an offset sets in smoothly where a first edge
     /// touches.
     constexpr double first_touch = 0.25;

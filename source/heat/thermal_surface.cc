@@ -10,19 +10,6 @@ namespace retroforge
 {
   namespace
   {
-    /// A node off the die by a quarter of the gap, because an edge there holds it, touches as the edge does.
-    constexpr double steepness = 4.;
-
-    /// As far as the ends of an edge count as where its middle is.
-    template <typename Number>
-    Number part_of(const TouchingEdge<Number> &edge,
-                   const unsigned int          e,
-                   const Sights<Number>       &at,
-                   const FrictionRamp         &w)
-    {
-      return 1. - w(Number(steepness * at.bulge(edge, e)), true);
-    }
-
     /// As far as nodes and middles touch by themselves.
     template <typename Number>
     struct OwnWeights
@@ -98,7 +85,7 @@ namespace retroforge
         surface.touching[i].weight = own.of_nodes[i];
       for_each_factor(surface, [&](const unsigned int e, const unsigned int i) {
         Number &weight = surface.touching[i].weight;
-        weight += (1. - weight) * part_of(surface.edges[e], e, at, w) * own.of_middles[e];
+        weight += (1. - weight) * w.part_of_edge(at.bulge(surface.edges[e], e)) * own.of_middles[e];
       });
       for_each_face(
         view.mesh,
@@ -168,15 +155,14 @@ namespace retroforge
       for_each_factor(surface, [&](const unsigned int e, const unsigned int i) {
         factors.push_back({{e, i}});
         before.push_back(weight[i]);
-        weight[i] += (1. - weight[i]) * part_of(surface.edges[e], e, at, w) * own.of_middles[e];
+        weight[i] += (1. - weight[i]) * w.part_of_edge(at.bulge(surface.edges[e], e)) * own.of_middles[e];
       });
       for (std::size_t f = factors.size(); f-- > 0;)
       {
         const auto &[e, i] = factors[f];
         const auto  &edge  = surface.edges[e];
-        const double part = part_of(edge, e, at, w), missing_bar = (1. - before[f]) * weight_bar[i];
-        const double bulge_bar =
-          -missing_bar * own.of_middles[e] * steepness * w.derivative(steepness * at.bulge(edge, e));
+        const double part = w.part_of_edge(at.bulge(edge, e)), missing_bar = (1. - before[f]) * weight_bar[i];
+        const double bulge_bar = missing_bar * own.of_middles[e] * w.slope_of_edge(at.bulge(edge, e));
         own_bar.of_middles[e] += missing_bar * part;
         middles_bar[e].delta -= bulge_bar;
         for (const unsigned int end : edge.ends)

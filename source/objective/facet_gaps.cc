@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/level_gaps.h>
 #include <retroforge/core/shares.h>
 #include <retroforge/mesh/surface_areas.h>
 #include <retroforge/objective/facet_gaps.h>
@@ -39,9 +40,6 @@ namespace retroforge
     /// 1 - cos of the turns up to which a die counts as smooth, and from which on as sharp.
     const double smooth_turn = 1. - std::cos(25. * dealii::numbers::PI / 180.),
                  sharp_turn  = 1. - std::cos(45. * dealii::numbers::PI / 180.);
-
-    /// Bulges over l likewise.
-    constexpr double smooth_bulge = 0.06, sharp_bulge = 0.15;
 
     constexpr double at_corner = 1. / 20., at_middle = 2. / 15., at_centre = 9. / 20.;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/free_parts.h>
 #include <retroforge/objective/free_nodes.h>
 
 namespace retroforge
@@ -21,16 +22,6 @@ namespace retroforge
     {
       return make_contact_set<Number>(contact_view(view), near, {ramp, Number(1.)});
     }
-
-    template <typename Number>
-    std::vector<Number> products(const FinalView<Number> &view, const ContactSet<Number> &contact)
-    {
-      std::vector<Number> parts(view.X.size(), Number(1.));
-      for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-        if (contact.pairs[p].point.is_node())
-          parts[contact.pairs[p].point.nodes[0]] *= Number(1. - contact.ramps[p]);
-      return parts;
-    }
   } // namespace
 
   FreeNodes::Decisions FreeNodes::decide(const FinalView<double> &view) const
@@ -41,7 +32,7 @@ namespace retroforge
   template <typename Number>
   std::vector<Number> FreeNodes::parts(const FinalView<Number> &view, const Decisions &near) const
   {
-    return products(view, contact_of(view, near, ramp_));
+    return free_parts(contact_of(view, near, ramp_), view.X.size());
   }
 
   void FreeNodes::reverse(const FinalView<double>   &view,
@@ -49,20 +40,9 @@ namespace retroforge
                           const std::vector<double> &parts_bar,
                           FinalBar                  &bar) const
   {
-    const auto                                     contact = contact_of(view, near, ramp_);
-    ContactSetBar                                  contact_bar(near.size());
-    std::map<NodeIndex, std::vector<unsigned int>> pairs_of; // several dies may touch a node
-    for (unsigned int p = 0; p < near.size(); ++p)
-      if (near[p].point.is_node())
-        pairs_of[near[p].point.nodes[0]].push_back(p);
-    for (const auto &[k, pairs] : pairs_of)
-      for (const unsigned int p : pairs)
-      {
-        double others = 1.;
-        for (const unsigned int other : pairs)
-          others *= other == p ? 1. : 1. - contact.ramps[other];
-        contact_bar.ramp[p] = -parts_bar[k] * others;
-      }
+    const auto    contact = contact_of(view, near, ramp_);
+    ContactSetBar contact_bar(near.size());
+    reverse_free_parts(contact, parts_bar, contact_bar);
     NodalVectors<double> no_velocity_bar(view.X.size());
     reverse_contact_set(contact_view(view), contact, ramp_, contact_bar, bar.X, no_velocity_bar, bar.dies);
   }

@@ -1,42 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright (C) 2026 The Retroforge authors
+#include <retroforge/contact/free_parts.h>
 #include <retroforge/discretization/vertex_motion.h>
 #include <retroforge/solver/stage_motion.h>
 
 namespace retroforge
 {
-  namespace
-  {
-    template <typename Number>
-    std::vector<Number> freedom(const Equilibrium<Number> &stage)
-    {
-      std::vector<Number> c(stage.scene.mesh.n_nodes(), Number(1.));
-      for (unsigned int p = 0; p < stage.contact.pairs.size(); ++p)
-        if (const ContactPoint &point = stage.contact.pairs[p].point; point.is_node())
-          c[point.nodes[0]] *= 1. - stage.contact.ramps[p];
-      return c;
-    }
-
-    /// Adds to the ramps' derivatives. A node may be held by several dies.
-    void
-    reverse_freedom(const Equilibrium<double> &stage, const std::vector<double> &c_bar, ContactSetBar &bar)
-    {
-      const ContactSet<double>              &contact = stage.contact;
-      std::vector<std::vector<unsigned int>> pairs(c_bar.size());
-      for (unsigned int p = 0; p < contact.pairs.size(); ++p)
-        if (const ContactPoint &point = contact.pairs[p].point; point.is_node())
-          pairs[point.nodes[0]].push_back(p);
-      for (NodeIndex k = 0; k < c_bar.size(); ++k)
-        for (const unsigned int p : pairs[k])
-        {
-          double others = 1.;
-          for (const unsigned int q : pairs[k])
-            others *= q == p ? 1. : 1. - contact.ramps[q];
-          bar.ramp[p] -= c_bar[k] * others;
-        }
-    }
-  } // namespace
-
   template <typename Number>
   NodalVectors<Number> motion(const Equilibrium<Number> &stage, const Field<Number> &W)
   {
@@ -47,7 +16,7 @@ namespace retroforge
     if (!discretization.middles())
       return W.V.complete(*discretization.condensed_nodes());
     const NodalVectors<Number> V = W.V.complete(*discretization.condensed_nodes());
-    const std::vector<Number>  c = freedom(stage);
+    const std::vector<Number>  c = free_parts(stage.contact, stage.X.size());
     return vertex_velocities<Number>({scene.mesh, scene.topology, *discretization.middles(), stage.X, V, c});
   }
 
@@ -71,7 +40,7 @@ namespace retroforge
     if (!discretization.middles())
       return add_to_W(motion_bar);
     const NodalVectors<double> V = W.V.complete(*discretization.condensed_nodes());
-    const std::vector<double>  c = freedom(stage);
+    const std::vector<double>  c = free_parts(stage.contact, stage.X.size());
     VertexMotionBar            motion_input_bar{NodalVectors<double>(stage.X.size()),
                                      NodalVectors<double>(V.size()),
                                      std::vector<double>(c.size(), 0.)};
@@ -84,7 +53,7 @@ namespace retroforge
         part[k] += motion_input_bar.X[k];
     });
     contact_bar.add_once(
-      [&](ContactSetBar &part) { reverse_freedom(stage, motion_input_bar.freedom, part); });
+      [&](ContactSetBar &part) { reverse_free_parts(stage.contact, motion_input_bar.freedom, part); });
   }
 
   template NodalVectors<double> motion(const Equilibrium<double> &, const Field<double> &);

@@ -25,6 +25,9 @@
 /// vertices decide for themselves.
 namespace retroforge
 {
+  /// Bulges over an edge's length up to which a die counts as smooth, and from which on as sharp.
+  constexpr double smooth_bulge = 0.06, sharp_bulge = 0.15;
+
   /// The edges at curved dies, from pairs whose projections are there.
   /// @param pair_of  the pair of (die, velocity node), where there is one
   template <typename Number, typename PairOf>
