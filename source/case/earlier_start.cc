@@ -34,6 +34,19 @@ namespace retroforge
       });
     }
 
+    /// Whether a die has to come from outside: a face stands in it, or a part of it in the metal that pushes no node.
+    bool must_come_from_outside(const TetMesh              &billet,
+                                const NodalVectors<double> &X,
+                                const Die                  &die,
+                                const Vec3                 &displacement,
+                                const Overlap              &overlap,
+                                const double                near)
+    {
+      return overlap.depth > near &&
+             (has_a_face_inside(billet, X, die, displacement, near) ||
+              overlap.depth > deepest_pushed_out(billet, X, die, displacement, overlap));
+    }
+
     /// Whether a die that moves in the first operation stands in another one, too, which would begin and end with it back.
     bool moves_later(const Process<double> &process)
     {
@@ -75,7 +88,7 @@ namespace retroforge
     std::vector<std::pair<unsigned int, std::string>> remarks;
     for (const unsigned int d : operation.dies)
       if (const Overlap overlap = find_overlap(dies[d], process.dies[d].displacement, metal);
-          overlap.depth > near && has_a_face_inside(billet, X, dies[d], process.dies[d].displacement, near))
+          must_come_from_outside(billet, X, dies[d], process.dies[d].displacement, overlap, near))
       {
         const double before =
           seconds_to_leave(dies[d], process.dies[d], metal, overlap.depth, deepest_start(billet, X));

@@ -105,13 +105,16 @@ namespace retroforge
     }
 
     /// The deepest node in a die [mm]: what contact sees of an overlap, and pushes out.
-    double
-    deepest_node(const Scene &scene, const Die &die, const Vec3 &displacement, const NodalVectors<double> &X)
+    double deepest_node(const TetMesh              &billet,
+                        const Die                  &die,
+                        const Vec3                 &displacement,
+                        const NodalVectors<double> &X)
     {
       double deepest = 0.;
-      for (NodeIndex k = 0; k < X.size(); ++k)
-        if (scene.topology.is_on_surface(k))
-          deepest = std::max(deepest, -die.signed_distance(X[k], displacement));
+      for (const BoundaryFace &face : billet.faces)
+        if (billet.is_surface(face))
+          for (const NodeIndex k : face.nodes)
+            deepest = std::max(deepest, -die.signed_distance(X[k], displacement));
       return deepest;
     }
 
@@ -125,9 +128,8 @@ namespace retroforge
       return true;
     }
 
-    /// Up to `inside` of the billet's size contact pushes out what is in a die, in the first increment: that
-    /// is how a neighbour of a sound design, or a die drawn anew, begins. It pushes nodes; a part of a die
-    /// that is deeper in the billet than twice what nodes are in it would stay there.
+    /// Up to deepest_pushed_out() what is in a die is no error: that is how a neighbour of a sound design, or a die drawn
+    /// anew, begins.
     void check_outside(const Parameters               &parameters,
                        const Scene                    &scene,
                        const Process<double>          &process,
@@ -141,11 +143,9 @@ namespace retroforge
         const Overlap &overlap = approaches[d].overlap;
         if (!(overlap.depth > near))
           continue;
-        const Vec3  &displacement = process.dies[d].displacement;
-        const double pushed_out =
-          overlap.is_of_die ? std::min(most, 2. * deepest_node(scene, scene.dies[d], displacement, X)) : most;
-        const std::string name = "Die " + scene.dies[d].name;
-        if (overlap.depth > pushed_out)
+        const Vec3       &displacement = process.dies[d].displacement;
+        const std::string name         = "Die " + scene.dies[d].name;
+        if (overlap.depth > deepest_pushed_out(scene.mesh, X, scene.dies[d], displacement, overlap))
           throw Error(name,
                       standing_inside(overlap),
                       "a billet starts outside of all dies, or in one by 5 % of its size, " + as_text(most) +
@@ -395,6 +395,16 @@ namespace retroforge
   double deepest_start(const TetMesh &billet, const NodalVectors<double> &X)
   {
     return inside * size_of_whole(billet, X);
+  }
+
+  double deepest_pushed_out(const TetMesh              &billet,
+                            const NodalVectors<double> &X,
+                            const Die                  &die,
+                            const Vec3                 &displacement,
+                            const Overlap              &overlap)
+  {
+    const double most = deepest_start(billet, X);
+    return overlap.is_of_die ? std::min(most, 2. * deepest_node(billet, die, displacement, X)) : most;
   }
 
   std::string standing_inside(const Overlap &overlap)

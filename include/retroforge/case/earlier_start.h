@@ -37,7 +37,8 @@ namespace retroforge
   };
 
   /// Returns that of a scene. The press does not begin earlier
-  /// - where no face of the billet stands in a die by more than touches;
+  /// - where no face of the billet stands in a die by more than touches, nor a part of a die in the billet that pushes
+  ///   nodes by less than half its depth;
   /// - where a die at rest stands in the billet, which pushes it out in any case;
   /// - where one of the dies that move stands in a later operation, too, whose place at the start is the same number;
   /// - where a die stands in it by more than a billet may (scene_checks.h), or would have to go back by ten times

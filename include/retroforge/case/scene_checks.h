@@ -15,6 +15,14 @@ namespace retroforge
   /// Returns how deep in a die a billet may begin [mm]: 0.05 of that size.
   double deepest_start(const TetMesh &billet, const NodalVectors<double> &X);
 
+  /// Returns the depth of an overlap up to which the first increment pushes the metal out of a die at rest [mm]: it pushes
+  /// nodes; a part of a die that is deeper in the billet than twice what nodes are in it would stay there.
+  double deepest_pushed_out(const TetMesh              &billet,
+                            const NodalVectors<double> &X,
+                            const Die                  &die,
+                            const Vec3                 &displacement,
+                            const Overlap              &overlap);
+
   /// What of a die stands in the billet, or the billet in it, and how deep.
   std::string standing_inside(const Overlap &overlap);
 

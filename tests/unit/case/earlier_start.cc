@@ -9,6 +9,7 @@
 // - the lower die coming up at a quarter of the speed: it stands back by a quarter of the path;
 // - the lower die, at rest, 0.5 inside, alone or as the upper one is: not at all; 1.5 inside: not at all, which is refused;
 // - the upper plane 0.5 inside, where it stands in a second operation, too: not at all; where the one at rest does: 0.5;
+// - the tip of a pyramid 0.3 inside, between the nodes: 0.3;
 // - moved by what it says no die stands in the billet, and the leading die ends where it would;
 // - on dual numbers derivatives stay.
 
@@ -21,6 +22,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <optional>
 
 using namespace retroforge;
 
@@ -45,9 +47,27 @@ namespace
     return p;
   }
 
+  /// A pyramid whose tip points downwards, at (2.3, 1.7, 19.7).
+  Die tip()
+  {
+    const Vec3                 apex({2.3, 1.7, 19.7});
+    const NodalVectors<double> x = {apex,
+                                    apex + Vec3({-4., -4., 10.}),
+                                    apex + Vec3({4., -4., 10.}),
+                                    apex + Vec3({4., 4., 10.}),
+                                    apex + Vec3({-4., 4., 10.})};
+    return Die("upper",
+               TriangleSurface("tip", x, {{{0, 2, 1}}, {{0, 3, 2}}, {{0, 4, 3}}, {{0, 1, 4}}}),
+               10.,
+               {false, 30., 1.});
+  }
+
   /// @param later  dies of a second operation; none: there is no such
-  void
-  report(const std::string &name, const Parameters &parameters, const std::vector<unsigned int> &later = {})
+  /// @param upper  in place of the plane
+  void report(const std::string               &name,
+              const Parameters                &parameters,
+              const std::vector<unsigned int> &later = {},
+              const std::optional<Die>        &upper = {})
   {
     const TetMesh   mesh    = make_billet(parameters.billet, MPI_COMM_WORLD);
     Process<double> process = parameters.process({20., 20.});
@@ -59,6 +79,8 @@ namespace
     std::vector<Die> dies;
     for (const DieParameters &die : parameters.dies)
       dies.push_back(die.die());
+    if (upper)
+      dies[1] = *upper;
     const Vec3         end   = process.at_stroke(5.).dies[1].displacement;
     const EarlierStart start = earlier_start(parameters, mesh, dies, process, mesh.X);
     start.apply(process);
@@ -99,6 +121,8 @@ int main(int argc, char **argv)
 
   report("and again in a second operation", block(0.5, 100. * down), {0, 1});
   report("the lower die alone there", block(0.5, 100. * down), {0});
+
+  report("a tip between the nodes", block(0., 100. * down), {}, tip());
 
   const Parameters parameters                     = block(0.5, 100. * down);
   auto             process                        = converted<Dual>(parameters.process({20., 20.}));
