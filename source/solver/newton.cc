@@ -236,6 +236,28 @@ namespace retroforge
     return best;
   }
 
+  double Newton::search(const Equilibrium<double> &stage,
+                        Field<double>             &W,
+                        const SearchStart         &start,
+                        const Field<double>       &step,
+                        const ActiveChoice        &active)
+  {
+    return stage.has_potential() ? search_power(stage, W, start.r, step, active)
+                                 : search_residual(stage, W, start, step, active);
+  }
+
+  namespace
+  {
+    /// The pairs at a gap of no more than `near` [mm].
+    ActiveSet pairs_within(const double near, const Equilibrium<double> &stage)
+    {
+      ActiveSet active;
+      for (const auto &projection : stage.contact.projections)
+        active.push_back(projection.delta <= near);
+      return active;
+    }
+  } // namespace
+
   void Newton::initial_guess(const Equilibrium<double> &stage,
                              Field<double>             &W,
                              const ActiveChoice        &frozen,
@@ -259,12 +281,7 @@ namespace retroforge
     }
     const Equilibrium<double> linear(scene_, newtonian, stage.contact, stage.X);
     // Nodes at rest against a die at rest must feel it: all that touch count as active in the first matrix.
-    ActiveSet active;
-    if (frozen.is_given())
-      active = *frozen;
-    else
-      for (const auto &projection : stage.contact.projections)
-        active.push_back(projection.delta <= speed * stage.contact.tau);
+    ActiveSet     active = frozen.is_given() ? *frozen : pairs_within(speed * stage.contact.tau, stage);
     Field<double> step;
     for (unsigned int pass = 0; pass < 3; ++pass)
     {
@@ -325,6 +342,50 @@ namespace retroforge
   /// begin so close to their solutions that the tolerance says little: each takes one step more.
   constexpr double refined = 1e-5;
 
+  namespace
+  {
+    /// How exactly the linear systems of steps are solved: relative to their right-hand sides.
+    class Forcing
+    {
+    public:
+      Forcing(const NewtonParameters &parameters, const bool linear)
+          : parameters_(parameters), linear_(linear), largest_(parameters.forcing)
+      {
+      }
+
+      /// Close to the solution, Newton's steps fall short because their systems are solved too roughly: squashed
+      /// elements weigh less in the solver's norm than in the residual's.
+      /// @param last  the residual before a whole step
+      void learn_from_fall(const double residual, const double last)
+      {
+        if (residual < close && residual > poor_fall * last)
+          largest_ = std::max(least_forcing, 0.1 * largest_);
+      }
+
+      /// A step that had to be cut was a poor direction: where dies are stiff, the next one is solved for better.
+      void learn_from_search(const bool whole)
+      {
+        largest_ =
+          whole ? std::min(parameters_.forcing, 10. * largest_) : std::max(least_forcing, 0.1 * largest_);
+      }
+
+      /// As good as the quadratic convergence that the residual's fall, or its size, promises.
+      double operator()(const double residual, const double last) const
+      {
+        const double goal    = 0.1 * parameters_.tolerance / std::max(residual, parameters_.tolerance);
+        const double fall    = residual / last;
+        const double promise = 0.1 * std::max(residual, fall * fall);
+        const double forcing = linear_ ? goal : std::max(goal, std::min(largest_, promise));
+        return std::min(0.5, std::max(1e-12, forcing));
+      }
+
+    private:
+      const NewtonParameters &parameters_;
+      bool                    linear_;
+      double                  largest_;
+    };
+  } // namespace
+
   NewtonStatistics Newton::solve(const Equilibrium<double> &stage,
                                  Field<double>             &W,
                                  const ActiveChoice        &frozen,
@@ -355,7 +416,8 @@ namespace retroforge
     const Scale   reference = reference_scale(stage);
     Scale         scale;
     Field<double> r, step;
-    double        last = 1., largest_forcing = parameters_.forcing;
+    Forcing       forcing(parameters_, linear);
+    double        last  = 1.;
     bool          whole = false; // the step before
     unsigned int  idle  = 0;
     for (unsigned int iteration = 0; iteration < parameters_.max_iterations; ++iteration)
@@ -363,11 +425,7 @@ namespace retroforge
       // At rest nothing is pressed: the first matrix has the contacts that touch.
       std::optional<ActiveSet> touching;
       if (from_rest && iteration == 0 && !frozen.is_given() && linear)
-      {
-        touching.emplace();
-        for (const auto &projection : stage.contact.projections)
-          touching->push_back(projection.delta <= 0.);
-      }
+        touching = pairs_within(0., stage);
       const ActiveChoice first_active = touching ? ActiveChoice(touching) : frozen;
       const auto         assemble     = [&]() {
         system_.assemble(stage, W, first_active, picard > 0 ? Linearisation::picard : Linearisation::newton);
@@ -386,19 +444,11 @@ namespace retroforge
       if (iteration > 0)
         assemble();
       picard -= picard > 0;
-      // Close to the solution, Newton's steps fall short because their systems are solved too roughly:
-      // squashed elements weigh less in the solver's norm than in the residual's.
-      if (whole && statistics.residual < close && statistics.residual > poor_fall * last)
-        largest_forcing = std::max(least_forcing, 0.1 * largest_forcing);
-      const double goal = 0.1 * parameters_.tolerance / std::max(statistics.residual, parameters_.tolerance);
-      // As good as the quadratic convergence that the residual's fall, or its size, promises.
-      const double fall    = statistics.residual / last;
-      const double promise = 0.1 * std::max(statistics.residual, fall * fall);
-      double       forcing = linear ? goal : std::max(goal, std::min(largest_forcing, promise));
-      forcing              = found ? refined : std::min(0.5, std::max(1e-12, forcing));
+      if (whole)
+        forcing.learn_from_fall(statistics.residual, last);
       Field<double> rhs(scene_.discretization);
       rhs.add(-1., r);
-      statistics.krylov += system_.solve(rhs, forcing, step);
+      statistics.krylov += system_.solve(rhs, found ? refined : forcing(statistics.residual, last), step);
       ++statistics.iterations;
       if (found)
       {
@@ -407,25 +457,18 @@ namespace retroforge
       }
       if (!touching && statistics.residual > settled)
       {
-        const auto search = [&](const ActiveChoice &active) {
-          return stage.has_potential()
-                   ? search_power(stage, W, r, step, active)
-                   : search_residual(stage, W, {r, statistics.residual, scale, speed}, step, active);
-        };
-        double taken;
+        const SearchStart start{r, statistics.residual, scale, speed};
+        double            taken;
         if (decides && iteration < contacts_settle)
         {
           const ActiveSet active = stage.decide_active(W);
-          taken                  = search(active);
+          taken                  = search(stage, W, start, step, active);
           clip_to_dies(stage, active, W);
         }
         else
         {
-          // A step that had to be cut was a poor direction: where dies are stiff, the next one is solved for
-          // better.
-          taken           = search(frozen);
-          largest_forcing = taken == 1. ? std::min(parameters_.forcing, 10. * largest_forcing)
-                                        : std::max(least_forcing, 0.1 * largest_forcing);
+          taken = search(stage, W, start, step, frozen);
+          forcing.learn_from_search(taken == 1.);
         }
         whole = taken == 1.;
         if (!linear && taken < short_step)

@@ -102,8 +102,7 @@ namespace retroforge
                         const Field<double>       &step,
                         const ActiveChoice        &active);
 
-    /// What search_residual compares with: the residual at W, its relative norm and scale, and the dies'
-    /// speed.
+    /// What a search begins with: the residual at W, its relative norm and scale, and the dies' speed.
     struct SearchStart
     {
       const Field<double> &r;
@@ -119,6 +118,13 @@ namespace retroforge
                            const SearchStart         &start,
                            const Field<double>       &step,
                            const ActiveChoice        &active);
+
+    /// search_power where the equilibrium has a potential, else search_residual.
+    double search(const Equilibrium<double> &stage,
+                  Field<double>             &W,
+                  const SearchStart         &start,
+                  const Field<double>       &step,
+                  const ActiveChoice        &active);
     double slope(const Field<double> &r, const Field<double> &step) const;
 
     const Scene            &scene_;
