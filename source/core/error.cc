@@ -88,4 +88,9 @@ namespace retroforge
   {
     return Error(what() + ("; or " + clean(shortened(remedy, 2000))));
   }
+
+  Error Error::in_setting(const std::string &setting) const
+  {
+    return Error(legible(setting) + ": " + what());
+  }
 } // namespace retroforge

@@ -135,7 +135,7 @@ namespace retroforge
 
   TriangleSurface StlDie::surface(const DiePlace &place) const
   {
-    const TriangleSurface      read     = read_stl(file);
+    const TriangleSurface      read     = read_stl(file, place.section + "/file");
     NodalVectors<double>       vertices = read.vertices();
     const dealii::Tensor<2, 3> R        = scale * rotations.matrix();
     for (Vec3 &x : vertices)

@@ -366,6 +366,18 @@ namespace retroforge
     return surface;
   }
 
+  TriangleSurface read_stl(const std::string &file_name, const std::string &setting)
+  {
+    try
+    {
+      return read_stl(file_name);
+    }
+    catch (const Error &error)
+    {
+      throw error.in_setting(setting);
+    }
+  }
+
   void write_stl(const std::string &file_name, const TriangleSurface &surface, const StlFormat format)
   {
     write_stl(file_name, surface.vertices(), surface.triangles(), format);

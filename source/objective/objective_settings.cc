@@ -213,7 +213,7 @@ namespace retroforge
 
   TargetSurface TargetSettings::shape(const std::string &where, const std::optional<Box> &box) const
   {
-    auto surface = std::make_shared<TriangleSurface>(read_stl(name));
+    auto surface = std::make_shared<TriangleSurface>(read_stl(name, where + "/target"));
     if (!surface->is_closed() && !box)
       throw Error(where + "/target",
                   "'" + name + "' is not watertight",

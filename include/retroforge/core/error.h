@@ -31,6 +31,9 @@ namespace retroforge
     /// Returns the error with one more remedy.
     Error or_else(const std::string &remedy) const;
 
+    /// Returns the error of a file with the setting that names it in front.
+    Error in_setting(const std::string &setting) const;
+
   private:
     explicit Error(const std::string &message) : std::runtime_error(message) {}
   };

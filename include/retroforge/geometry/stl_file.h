@@ -22,6 +22,9 @@ namespace retroforge
   /// TriangleSurface refuses
   TriangleSurface read_stl(const std::string &file_name);
 
+  /// The same, for a setting, whose name errors begin with.
+  TriangleSurface read_stl(const std::string &file_name, const std::string &setting);
+
   /// @throws Error  when the file cannot be written
   /// Binary files hold single precision: their corners are rounded to 6e-8 of their size. ASCII files keep
   /// all digits.
